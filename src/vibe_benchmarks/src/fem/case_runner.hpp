@@ -27,7 +27,7 @@ class CaseProbe {
   Eigen::Vector3d meanDisplacement(std::size_t sample, const MotionView& motion) const;
   double tableDifference(std::size_t sample, const MotionView& motion, double level) const;
   std::vector<double> displacements(const MotionView& motion) const;  ///< (nodes * 3)
-  /// Up to the inner face of the wall, whose volume at rest the sample may give.
+  /// Whose volume at rest the sample may give.
   double cavity(const Sample& sample, const MotionView& motion, const ElasticBody& body) const;
   double toolForce(const Sample& sample, const MotionView& motion, const ElasticBody& body) const;
   double constraintForce(const Sample& sample, const BodyLoads& loads) const;

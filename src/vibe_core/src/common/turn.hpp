@@ -33,6 +33,12 @@ inline Eigen::Matrix3d rotationAbout(const Eigen::Vector3d& axis, double angle) 
   return c * Eigen::Matrix3d::Identity() + s * cross + (1 - c) * (axis * axis.transpose());
 }
 
+/// Angle of the rotation from one to another, at most pi [rad]. Unit quaternions.
+inline double angleBetween(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
+  const Eigen::Quaterniond turn = from * to.conjugate();
+  return 2 * math::atan2(turn.vec().norm(), std::abs(turn.w()));
+}
+
 /// The rotation at a fraction of the way from one to another, at constant speed, by the shorter way (Shoemake 1985,
 /// "Animating rotation with quaternion curves"). Unit quaternions.
 inline Eigen::Quaterniond between(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to, double fraction) {

@@ -94,7 +94,6 @@ void ShellElements::addBatch(const std::vector<int>& triangles, int rows) {
     for (int k = 0; k < 15; ++k) clear(kShellPatch + k);
     for (int k = 0; k < 3; ++k) clear(kShellSide + 4 * k + 3);
     clear(kShellBend);
-    clear(kShellHalf);
   }
   ++batch_count_;
 }
@@ -179,15 +178,12 @@ double ShellElements::volume(const double* displacement, double* gradient) const
   std::fill(gradient, gradient + 3 * mesh_.nodes.size(), 0.0);
   double sum = 0;
   for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
-    const auto material = static_cast<std::size_t>(materialOf(e));
-    const WallTerms<double> terms(constants_[material], mesh_.materials[material].poisson_ratio);
-    double u[5][3], first[3], share[3][3];
+    double u[5][3], first[3], share[3];
     gather(e, displacement, u);
     for (int r = 0; r < 3; ++r) first[r] = displacement[3 * patchNode(e, 0) + r];
-    sum += coneVolume(
-        terms, [values = rest(e)](int row) { return values[row]; }, u, first, share);
-    for (std::size_t a = 0; a < 3; ++a)
-      for (int r = 0; r < 3; ++r) gradient[3 * mesh_.triangles[e][a] + r] += share[a][r];
+    sum += coneVolume([values = rest(e)](int row) { return values[row]; }, u, first, share);
+    for (const int node : mesh_.triangles[e])
+      for (int r = 0; r < 3; ++r) gradient[3 * node + r] += share[r];
   }
   return sum;
 }

@@ -16,11 +16,9 @@ constexpr int kShellNormal = 27;     ///< normal of the patch at the centroid, s
 constexpr int kShellLength = 30;     ///< 36 times the area element at the centroid, lengthened by kShellSoftness [m^2]
 constexpr int kShellBend = 31;       ///< area times half the bending stiffness at rest, by (36 area elements)^4 / 36^2
 constexpr int kShellOrigin = 32;     ///< position of node 1 less the origin of the volume [m]
-constexpr int kShellArea = 35;       ///< 1 by the square of twice the area [1/m^4]
-constexpr int kShellHalf = 36;       ///< volume of the inner half of the wall [m^3]
-constexpr int kShellRows = 37;       ///< of a triangle with three neighbours
-constexpr int kShellGhost = 37;      ///< per side: 1 if a triangle is beyond it, else 0; then sqrt(2) n if clamped
-constexpr int kShellGhostRows = 49;  ///< of the others
+constexpr int kShellRows = 35;       ///< of a triangle with three neighbours
+constexpr int kShellGhost = 35;      ///< per side: 1 if a triangle is beyond it, else 0; then sqrt(2) n if clamped
+constexpr int kShellGhostRows = 47;  ///< of the others
 
 // Rows of a triangle with fibres, in addition to those above.
 constexpr int kFibreSide = 0;      ///< per side and family: the direction in the basis of the side's T, 0 0 for none

@@ -41,12 +41,10 @@ struct ShellKernelOfPairs {
   }
 
   template <class Part>
-  [[gnu::always_inline]] static void addShares(const ShellSweep& s, const BatchOffsets* offset,
-                                               const Pack (&share)[3][3], const Part& part) {
-    for (int a = 0; a < 3; ++a) {
-      const Half half[3] = {part(share[a][0]), part(share[a][1]), part(share[a][2])};
-      Single::Lanes::add(s.volume_gradient4, offset[a].lane, half);
-    }
+  [[gnu::always_inline]] static void addShares(const ShellSweep& s, const BatchOffsets* offset, const Pack (&share)[3],
+                                               const Part& part) {
+    const Half half[3] = {part(share[0]), part(share[1]), part(share[2])};
+    for (int a = 0; a < 3; ++a) Single::Lanes::add(s.volume_gradient4, offset[a].lane, half);
   }
 
   template <Law law, bool ghosts, bool volume>
@@ -70,8 +68,8 @@ struct ShellKernelOfPairs {
       scatter(s, offset, f, first);
       scatter(s, offset + 6, f, second);
       if constexpr (volume) {
-        Pack share[3][3];
-        const Pack cone = coneVolume(terms, rest, u, u1, share);
+        Pack share[3];
+        const Pack cone = coneVolume(rest, u, u1, share);
         enclosed.add(first(cone)), enclosed.add(second(cone));
         addShares(s, offset, share, first);
         addShares(s, offset + 6, share, second);

@@ -38,7 +38,7 @@ struct ShellKernelOf {
   [[gnu::always_inline]] static void sweepBatch(ShellSweep& s, const WallTerms<Pack>& terms, int batch,
                                                 const BatchReals* rows, Sum& energy, Sum& enclosed) {
     const BatchOffsets* offset = s.node + batch * 6;
-    Pack f[kParts][5][3], share[kParts][3][3];
+    Pack f[kParts][5][3], share[kParts][3];
     for (int part = 0; part < kParts; ++part) {
       const int lane = part * kWidth;
       const auto rest = [=](int row) { return Pack::load_aligned(rows[row].lane + lane); };
@@ -47,13 +47,13 @@ struct ShellKernelOf {
       if constexpr (ghosts) placeGhosts(rest, u);
       energy.add(shellEnergy<law, LawFormula<law>::kThicknessSteps, ghosts>(terms, rest, u, f[part]), part);
       if constexpr (ghosts) returnGhosts(rest, f[part]);
-      if constexpr (volume) enclosed.add(coneVolume(terms, rest, u, u1, share[part]), part);
+      if constexpr (volume) enclosed.add(coneVolume(rest, u, u1, share[part]), part);
     }
     scatter(s, offset, f);
     if constexpr (volume)
       for (int a = 0; a < 3; ++a)
         for (int part = 0; part < kParts; ++part)
-          Lanes::add(s.volume_gradient4, offset[a].lane + part * kWidth, share[part][a]);
+          Lanes::add(s.volume_gradient4, offset[a].lane + part * kWidth, share[part]);
   }
 
   template <Law law, bool ghosts, bool volume>

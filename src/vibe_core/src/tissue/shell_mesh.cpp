@@ -151,8 +151,6 @@ void ShellElements::measure() {
     for (int k = 0; k < 5; ++k)
       Eigen::Map<Eigen::Vector3d>(rest + kShellPatch + 3 * k) = patch.col(k + 1) - patch.col(0);
     Eigen::Map<Eigen::Vector3d>(rest + kShellOrigin) = patch.col(0) - origin_;
-    rest[kShellArea] = 1 / (4 * areaOf(e) * areaOf(e));
-    rest[kShellHalf] = mesh_.thickness[e] * areaOf(e) / 2;
     measureSides(e, patch, rest);
     measureBending(e, patch, rest);
     measureGhosts(e, rest);

@@ -16,8 +16,6 @@ constexpr double kShellSoftness = 1e-5;
 // 1 / (squared stretch of the area) enters the bending stiffness unchanged up to the first value, and is then limited
 // smoothly to 6.
 constexpr double kThinningStart = 2, kThinningEnd = 6;
-// Added to the square of the volume of a wall by that at rest, which has no derivative where the area vanishes.
-constexpr double kLeastVolume = 1e-6, kRestVolume = 1 + kLeastVolume / 2;  // and its root at rest
 
 template <class B>
 [[gnu::always_inline]] inline B dot(const B (&a)[3], const B (&b)[3]) {
@@ -352,36 +350,19 @@ template <Law law, int Steps, bool ghosts, class B, class Rest>
   }
 }
 
-/// The volume of the cone from the origin to a triangle, up to the inner face of the wall, and its gradients with
-/// respect to the three nodes. The gas acts on the inner face, not on the middle surface: half of the volume of the
-/// wall, t A J / 2 with the area A at rest, lies between them, so that the cavity grows by less where the wall gains
-/// volume. J^2 = D c follows from the change of the area, D, by the c of bendingFactor; it is 1 for an incompressible
-/// wall. Its change from rest is counted, so that the volume at rest is that of the middle surface. What the curvature
-/// adds is less by another thickness over radius.
+/// A third of the area vector of a triangle (a sixth of the cross product), the share of each node; returns the volume
+/// of the cone to the origin.
 template <class B, class Rest>
-[[gnu::always_inline]] inline B coneVolume(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& u,
-                                           const B (&u1)[3], B (&share)[3][3]) {
-  const B sixth = constant<B>(1.0 / 6), one = constant<B>(1), s = larger(terms.thickness_guess, constant<B>(0));
-  B e[3], d[3], at[3], c[3], by_e[3], by_d[3];
+[[gnu::always_inline]] inline B coneVolume(const Rest& rest, const Patch<B>& u, const B (&u1)[3], B (&share)[3]) {
+  const B sixth = constant<B>(1.0 / 6);
+  B e[3], d[3], at[3];
   for (int r = 0; r < 3; ++r) {
     e[r] = rest(kShellPatch + r) + u[0][r], d[r] = rest(kShellPatch + 3 + r) + u[1][r];
     at[r] = rest(kShellOrigin + r) + u1[r];
   }
-  cross(e, d, c);
-  const B scale = rest(kShellArea), grown = dot(c, c) * scale, by = one / mulAdd(s, grown, one - s);
-  const B volume = rootOf(B(mulAdd(grown, by, constant<B>(kLeastVolume)))), half = rest(kShellHalf);
-  const B pull = half * scale * (one - s) * by * by / volume;
-  const B g[3] = {pull * c[0], pull * c[1], pull * c[2]};
-  cross(d, g, by_e);
-  cross(g, e, by_d);
-  B middle[3];
-  for (int r = 0; r < 3; ++r) {
-    middle[r] = sixth * c[r];
-    share[0][r] = middle[r] + (by_e[r] + by_d[r]);
-    share[1][r] = middle[r] - by_e[r];
-    share[2][r] = middle[r] - by_d[r];
-  }
-  return minusMul(half, volume - constant<B>(kRestVolume), dot(at, middle));
+  cross(e, d, share);
+  for (int r = 0; r < 3; ++r) share[r] = sixth * share[r];
+  return dot(at, share);
 }
 
 }  // namespace

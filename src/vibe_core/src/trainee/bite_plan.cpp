@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/turn.hpp"
 #include "trainee/ik_solution.hpp"
 #include "trainee/picture.hpp"
 #include "trainee/room.hpp"
@@ -114,7 +115,7 @@ class Planner {
   double failed(const Eigen::Quaterniond& turn) const {
     double max = 0;
     for (const TriesOfBite::Way& way : me_.tries.failed)
-      max = std::max(max, way.miss * (1 - turn.angularDistance(way.turn) / kOtherWay));
+      max = std::max(max, way.miss * (1 - angleBetween(turn, way.turn) / kOtherWay));
     return max;
   }
 

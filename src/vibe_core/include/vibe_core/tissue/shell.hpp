@@ -73,10 +73,9 @@ class ShellElements : public ElasticElements {
   double evaluate(int piece, const float* displacement4, float* gradient4) const override;
   double evaluate(const double* displacement, double* gradient) const override;
 
-  /// Like evaluate, and also adds the piece's share of the volume [m^3] enclosed by the inner face of the wall, less
-  /// half of the wall at rest, and its gradient [m^2]: a third of each triangle's area vector to its nodes, and what
-  /// the wall gains in volume. The gradient is the force of a pressure of 1 Pa; it has no resultant over a closed
-  /// surface. Virtual so that a solver can be tested on other walls.
+  /// Like evaluate, and also adds the piece's share of the volume [m^3] enclosed by the surface, and a third of each
+  /// triangle's area vector to its nodes [m^2]. The latter is the force of a pressure of 1 Pa and, for a closed
+  /// surface, the gradient of the volume. Virtual so that a solver can be tested on other walls.
   virtual double evaluate(int piece, const float* displacement4, float* gradient4, float* volume_gradient4,
                           double& volume) const;
   /// The volume and its gradient, as above, in double precision; interleaved (3 * nodeCount), overwritten.
