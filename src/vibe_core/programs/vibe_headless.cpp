@@ -126,7 +126,8 @@ std::string goalSentence(const Trainee* trainee, const SessionMetrics& metrics) 
   const std::vector<Measure> measures = goalMeasures(trainee, metrics.skill.sets);
   const auto count = [&](const char* name) { return static_cast<int>(valueOf(measures, name).value_or(0)); };
   char text[160];
-  std::snprintf(text, sizeof text, "goals              %8d     reached %d   sets as planned %d   bites given up %d of %d\n",
+  std::snprintf(text, sizeof text,
+                "goals              %8d     reached %d   sets as planned %d   bites given up %d of %d\n",
                 count("goals"), count("goals_reached"), count("sets_as_planned"), count("bites_given_up"),
                 count("bites_planned"));
   return text;

@@ -12,9 +12,9 @@
 namespace vibe::benchmarks {
 
 const std::vector<std::string>& hardCaseNames() {
-  static const std::vector<std::string> kNames{"ram_0.15", "ram_0.3", "ram_0.5",    "ram_1",   "random", "jump",
-                                               "wind",     "across",  "desufflate", "sets_20", "over_set",
-                                               "pressure", "sleeve",  "8x7",        "14x4"};
+  static const std::vector<std::string> kNames{"ram_0.15", "ram_0.3",  "ram_0.5", "ram_1",      "random",
+                                               "jump",     "wind",     "across",  "desufflate", "sets_20",
+                                               "over_set", "pressure", "sleeve",  "8x7",        "14x4"};
   return kNames;
 }
 
@@ -22,7 +22,8 @@ std::string describeHardCases() {
   return "  ram_V       the scope, straight, is pushed 60 mm into the wall at V m/s and withdrawn\n"
          "  random      all joints go to random places within their limits and speeds, buttons are pressed at random,\n"
          "              for 30 s\n"
-         "  jump        wound in and holding, all joints go at their own speeds to random limits every 0.2 s, for 20 s\n"
+         "  jump        wound in and holding, all joints go at their own speeds to random limits every 0.2 s, for 20 "
+         "s\n"
          "  wind        the helix, turned 20 times while it holds, is turned by half a turn and pulled by 60 mm\n"
          "  across      two bites 150 mm apart are cinched with 8 N, then the thread is removed\n"
          "  desufflate  two sets, then the gas is let out and in again\n"

@@ -220,9 +220,9 @@ bool ImplicitStep::solve() {
   for (const auto& block : scratch_.blocks) scratch_.terms.add(block->energyTerm(context_));
   contact_energy_ = state_.energy.contact_energy;
   scratch_.loads.extra = scratch_.terms.simplest();
-  const StepOutcome outcome =
-      limited_ ? stepper_.stepAgain(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper)
-                 : stepper_.step(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper);
+  const StepOutcome outcome = limited_
+                                  ? stepper_.stepAgain(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper)
+                                  : stepper_.step(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper);
   report_.iterations = outcome.iterations;
   report_.evaluations = outcome.evaluations;
   report_.residual = outcome.residual;

@@ -81,7 +81,8 @@ const std::vector<EventRow>& eventRows() {
       {Kind::ArmClosed, Detail::None, "arm closed", "",
        "The arm closed over the anchor exchange, which holds the needle and can hand it back."},
       {Kind::Blocked, Detail::None, "blocked", "N",
-       "The wall ({region}, {wall}) lets the tool move no further, at {value:N}; go back the way it came, or release the "
+       "The wall ({region}, {wall}) lets the tool move no further, at {value:N}; go back the way it came, or release "
+       "the "
        "helix."}};
   return rows;
 }

@@ -25,8 +25,8 @@ Workspace::~Workspace() = default;
 
 namespace {
 
-// Steps in which nothing of the tool moves on before that is an event. Design choice: shorter stops are the rule where a
-// wall has to give way first.
+// Steps in which nothing of the tool moves on before that is an event. Design choice: shorter stops are the rule where
+// a wall has to give way first.
 constexpr int kBlockedSteps = 6;
 
 // Forces are reported in the tip's frame at the end of the step.

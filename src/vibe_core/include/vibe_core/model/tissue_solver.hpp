@@ -24,14 +24,14 @@ struct StepReport {
   std::array<double, kScopeJointCount> hand_effort{};     ///< of the hand on the joints, mean over the step [N], [N m]
   std::array<int, kJointCount> stopped{};                 ///< joints that tissue has stopped: sign of their motion
   int blocking_particle = -1;  ///< nearest to what has stopped the whole tool; -1: it goes on, or rests by itself
-  int contact_count = 0;                                  ///< see State
-  int iterations = 0;                                     ///< of an implicit solver
-  int evaluations = 0;                                    ///< of the elastic energy, by an implicit solver
-  double residual = 0;                                    ///< of a further iteration, or of contacts and threads [m]
-  bool arrived = true;    ///< false: the limit of work left much of the step to the next
-  bool fallback = false;  ///< backward Euler, because one of the last did not arrive
-  bool put_back = false;  ///< the state was not usable; its recovery to rest began
-  int speed_limited = 0;  ///< how often the speed of a particle was limited
+  int contact_count = 0;       ///< see State
+  int iterations = 0;          ///< of an implicit solver
+  int evaluations = 0;         ///< of the elastic energy, by an implicit solver
+  double residual = 0;         ///< of a further iteration, or of contacts and threads [m]
+  bool arrived = true;         ///< false: the limit of work left much of the step to the next
+  bool fallback = false;       ///< backward Euler, because one of the last did not arrive
+  bool put_back = false;       ///< the state was not usable; its recovery to rest began
+  int speed_limited = 0;       ///< how often the speed of a particle was limited
 };
 
 /// Scratch memory of a solver; carries nothing from one step to the next.

@@ -40,8 +40,8 @@ VIBE_FIELDS(SlopeMemory<kScopeJointCount>, known, has_pair, place, force, step, 
 VIBE_FIELDS(ImpedanceMemory, last_step, next_renewal, current, next, last_nodes, has_last, last_place, last_speed,
             last_force, last_jump, slope, joint_slope);
 VIBE_FIELDS(State, step, time, seed, random, x, y, z, vx, vy, vz, ax, ay, az, qw, qx, qy, qz, wx, wy, wz, gas_amount,
-            pressure, volume, pressure_reached, joints, tool_displacement, hand_effort, stall, blocked_steps, grip, helix_pressed,
-            in_contact, untouched_time, tool_force, tool_torque, grip_force, contact_count, pull, procedure, energy,
-            solver, impedance);
+            pressure, volume, pressure_reached, joints, tool_displacement, hand_effort, stall, blocked_steps, grip,
+            helix_pressed, in_contact, untouched_time, tool_force, tool_torque, grip_force, contact_count, pull,
+            procedure, energy, solver, impedance);
 
 }  // namespace vibe
