@@ -70,6 +70,11 @@ struct ImplicitWorkspace : SolverWorkspace {
 void findToolContactRows(const Model& model, const ToolMotion& motion, const ImplicitStepper& stepper,
                          const StepReport& report, ImplicitWorkspace& scratch);
 
+/// Positions, velocities, accelerations of the nodes.
+constexpr std::size_t kMotion = 9;
+constexpr std::array<std::vector<double> State::*, kMotion> kMotionOf{
+    &State::x, &State::y, &State::z, &State::vx, &State::vy, &State::vz, &State::ax, &State::ay, &State::az};
+
 /// One step of a scene: the constraint blocks add their loads, the stepper moves the tissue, the blocks store their
 /// forces. Resting tissue is skipped; lost tissue is led back to rest.
 class ImplicitStep {
