@@ -22,13 +22,6 @@ constexpr double kGivesWay = 0.1;
 // Stretch of the wall for which that is so at least, so that edges have the same points from step to step; points are
 // added where the wall is stretched more. Design choice: that of an insufflated stomach [1].
 constexpr double kUsualStretch = 1.15;
-// How far a shape may sink between two vertices. A tip that slides would feel that as a ripple: its force follows the
-// nearest vertices. Edges that leave more have a contact in their middle, too. Design choice: 2 % of what a tip presses
-// the wall in at 0.5 N [m].
-constexpr double kSag = 0.15e-3;
-// Such middles become contacts when they are predicted this near to the tool. Design choice: less than vertices need,
-// which stop the wall by themselves; a contact that cannot touch costs as much as one that does [m].
-constexpr double kSmoothReach = 0.5e-3;
 // Parts of a triangle through which a shape already passes, because it was put there: points within are pushed aside.
 constexpr int kPierced = 4;
 // Most parts into which an edge is divided. Design choice: a needle of half a millimetre in a mesh of 10 mm.
@@ -177,14 +170,12 @@ void SurfaceContacts::addBetween(const SurfacePath& path, double margin, int sha
     for (std::size_t k = 0; k < 3; ++k) {
       const double length = (path.start(n[(k + 1) % 3]) - path.start(n[k])).norm();
       const double usual = std::max(length, kUsualStretch * length_[static_cast<std::size_t>(pair.triangle)][k]);
-      int parts = partsOf(shape, usual);
+      const int parts = partsOf(shape, usual);
       most = std::max(most, parts);
-      double reach = margin;
-      if (parts == 1 && !yields_ && isRough(shape, usual)) parts = 2, reach = std::min(margin, kSmoothReach);
       const int across = neighbour_[pair.triangle][k];
       if (isDrawnIn(shape, {n[k], n[(k + 1) % 3]}, excluded)) continue;
       if (parts > 1 && !(across >= 0 && pair_of_[across] >= 0 && across < pair.triangle))
-        addEdge(path, reach, shape, pair, static_cast<int>(k), parts);
+        addEdge(path, margin, shape, pair, static_cast<int>(k), parts);
     }
     if (most > 2 && !isDrawnIn(shape, {n[0], n[1], n[2]}, excluded)) addInterior(path, margin, shape, pair, most);
   }
@@ -213,11 +204,6 @@ int SurfaceContacts::partsOf(int shape, double length) const {
   const double radius = tool_.radius(shape), touching = radius + half_, least = radius + kKeptBetweenVertices * half_;
   const double spacing = std::sqrt(3 * (touching * touching - least * least));
   return std::clamp(static_cast<int>(std::ceil(length / spacing)), 1, kMaxParts);
-}
-
-// An edge whose ends touch is nearer to the core in its middle than they are, by length^2 / 8 over their distance.
-bool SurfaceContacts::isRough(int shape, double length) const {
-  return length * length > 8 * (tool_.radius(shape) + half_) * kSag;
 }
 
 void SurfaceContacts::addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge,

@@ -33,10 +33,9 @@ struct SurfaceContact {
 ///
 /// Contacts are points of the wall that stay the same from step to step: the vertices, and where these leave room for
 /// the shape between them, because it is thin or the triangles are large, points that divide edges and triangles
-/// evenly. A shape far wider than the triangles therefore has one contact per vertex within reach. The nearest points
-/// of a triangle and a shape would be fewer, but they move with the tilt of the triangle, and a force that follows that
-/// from step to step does not come to rest. Where a wide shape would sink between its vertices as far as a hand feels,
-/// the middles of edges are contacts, too. Where two shapes touch one place from one side, the deeper contact counts.
+/// evenly. A shape wider than the triangles therefore has one contact per vertex within reach. The nearest points of a
+/// triangle and a shape would be fewer, but they move with the tilt of the triangle, and a force that follows that from
+/// step to step does not come to rest. Where two shapes touch one place from one side, the deeper contact counts.
 class SurfaceContacts {
  public:
   /// @param thickness  of the wall per vertex [m]
@@ -50,7 +49,7 @@ class SurfaceContacts {
   /// @param excluded  per vertex: 1: it takes no part; a triangle of only such vertices neither; kHeld: the helix holds
   ///                  it, and draws triangles there into the device on the tip of the scope
   /// @param yields  the tool gives way to forces, so that its end pose is a guess: normals are then those at the end,
-  ///                because a secant to a guess that lags behind would brake the tool; nor are there middles of edges
+  ///                because a secant to a guess that lags behind would brake the tool
   /// @returns ordered by nodes, then depth; valid until the next call
   const std::vector<SurfaceContact>& find(const std::vector<Eigen::Isometry3d>& start,
                                           const std::vector<Eigen::Isometry3d>& end, const SurfacePath& path,
@@ -71,7 +70,6 @@ class SurfaceContacts {
   void addBetween(const SurfacePath& path, double margin, int shape, const std::vector<char>& excluded);
   void addNearest(int shape, const std::vector<char>& excluded);
   int partsOf(int shape, double length) const;
-  bool isRough(int shape, double length) const;
   void addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge, int parts);
   void addInterior(const SurfacePath& path, double margin, int shape, const Pair& pair, int parts);
   void offer(const SurfacePoint& point, const SurfacePath& path, int shape, bool hit, double margin);

@@ -79,7 +79,7 @@ struct Scene {
 };
 
 TEST(SurfaceContacts, AWideShapeHasOneContactPerVertexInReach) {
-  Scene scene(8e-3, 16);  // 1.9 mm between vertices
+  Scene scene(8e-3, 10);  // 3 mm between vertices
   const auto poses = scene.posesAt({-1e-3, 0, 0});
   const auto& found = scene.contacts.find(poses, poses, pathOf(scene.start, scene.start), 0.5e-3, scene.none);
   ASSERT_GT(found.size(), 4u);
@@ -97,24 +97,6 @@ TEST(SurfaceContacts, AWideShapeHasOneContactPerVertexInReach) {
   for (const Vector3d& p : scene.mesh.vertices)
     expected += (p - Vector3d(-9e-3, 0, 0)).norm() < 8e-3 + kThickness / 2 + 0.5e-3 ? 1 : 0;
   EXPECT_EQ(found.size(), expected);
-}
-
-// Where vertices are farther apart, a tip would sink between them; the wall holds it in the middle of edges, too.
-TEST(SurfaceContacts, AWideShapeIsHeldBetweenVerticesThatAreFarApart) {
-  Scene scene(8e-3, 8);  // 3.8 mm between vertices, 5.3 along diagonals
-  const auto poses = scene.posesAt({-0.8e-3, 0.7e-3, 0.3e-3});
-  const auto& found = scene.contacts.find(poses, poses, pathOf(scene.start, scene.start), 2e-3, scene.none);
-  int middles = 0, vertices = 0;
-  for (const SurfaceContact& contact : found) {
-    ASSERT_LE(contact.point.count, 2);
-    vertices += contact.point.count == 1 ? 1 : 0;
-    if (contact.point.count == 1) continue;
-    ++middles;
-    EXPECT_DOUBLE_EQ(contact.point.weight[0], 0.5);
-    EXPECT_LT(contact.distance, kThickness / 2 + 0.5e-3 + kRounding) << "only those that are about to touch";
-  }
-  EXPECT_GT(middles, 2);
-  EXPECT_GT(vertices, 2);
 }
 
 /// Of a point from the core of the capsule, in the frame of the pose.
