@@ -15,15 +15,7 @@ constexpr double kRadius = 0.06;
 
 /// The scope enters at the top of the ball and looks down.
 Scene scopeScene(std::optional<ScopeComplianceScene> compliance) {
-  Scene scene;
-  scene.tissue.model = "shell";
-  scene.tissue.mass_damping = 30;
-  scene.tissue.self_contact = false;
-  scene.gas.reset();
-  scene.gravity.reset();
-  scene.foundation = FoundationScene{};
-  scene.foundation->stiffness = 2e5;
-  scene.scope = test::scopeFromAbove(kRadius);
+  Scene scene = test::shellUnderScope(kRadius);
   scene.scope->compliance = compliance;
   scene.helix = test::firmHelix();
   return scene;

@@ -1,7 +1,6 @@
 // A rigid scope whose tip slides along a wall without friction: it needs no less work than nothing, at any step.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "vibe_testing/scope_worlds.hpp"
@@ -17,20 +16,12 @@ constexpr double kWay = 0.03;       // of the tip [m]
 constexpr double kToWall = 7.3e-3;  // from the axis of the tip to the mid-surface [m]
 
 /// The bent tip presses the wall of a ball on a foundation, beside its axis.
-World pressingWorld(int rate, int level, StepInput& input) {
-  Scene scene;
+World pressingWorld(int rate, StepInput& input) {
+  Scene scene = test::shellUnderScope(kRadius);
   scene.step_period = 1.0 / rate;
-  scene.tissue.model = "shell";
-  scene.tissue.mass_damping = 30;
-  scene.tissue.self_contact = false;
-  scene.gas.reset();
-  scene.gravity.reset();
-  scene.foundation = FoundationScene{};
-  scene.foundation->stiffness = 2e5;
-  scene.scope = test::scopeFromAbove(kRadius);
   scene.scope->compliance.reset();
   scene.scope->friction = 0;
-  World world = test::scopeWorld(scene, test::openBall(kRadius, level, 2e-3));
+  World world = test::scopeWorld(scene, test::openBall(kRadius, 4, 2e-3));  // 4.6 mm between particles
   input.joints[Insertion] = 0.122;
   input.joints[TipUpDown] = 0.6;
   world.run(2.5, input);
@@ -53,7 +44,7 @@ class ToAndFro : public ::testing::TestWithParam<int> {};
 
 TEST_P(ToAndFro, WithoutFrictionTakesNoWorkFromTheWall) {
   StepInput input;
-  World world = pressingWorld(GetParam(), 4, input);
+  World world = pressingWorld(GetParam(), input);
   const EnergyAccount before = world.state.energy;
   double force = 0;
   long steps = 0;

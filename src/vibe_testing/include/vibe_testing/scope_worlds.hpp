@@ -14,6 +14,20 @@ inline ScopeScene scopeFromAbove(double radius) {
   return scope;
 }
 
+/// A shell on a stiff foundation, without gas and weight, and the scope above it.
+inline Scene shellUnderScope(double radius) {
+  Scene scene;
+  scene.tissue.model = "shell";
+  scene.tissue.mass_damping = 30;
+  scene.tissue.self_contact = false;
+  scene.gas.reset();
+  scene.gravity.reset();
+  scene.foundation = FoundationScene{};
+  scene.foundation->stiffness = 2e5;
+  scene.scope = scopeFromAbove(radius);
+  return scene;
+}
+
 /// A helix that holds with all of its force from the first touch.
 inline HelixScene firmHelix() {
   HelixScene helix;
