@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <string>
@@ -57,11 +58,14 @@ TEST(HidrawBus, WhatMayNotBeOpenedNamesTheUdevRule) {
 TEST(HidrawBus, ListingIsCheap) {
   HidrawBus first, second;
   if (access("/sys/class/hidraw", F_OK) != 0) GTEST_SKIP() << "no hidraw";
-  const auto begin = std::chrono::steady_clock::now();
-  for (int i = 0; i < 100; ++i) (i % 2 == 0 ? first : second).list();
-  const double each = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() / 100;
-  std::printf("listing takes %.3f ms\n", 1e3 * each);
-  EXPECT_LT(each, 0.05);
+  double least = 1;  // a busy machine makes any one of them slow
+  for (int i = 0; i < 100; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    (i % 2 == 0 ? first : second).list();
+    least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  }
+  std::printf("listing takes %.3f ms\n", 1e3 * least);
+  EXPECT_LT(least, 5e-5);
 }
 
 }  // namespace
