@@ -1,6 +1,7 @@
 // The hard cases once more on the organ and with all that the default scene has: held ends, gas, walls that meet.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <random>
 
@@ -180,6 +181,41 @@ TEST(HardStomach, ARecoveryDoesNotLeadTheWallThroughTheTool) {
     ASSERT_EQ(piercedBy(stomach, {stomach.state.x, stomach.state.y, stomach.state.z}), 0) << stomach.state.time << " s";
   }
   EXPECT_GE(stomach.count(Event::Kind::Recovery), 1);
+}
+
+// From limit to limit, with a hand that feels no force. Where the guard stops the tool, the wall has to make room for
+// it within the step: solved once only, the wall stands still in each of these steps, and in some scenes for good.
+TEST(HardStomach, WhereTheToolStopsTheWallMakesRoom) {
+  Scene scene = stomachScene();
+  scene.geometry.particles = 900;
+  scene.helix->reach = 8e-3;
+  Stomach stomach(scene);
+  stomach.run(0.5);
+  std::mt19937 generator(1);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  int stopped = 0, stood_still = 0;
+  for (int jump = 0; jump < 20; ++jump) {
+    StepInput input;
+    for (int j = 0; j < kJointCount; ++j) {
+      const JointLimits& limits = stomach.model->tool->limits()[j];
+      input.joints[j] = uniform(generator) < 0.5 ? limits.lower : limits.upper;
+    }
+    input.joints[Insertion] = (0.5 + 0.5 * uniform(generator)) * stomach.model->tool->limits()[Insertion].upper;
+    input.buttons[HelixGrab] = uniform(generator) < 0.9 ? 1 : 0;
+    for (int k = 0; k < 12; ++k) {
+      stomach.state.hand_effort.fill(0);
+      stomach.run(stomach.model->scene.step_period, input);
+      const auto& stops = stomach.workspace->report().stopped;
+      if (std::all_of(stops.begin(), stops.end(), [](int way) { return way == 0; })) continue;
+      ++stopped;
+      const State& now = stomach.state;  // a wall that is stopped has no acceleration
+      const auto rests = [](double a) { return a == 0; };
+      if (std::all_of(now.ax.begin(), now.ax.end(), rests)) ++stood_still;
+    }
+  }
+  RecordProperty("stopped", stopped);
+  EXPECT_GT(stopped, 0);
+  EXPECT_LE(stood_still, 3);
 }
 
 TEST(HardStomach, AThousandfoldGravityAndThenNone) {
