@@ -213,22 +213,18 @@ void SelfContact::addPair(int vertex, int triangle, double facing) {
   finish(pair);
 }
 
-// Triangles at a vertex and those that it faces: where walls are close, one of the vertices there is not far.
+// The triangles that a vertex faces: where walls are close, one of the vertices there is not far.
 void SelfContact::collectFacing(int vertex) {
   SelfContactMemory& m = *memory_;
   const double farthest2 = close_distance_ * close_distance_;
   for (const SelfContactMemory::Approach& one : m.approaches) {
     if (!(one.away.squaredNorm() < farthest2) || facing(vertex, one.triangle) == 0) continue;
-    m.search.rings().visit(vertex, [&](int t) {
-      m.facing.push_back({std::min(t, one.triangle), std::max(t, one.triangle)});
-    });
+    m.facing.push_back({vertex, one.triangle});
   }
 }
 
 void SelfContact::addClosePairs() {
   SelfContactMemory& m = *memory_;
-  std::sort(m.facing.begin(), m.facing.end());
-  m.facing.erase(std::unique(m.facing.begin(), m.facing.end()), m.facing.end());
   for (const ClosePoints& close : m.close.find(m.facing, m.start, kFound * max_thickness_)) addClosePair(close);
 }
 

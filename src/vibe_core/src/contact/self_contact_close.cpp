@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <queue>
+#include <tuple>
 #include <utility>
 
 #include "contact/self_contact_distance.hpp"
@@ -79,27 +80,61 @@ namespace {
 constexpr int kNone = -1;            // node that has no part in a place
 constexpr double kEqual = 1 - 1e-9;  // ratio of two squared distances that are the same but for rounding
 
+// The same place has other roundings as the foot in another triangle.
 bool isBefore(const ClosePoints& a, const ClosePoints& b) {
-  return a.split < b.split || (a.split == b.split && a.node < b.node);
+  return std::tie(a.split, a.node, a.weight) < std::tie(b.split, b.node, b.weight);
 }
 
 bool isSame(const ClosePoints& a, const ClosePoints& b) {
   return a.split == b.split && a.node == b.node;
 }
 
+// From counts per owner to where the entries of each begin.
+void accumulate(std::vector<int>& counts) {
+  int sum = 0;
+  for (int& count : counts) sum += std::exchange(count, sum);
+}
+
 }  // namespace
 
-const std::vector<ClosePoints>& SelfContactClose::find(const std::vector<Pair>& pairs,
+SelfContactClose::SelfContactClose(const std::vector<std::array<int, 3>>& triangles, const VertexTriangles& rings,
+                                   const SurfaceWalls& walls)
+    : triangles_(triangles),
+      rings_(rings),
+      walls_(walls),
+      of_vertex_(rings.vertexCount() + 1),
+      of_triangle_(triangles.size() + 1),
+      triangle_mark_(triangles.size()),
+      vertex_mark_(rings.vertexCount()) {
+  listEdges();
+  edge_mark_.resize(edges_.size());
+}
+
+void SelfContactClose::listEdges() {
+  const auto edge = [](const std::array<int, 3>& t, std::size_t k) -> Edge {
+    return {std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])};
+  };
+  for (const auto& t : triangles_)
+    for (std::size_t k = 0; k < 3; ++k) edges_.push_back(edge(t, k));
+  std::sort(edges_.begin(), edges_.end());
+  edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+  edge_of_.resize(triangles_.size());
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      edge_of_[t][k] =
+          static_cast<int>(std::lower_bound(edges_.begin(), edges_.end(), edge(triangles_[t], k)) - edges_.begin());
+}
+
+const std::vector<ClosePoints>& SelfContactClose::find(const std::vector<Facing>& facing,
                                                        const std::array<std::vector<double>, 3>& at, double distance) {
   at_ = &at;
   distance_ = distance;
   places_.clear();
-  for (const Pair& pair : pairs) {
-    if (apart(pair)) continue;
-    addVertices(pair[0], pair[1]);
-    addVertices(pair[1], pair[0]);
-    addEdges(pair[0], pair[1]);
-  }
+  if (facing.empty()) return places_;
+  listFacing(facing);
+  for (std::vector<int>* marks : {&triangle_mark_, &vertex_mark_, &edge_mark_})
+    std::fill(marks->begin(), marks->end(), kNone);
+  for (std::size_t t = 0; t < triangles_.size(); ++t) findAt(static_cast<int>(t));
   std::sort(places_.begin(), places_.end(), isBefore);
   places_.erase(std::unique(places_.begin(), places_.end(), isSame), places_.end());
   places_.erase(std::remove_if(places_.begin(), places_.end(), [this](const ClosePoints& p) { return !isNearest(p); }),
@@ -107,27 +142,56 @@ const std::vector<ClosePoints>& SelfContactClose::find(const std::vector<Pair>& 
   return places_;
 }
 
-Eigen::Vector3d SelfContactClose::at(int node) const {
-  return {(*at_)[0][node], (*at_)[1][node], (*at_)[2][node]};
+void SelfContactClose::listFacing(const std::vector<Facing>& facing) {
+  for (std::vector<int>* starts : {&of_vertex_, &of_triangle_}) std::fill(starts->begin(), starts->end(), 0);
+  facing_triangle_.clear();
+  facing_vertex_.resize(facing.size());
+  for (const Facing& one : facing) {
+    ++of_vertex_[one.vertex], ++of_triangle_[one.triangle];
+    facing_triangle_.push_back(one.triangle);
+  }
+  accumulate(of_vertex_), accumulate(of_triangle_);
+  for (const Facing& one : facing) facing_vertex_[of_triangle_[one.triangle]++] = one.vertex;
+  std::rotate(of_triangle_.begin(), of_triangle_.end() - 1, of_triangle_.end());
+  of_triangle_[0] = 0;
 }
 
-// Boxes around the two triangles.
-bool SelfContactClose::apart(const Pair& pair) const {
-  const std::array<int, 3>&a = triangles_[pair[0]], &b = triangles_[pair[1]];
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::vector<double>& x = (*at_)[k];
-    const auto [low_a, high_a] = std::minmax({x[a[0]], x[a[1]], x[a[2]]});
-    const auto [low_b, high_b] = std::minmax({x[b[0]], x[b[1]], x[b[2]]});
-    if (low_a - high_b >= distance_ || low_b - high_a >= distance_) return true;
+// With all triangles around what faces it, and all that its own nodes face.
+void SelfContactClose::findAt(int triangle) {
+  const auto& n = triangles_[triangle];
+  const bool faces = std::any_of(n.begin(), n.end(), [&](int v) { return of_vertex_[v] < of_vertex_[v + 1]; });
+  if (!faces && of_triangle_[triangle] == of_triangle_[triangle + 1]) return;
+  const Eigen::Vector3d a = at(n[0]), b = at(n[1]), c = at(n[2]);
+  low_ = a.cwiseMin(b).cwiseMin(c).array() - distance_;
+  high_ = a.cwiseMax(b).cwiseMax(c).array() + distance_;
+  for (int i = of_triangle_[triangle]; i < of_triangle_[triangle + 1]; ++i)
+    rings_.visit(facing_vertex_[i], [&](int other) { meet(triangle, other); });
+  for (const int v : n)
+    for (int i = of_vertex_[v]; i < of_vertex_[v + 1]; ++i) meet(triangle, facing_triangle_[i]);
+}
+
+void SelfContactClose::meet(int triangle, int other) {
+  if (std::exchange(triangle_mark_[other], triangle) == triangle || isFar(other)) return;
+  addVertices(triangle, other);
+  addEdges(triangle, other);
+}
+
+// By the boxes around it and the triangle that is looked at.
+bool SelfContactClose::isFar(int triangle) const {
+  const std::array<int, 3>& n = triangles_[triangle];
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const std::vector<double>& x = (*at_)[static_cast<std::size_t>(k)];
+    const double a = x[n[0]], b = x[n[1]], c = x[n[2]];
+    if (std::min(std::min(a, b), c) >= high_[k] || std::max(std::max(a, b), c) <= low_[k]) return true;
   }
   return false;
 }
 
-void SelfContactClose::addVertices(int of, int triangle) {
+void SelfContactClose::addVertices(int triangle, int other) {
   std::array<int, 3> n = triangles_[triangle];
   std::sort(n.begin(), n.end());
-  for (const int v : triangles_[of]) {
-    if (hasVertex(n, v)) continue;
+  for (const int v : triangles_[other]) {
+    if (std::exchange(vertex_mark_[v], triangle) == triangle || hasVertex(n, v)) continue;
     const TriangleFoot foot = triangleFoot(at(v), at(n[0]), at(n[1]), at(n[2]));
     if (!(foot.away.squaredNorm() < distance_ * distance_)) continue;
     ClosePoints close{{v, kNone, kNone, kNone}, 1, {1, 0, 0, 0}, foot.away, 1, false};
@@ -140,19 +204,20 @@ void SelfContactClose::addVertices(int of, int triangle) {
   }
 }
 
-void SelfContactClose::addEdges(int one, int other) {
-  const std::array<int, 3>&a = triangles_[one], &b = triangles_[other];
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t l = 0; l < 3; ++l) {
-      const std::array<int, 2> p{a[k], a[(k + 1) % 3]}, q{b[l], b[(l + 1) % 3]};
-      if (p[0] == q[0] || p[0] == q[1] || p[1] == q[0] || p[1] == q[1]) continue;
-      addEdgePair({std::min(p[0], p[1]), std::max(p[0], p[1])}, {std::min(q[0], q[1]), std::max(q[0], q[1])});
+// The first of two edges is that of the triangle; where it is the second, the other triangle finds them.
+void SelfContactClose::addEdges(int triangle, int other) {
+  for (const int q : edge_of_[other]) {
+    if (std::exchange(edge_mark_[q], triangle) == triangle) continue;
+    for (const int p : edge_of_[triangle]) {
+      const Edge &one = edges_[p], &two = edges_[q];
+      if (p >= q || one[0] == two[0] || one[0] == two[1] || one[1] == two[0] || one[1] == two[1]) continue;
+      addEdgePair(one, two);
     }
+  }
 }
 
 // Where the nearest points are inside both edges: otherwise a vertex is nearer.
-void SelfContactClose::addEdgePair(std::array<int, 2> one, std::array<int, 2> other) {
-  if (other < one) std::swap(one, other);
+void SelfContactClose::addEdgePair(const Edge& one, const Edge& other) {
   const Eigen::Vector3d from = at(one[0]), to = at(other[0]);
   const Eigen::Vector3d u = at(one[1]) - from, v = at(other[1]) - to, r = from - to;
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), across = uu * vv - uv * uv;

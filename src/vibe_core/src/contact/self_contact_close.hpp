@@ -66,34 +66,49 @@ struct ClosePoints {
 /// triangle, or over an edge or a vertex that is its nearest point of all triangles there, or two edges that cross.
 class SelfContactClose {
  public:
-  using Pair = std::array<int, 2>;  ///< two triangles
+  struct Facing {
+    int vertex, triangle;
+  };
 
   /// All outlive this.
   SelfContactClose(const std::vector<std::array<int, 3>>& triangles, const VertexTriangles& rings,
-                   const SurfaceWalls& walls)
-      : triangles_(triangles), rings_(rings), walls_(walls) {}
+                   const SurfaceWalls& walls);
 
-  /// @param pairs     triangles that may be nearer than the distance
+  /// @param facing    the triangles around the vertex may be nearer to the triangle than the distance; ascending by
+  ///                  vertex
   /// @param at        positions [m]
   /// @param distance  [m]
   /// @returns each place once, ascending by node
-  const std::vector<ClosePoints>& find(const std::vector<Pair>& pairs, const std::array<std::vector<double>, 3>& at,
+  const std::vector<ClosePoints>& find(const std::vector<Facing>& facing, const std::array<std::vector<double>, 3>& at,
                                        double distance);
 
  private:
-  Eigen::Vector3d at(int node) const;
-  bool apart(const Pair& pair) const;
-  void addVertices(int of, int triangle);
-  void addEdges(int one, int other);
-  void addEdgePair(std::array<int, 2> one, std::array<int, 2> other);
+  using Edge = std::array<int, 2>;  // nodes, ascending
+
+  void listEdges();
+  void listFacing(const std::vector<Facing>& facing);
+  void findAt(int triangle);
+  void meet(int triangle, int other);
+  Eigen::Vector3d at(int node) const { return {(*at_)[0][node], (*at_)[1][node], (*at_)[2][node]}; }
+  bool isFar(int triangle) const;
+  void addVertices(int triangle, int other);
+  void addEdges(int triangle, int other);
+  void addEdgePair(const Edge& one, const Edge& other);
   bool isInWall(const ClosePoints& place) const;
   bool isNearest(const ClosePoints& place) const;
 
   const std::vector<std::array<int, 3>>& triangles_;
   const VertexTriangles& rings_;
   const SurfaceWalls& walls_;
+  std::vector<Edge> edges_;                       // ascending
+  std::vector<std::array<int, 3>> edge_of_;       // of each triangle's nodes 0 and 1, 1 and 2, 2 and 0
+  std::vector<int> of_vertex_, facing_triangle_;  // what each vertex faces: start, triangles
+  std::vector<int> of_triangle_, facing_vertex_;  // what faces each triangle
+  // the last triangle with which each has been looked at
+  std::vector<int> triangle_mark_, vertex_mark_, edge_mark_;
   const std::array<std::vector<double>, 3>* at_ = nullptr;
   double distance_ = 0;
+  Eigen::Vector3d low_, high_;  // corners of the box around a triangle and the distance [m]
   std::vector<ClosePoints> places_;
 };
 

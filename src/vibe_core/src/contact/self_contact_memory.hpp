@@ -85,7 +85,7 @@ class SelfContactMemory {
   std::array<std::vector<double>, 3> start, end;  // positions at detect(), after the step [m]
   std::array<std::vector<double>, 3> speed;       // at detect() [m/s]
   std::vector<Approach> approaches;               // of one vertex
-  std::vector<SelfContactClose::Pair> facing;     // triangles that may be close
+  std::vector<SelfContactClose::Facing> facing;   // what may be close
   std::vector<Eigen::Vector3d> position, move;    // of a step [m]
   std::vector<Eigen::Vector3d> whole;             // moves before they were shortened [m]
   std::vector<double> part, length;               // of the whole moves [1], [m]

@@ -3,8 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <random>
+#include <set>
+#include <utility>
 
+#include "contact/self_contact_distance.hpp"
 #include "contact/self_contact_worlds.hpp"
 #include "vibe_core/solver/implicit_stepper.hpp"
 #include "vibe_core/tissue/shell.hpp"
@@ -46,7 +52,7 @@ TEST(SelfContactClose, FindsEachPlaceOnce) {
   for (const Eigen::Vector3d& p : rest.vertices)
     for (std::size_t k = 0; k < 3; ++k) at[k].push_back(p[static_cast<Eigen::Index>(k)]);
   SelfContactClose close(rest.triangles, rings, walls);
-  const std::vector<SelfContactClose::Pair> all = {{0, 2}, {0, 3}, {1, 2}, {1, 3}};
+  const std::vector<SelfContactClose::Facing> all = {{0, 2}, {0, 3}, {1, 2}, {1, 3}};  // each ridge with both roofs
   ASSERT_EQ(close.find(all, at, 1e-3).size(), 1U);
   const ClosePoints place = close.find(all, at, 1e-3)[0];
   EXPECT_EQ(place.node, (std::array<int, 4>{0, 1, 4, 5}));
@@ -54,6 +60,63 @@ TEST(SelfContactClose, FindsEachPlaceOnce) {
   EXPECT_NEAR(place.share, 1, 1e-12);
   for (const double weight : place.weight) EXPECT_NEAR(std::abs(weight), 0.5, 1e-12);
   EXPECT_TRUE(close.find(all, at, 0.4e-3).empty());
+}
+
+using Places = std::set<std::pair<int, std::array<int, 4>>>;  // by split and nodes
+
+Places placesOf(const std::vector<ClosePoints>& found) {
+  Places places;
+  for (const ClosePoints& place : found) EXPECT_TRUE(places.insert({place.split, place.node}).second) << "found twice";
+  return places;
+}
+
+// Each vertex against each triangle, each edge against each edge.
+Places placesByTrial(const SurfaceMesh& mesh, const std::array<std::vector<double>, 3>& at, double distance) {
+  const auto p = [&](int i) { return Eigen::Vector3d(at[0][i], at[1][i], at[2][i]); };
+  std::set<std::array<int, 2>> edges;
+  for (const auto& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) edges.insert({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
+  Places places;
+  for (const auto& a : edges)
+    for (const auto& b : edges) {
+      if (!(a < b) || a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) continue;
+      Eigen::Matrix<double, 3, 2> along;
+      along << p(a[1]) - p(a[0]), p(b[0]) - p(b[1]);
+      const Eigen::Vector2d part = along.colPivHouseholderQr().solve(p(b[0]) - p(a[0]));
+      const bool inside = part.minCoeff() > 0 && part.maxCoeff() < 1;
+      if (inside && (p(a[0]) + along * part - p(b[0])).norm() < distance) places.insert({2, {a[0], a[1], b[0], b[1]}});
+    }
+  for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v)
+    for (auto t : mesh.triangles) {
+      std::sort(t.begin(), t.end());
+      if (std::find(t.begin(), t.end(), v) != t.end()) continue;
+      const TriangleFoot foot = triangleFoot(p(v), p(t[0]), p(t[1]), p(t[2]));
+      if (foot.away.norm() < distance && foot.weight.minCoeff() > 0) places.insert({1, {v, t[0], t[1], t[2]}});
+    }
+  return places;
+}
+
+// Of the feet on edges and vertices only those that are local minima count; the others must be all there.
+TEST(SelfContactClose, FindsWhatTrialFindsInACrumpledBall) {
+  constexpr double kDistance = 2e-3;
+  const SurfaceMesh mesh = sphere(0.01, 4);
+  const VertexTriangles rings(mesh.triangles, mesh.vertices.size());
+  const SurfaceWalls walls(mesh, 1e-3);
+  SelfContactClose close(mesh.triangles, rings, walls);
+  std::vector<SelfContactClose::Facing> all;
+  for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v)
+    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) all.push_back({v, t});
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> uniform(-4e-3, 4e-3);
+  std::array<std::vector<double>, 3> at;
+  for (const Eigen::Vector3d& p : mesh.vertices)
+    for (Eigen::Index k = 0; k < 3; ++k) at[static_cast<std::size_t>(k)].push_back(p[k] + uniform(random));
+  Places found = placesOf(close.find(all, at, kDistance));
+  const Places expected = placesByTrial(mesh, at, kDistance);
+  for (auto place = found.begin(); place != found.end();)
+    place = place->first == 1 && place->second[3] < 0 ? found.erase(place) : std::next(place);
+  EXPECT_GT(expected.size(), 100U);
+  EXPECT_EQ(found, expected);
 }
 
 /// A plate of 1 mm cells.
