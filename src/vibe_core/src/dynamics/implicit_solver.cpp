@@ -29,15 +29,16 @@ LossLimits::LossLimits(const ShellElements& shell, const std::vector<Eigen::Vect
     : limit_stretch_(std::numeric_limits<double>::infinity()), limit_pressure_(limit_stretch_) {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& p : rest) centre += p / static_cast<double>(rest.size());
-  std::vector<double> u(3 * rest.size()), gradient(3 * rest.size());
+  std::vector<double> none(3 * rest.size()), volume_gradient(3 * rest.size());
+  rest_volume_ = shell.volume(none.data(), volume_gradient.data());
+  std::vector<float> u(4 * rest.size()), gradient(4 * rest.size());
   const auto energyAt = [&](double stretch) {
     for (std::size_t i = 0; i < rest.size(); ++i)
-      for (int k = 0; k < 3; ++k) u[3 * i + k] = (stretch - 1) * (rest[i] - centre)[k];
-    std::fill(gradient.begin(), gradient.end(), 0.0);
-    return shell.evaluate(u.data(), gradient.data());
+      for (int k = 0; k < 3; ++k) u[4 * i + k] = static_cast<float>((stretch - 1) * (rest[i] - centre)[k]);
+    double energy = 0;
+    for (int piece = 0; piece < shell.pieceCount(); ++piece) energy += shell.evaluate(piece, u.data(), gradient.data());
+    return energy;
   };
-  std::fill(u.begin(), u.end(), 0.0);
-  rest_volume_ = shell.volume(u.data(), gradient.data());
   unheld_energy_ = 0.1 * energyAt(2);
   double before = energyAt(1);
   for (int k = 0; k < kStretches && rest_volume_ > 0; ++k) {
