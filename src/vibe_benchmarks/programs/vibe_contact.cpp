@@ -30,7 +30,7 @@ struct Options {
   std::vector<int> particles{1000, 2000, 3618, 8000, 16000};
   int sites = 6;
   bool brief = false;
-  bool check_reference = false, no_reference = false;
+  bool check_reference = false, no_reference = false, stages = false;
 };
 
 template <class Write>
@@ -73,6 +73,7 @@ OptionList addStates(OptionList& line, Options& o) {
       .check(wholeFrom(1, 1000));
   states.flag("--check-reference", o.check_reference, "compare it with a reference of twice its rate");
   states.flag("--no-reference", o.no_reference, "times only");
+  states.flag("--stages", o.stages, "print what the steps have spent their time on");
   states.option("--repeats", o.repeats, "runs of each setting (default: 1); of each step the fastest counts")
       .typeName("N")
       .check(wholeFrom(1, 1000));
@@ -122,7 +123,8 @@ ContactPlan planOf(const Options& o, const Scene& scene) {
   plan.check_reference = o.check_reference;
   for (std::size_t k = 0; k < o.rate.size(); ++k)
     plan.settings.push_back({o.rate[k], entry(o.iterations, k, "--iterations", o.rate.size(), scene.tissue.iterations),
-                             entry(o.radius, k, "--spectral-radius", o.rate.size(), scene.tissue.spectral_radius)});
+                             entry(o.radius, k, "--spectral-radius", o.rate.size(), scene.tissue.spectral_radius),
+                             o.stages});
   if (!o.no_reference)
     plan.reference = ContactSetting{o.reference_rate, o.reference_iterations, scene.tissue.spectral_radius};
   return plan;

@@ -34,7 +34,7 @@ struct Options {
   int threads = 1;
   std::optional<double> novice;
   std::optional<std::uint64_t> seed;
-  bool quiet = false;
+  bool stages = false, quiet = false;
   bool script_length = false, list_measures = false;
 };
 
@@ -59,6 +59,7 @@ void addOptions(OptionList& line, Options& o) {
   line.option("--seed", o.seed, "seed of random numbers instead of the scene's and the protocol's")
       .typeName("N")
       .check(finiteFrom(0));
+  line.flag("--stages", o.stages, "print at the end what the steps have spent their time on");
   line.flag("--quiet", o.quiet, "print the state hash only");
   line.flag("--list-measures", o.list_measures, "print names and units of all measures as JSON and end");
   line.flag("--script-length", o.script_length,
@@ -170,7 +171,9 @@ void run(const Options& o) {
 
   SimulationSettings settings;
   settings.threads = o.threads;
+  settings.stages = o.stages;
   Simulation simulation(model, settings);
+  simulation.warmUp();
   if (trainee && !o.quiet) reportGoals(show, *trainee, simulation);
   const double begin = steadyTime();
   const auto inputAt = [&](double time) {
@@ -189,6 +192,7 @@ void run(const Options& o) {
   if (show) std::fprintf(stderr, "\r%-60s\r", "");
   if (!o.snapshot.empty()) simulation.saveSnapshot(o.snapshot);
   if (!o.measures.empty()) writeMeasures(o.measures, simulation, trainee.get());
+  if (o.stages) std::cout << simulation.stages()->text() << "\n";
   if (o.quiet)
     std::cout << "state hash: " << toHex(simulation.hash()) << "\n";
   else

@@ -63,12 +63,18 @@ double distance(const std::array<std::vector<double>, 3>& a, const std::array<st
   return std::sqrt(sum);
 }
 
+SimulationSettings settingsOf(const ContactSetting& setting) {
+  SimulationSettings settings = SimulationSettings::study(1);
+  settings.stages = setting.stages;
+  return settings;
+}
+
 /// Steps one case and fills its record.
 class Recorder {
  public:
   Recorder(const ContactCase& one, const ContactSetting& setting)
       : one_(one),
-        simulation_(modelAt(one, setting), SimulationSettings::study(1)),
+        simulation_(modelAt(one, setting), settingsOf(setting)),
         check_(simulation_.model()),
         contacts_(simulation_.model()) {
     trace_.setting = setting;
@@ -91,6 +97,7 @@ class Recorder {
     trace_.iterations /= frames * per_frame;
     trace_.balance = energyBalance(simulation_.model(), simulation_.state()) - before;
     trace_.hash = simulation_.hash();
+    if (simulation_.stages() != nullptr) trace_.stages = simulation_.stages()->text();
     return std::move(trace_);
   }
 

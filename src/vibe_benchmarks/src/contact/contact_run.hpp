@@ -40,6 +40,7 @@ struct ContactSetting {
   int rate = 60;                 ///< steps per second, a multiple of 60 [Hz]
   int iterations = 4;            ///< tissue.iterations
   double spectral_radius = 0.2;  ///< tissue.spectral_radius
+  bool stages = false;           ///< says what the steps have spent their time on
 };
 
 /// The model of the case with another setting.
@@ -80,6 +81,7 @@ struct ContactTrace {
   double balance = 0;       ///< energyBalance() at the end minus that at the start [J]
   double work = 0;          ///< sum over the steps of |work| of tool, gas, threads and pull spring [J]
   std::uint64_t hash = 0;   ///< of the last state
+  std::string stages;       ///< StageSummary of all steps, if it was asked for
 };
 
 /// @param repeats  runs; of each step the shortest time counts

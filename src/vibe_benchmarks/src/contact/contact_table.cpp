@@ -106,7 +106,7 @@ void printContactRow(const ContactRow& row, std::ostream& out) {
                   100 * e.force, 100 * e.force_end, e.largest);
     out << text;
   }
-  out << std::endl;
+  out << std::endl << t.stages;
 }
 
 void writeContactRows(const std::vector<ContactRow>& rows, std::ostream& out) {

@@ -97,6 +97,7 @@ class SelfContact : public EnergyTerm {
 
   const std::vector<Pair>& pairs() const { return pairs_; }
   bool acts() const override { return !pairs_.empty(); }
+  int pairCount() const override { return static_cast<int>(pairs_.size()); }
   int searchCount() const;  ///< how often the lists of what may be near had to be renewed
 
  private:

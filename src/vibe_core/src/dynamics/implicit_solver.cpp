@@ -131,9 +131,9 @@ std::unique_ptr<SolverWorkspace> ImplicitSolver::makeWorkspace(const Model& mode
 
 void ImplicitSolver::advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state,
                              SolverWorkspace& scratch, ThreadPool&, StepReport& report) const {
-  ImplicitStep(model, stepper_, limits_, motion, insufflator_on, state, static_cast<ImplicitWorkspace&>(scratch),
-               report)
-      .run();
+  auto& own = static_cast<ImplicitWorkspace&>(scratch);
+  own.stepper->stages = own.stages;
+  ImplicitStep(model, stepper_, limits_, motion, insufflator_on, state, own, report).run();
 }
 
 }  // namespace vibe

@@ -74,6 +74,7 @@ void ImplicitStep::run() {
 
 // @returns the most active of the blocks' answers
 Activity ImplicitStep::gather() {
+  const InStage stage(scratch_.stages, StepStage::Loads);
   if (motion_ != nullptr) motion_->linkPoses(1, scratch_.tool.end);
   scratch_.loads.clear();
   if (motion_ != nullptr && model_.scope_springs && !limited_) gatherSprings();
@@ -143,7 +144,10 @@ void ImplicitStep::recover() {
 bool ImplicitStep::solve() {
   scratch_.terms.clear();
   for (std::size_t k = 0; k < kMotion; ++k) scratch_.start[k] = state_.*kMotionOf[k];
-  for (const auto& block : scratch_.blocks) scratch_.terms.add(block->energyTerm(context_));
+  {
+    const InStage stage(scratch_.stages, StepStage::Walls);
+    for (const auto& block : scratch_.blocks) scratch_.terms.add(block->energyTerm(context_));
+  }
   contact_energy_ = state_.energy.contact_energy;
   scratch_.loads.extra = scratch_.terms.simplest();
   const StepOutcome outcome = limited_
@@ -151,6 +155,8 @@ bool ImplicitStep::solve() {
                                   : stepper_.step(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper);
   report_.iterations = outcome.iterations;
   report_.evaluations = outcome.evaluations;
+  report_.rows = scratch_.stepper->rows.count();
+  report_.wall_pairs = scratch_.terms.pairCount();
   report_.residual = outcome.residual;
   report_.arrived = outcome.arrived;
   report_.fallback = outcome.fallback;
@@ -163,6 +169,7 @@ bool ImplicitStep::solve() {
 // Whatever the solve left, walls and tool end on their sides.
 // @returns false where the tool cannot go as far as the solve has it, and has stopped
 bool ImplicitStep::keepApart() {
+  const InStage stage(scratch_.stages, StepStage::Paths);
   for (std::size_t k = 0; k < 6; ++k) scratch_.uncorrected[k] = state_.*kMotionOf[k];
   for (const auto& block : scratch_.blocks) block->correct(context_);
   return motion_ == nullptr || keepToolApart();
@@ -183,7 +190,10 @@ void ImplicitStep::giveWay() {
 void ImplicitStep::store() {
   correct();
   scratch_.touches.clear();
-  for (const auto& block : scratch_.blocks) work_.extra -= block->store(context_, scratch_.loads, scratch_.touches);
+  {
+    const InStage stage(scratch_.stages, StepStage::Walls);
+    for (const auto& block : scratch_.blocks) work_.extra -= block->store(context_, scratch_.loads, scratch_.touches);
+  }
   if (motion_ != nullptr) {
     const double tool_work = state_.energy.tool_work;
     reportTool();

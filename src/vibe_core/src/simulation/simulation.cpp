@@ -32,6 +32,9 @@ Simulation::Simulation(std::shared_ptr<const Model> model, const SimulationSetti
       workspace_(std::make_unique<Workspace>(*model_, settings.threads)),
       input_(holdingInput(state_)) {
   if (settings.metrics) recorder_.emplace(*model_, state_);
+  if (!settings.stages) return;
+  stages_ = std::make_unique<StageSummary>();
+  workspace_->measureStages();
 }
 
 const std::vector<Event>& Simulation::step(const StepInput& input) {
@@ -44,6 +47,7 @@ const std::vector<Event>& Simulation::step() {
   timer_.start();
   vibe::step(*model_, state_, input_, *workspace_, events_);
   timer_.stop();
+  if (stages_) stages_->add(workspace_->report());
   record(events_);
   return events_;
 }
@@ -92,6 +96,7 @@ void Simulation::replaceState(State state) {
 void Simulation::replaceModel(std::shared_ptr<const Model> model) {
   State state = initialState(*model, model->scene.seed);
   auto workspace = std::make_unique<Workspace>(*model, settings_.threads);
+  if (settings_.stages) workspace->measureStages();
   if (recorder_) recorder_.emplace(*model, state);
   workspace_ = std::move(workspace);  // before the model goes, which it refers to
   model_ = std::move(model);

@@ -23,6 +23,11 @@ Workspace::Workspace(const Model& model, int threads)
 
 Workspace::~Workspace() = default;
 
+void Workspace::measureStages() {
+  stages_ = std::make_unique<StageClock>();
+  solver_workspace_->stages = stages_.get();
+}
+
 namespace {
 
 // Steps in which nothing of the tool moves on before that is an event. Design choice: shorter stops are the rule where
@@ -134,6 +139,8 @@ bool insufflatorIsOn(const Model& model, const StepInput& input) {
 void step(const Model& model, State& state, const StepInput& input, Workspace& workspace, std::vector<Event>& events) {
   const EventLog log(state, events);
   const double dt = model.scene.step_period;
+  StageClock* const stages = workspace.solverWorkspace().stages;
+  if (stages != nullptr) stages->start();
   const bool insufflator_on = insufflatorIsOn(model, input);
   const bool pedal = input.buttons[ApcPedal] != 0;
   BeamStep beam{pedal, pedal && state.procedure.pressed[ApcPedal] == 0, 0};
@@ -181,6 +188,7 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
     log.emit(Event::Kind::Recovery, -1, report.speed_limited).detail = EventDetail::SpeedLimited;
   if (report.put_back) log.emit(Event::Kind::Recovery).detail = EventDetail::Distorted;
   if (!isFinite(state)) recover(model, state, log);
+  if (stages != nullptr) report.stage_times = stages->stop();
 }
 
 }  // namespace vibe

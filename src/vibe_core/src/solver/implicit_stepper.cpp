@@ -153,8 +153,11 @@ void ImplicitStepper::refactor(const MotionView& motion, StepperMemory& memory) 
 
 StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMemory& memory,
                                   StepperWorkspace& scratch) const {
-  plan_->schedule.advance(body_, motion, loads, memory, scratch);
-  plan_->schedule.provide(body_, loads, memory, scratch);
+  {
+    const InStage stage(scratch.stages, StepStage::Factor);
+    plan_->schedule.advance(body_, motion, loads, memory, scratch);
+    plan_->schedule.provide(body_, loads, memory, scratch);
+  }
   ++memory.steps;
   scratch.elastic_energy = memory.elastic_energy;
   scratch.usual_length = memory.usual_length;
@@ -229,7 +232,10 @@ void ImplicitStepper::iterateStep(const MotionView& motion, BodyLoads& loads, St
     newton.start();
   }
   scratch.first = scratch.last;
-  scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
+  {
+    const InStage stage(scratch.stages, StepStage::Factor);
+    scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
+  }
   newton.setGas(foreseenVolume(loads.gas, motion, scheme, scratch));
   iterate(newton, scratch, memory, outcome);
   outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton.value());

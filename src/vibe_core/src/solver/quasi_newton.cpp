@@ -102,6 +102,7 @@ void QuasiNewton::start() {
 
 double QuasiNewton::evaluate(const std::vector<double>& z, std::vector<float>& gradient) {
   ++evaluations_;
+  const InStage stage(scratch_.stages, StepStage::Energy);
   return potential_.evaluate(z, gradient);
 }
 
@@ -239,6 +240,7 @@ void QuasiNewton::loadWork() {
 // Two-loop recursion (Nocedal 1980) with the factor, the rows and the gas as initial inverse.
 void QuasiNewton::findDirection() {
   StepperWorkspace& s = scratch_;
+  const InStage stage(s.stages, StepStage::Inverse);
   rowResidual();
   s.work = s.gradient;
   // forces of rows may be far larger than the remaining gradient: without this, a pair that moves rows by a rounding
@@ -268,10 +270,13 @@ void QuasiNewton::applyInverse(const double* alpha) {
   ++solves_;
   loadWork();
   s.factor->forward(s.half.data());
-  unknowns_.addTargets(s.rhs);
-  s.schur.eliminate(s.rhs, swelling(), s.half.data());
-  unknowns_.setDirection(s.schur, s.row_moves);
-  slideThreads();
+  {
+    const InStage stage(s.stages, StepStage::Rows);
+    unknowns_.addTargets(s.rhs);
+    s.schur.eliminate(s.rhs, swelling(), s.half.data());
+    unknowns_.setDirection(s.schur, s.row_moves);
+    slideThreads();
+  }
   s.factor->backward(s.half.data());
   s.factor->store(s.half.data(), s.direction.data());
   for (int i = 0; i < s.pairs; ++i) {

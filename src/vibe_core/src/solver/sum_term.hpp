@@ -37,6 +37,12 @@ class SumTerm : public EnergyTerm {
     return false;
   }
 
+  int pairCount() const override {
+    int sum = 0;
+    for (const EnergyTerm* term : terms_) sum += term->pairCount();
+    return sum;
+  }
+
  private:
   std::vector<const EnergyTerm*> terms_;
 };

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "vibe_core/common/step_stages.hpp"
 #include "vibe_core/contact/tool_model.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
 
@@ -27,6 +28,9 @@ struct StepReport {
   int contact_count = 0;       ///< see State
   int iterations = 0;          ///< of an implicit solver
   int evaluations = 0;         ///< of the elastic energy, by an implicit solver
+  int rows = 0;                ///< of contacts, grip and threads, in an implicit solver
+  int wall_pairs = 0;          ///< pairs of points of walls that act on each other
+  StageTimes stage_times{};    ///< zero unless they are measured [s]
   double residual = 0;         ///< of a further iteration, or of contacts and threads [m]
   bool arrived = true;         ///< false: the limit of work left much of the step to the next
   bool fallback = false;       ///< backward Euler, because one of the last did not arrive
@@ -39,7 +43,8 @@ class SolverWorkspace {
  public:
   virtual ~SolverWorkspace() = default;
 
-  ToolPoses tool;  ///< before Solver::advance() `start` is that of the step
+  ToolPoses tool;                ///< before Solver::advance() `start` is that of the step
+  StageClock* stages = nullptr;  ///< measures the parts of the step; null: nothing is measured
 };
 
 /// Advances the tissue by one step under everything that acts on it: its own elasticity, gas, weight, foundation, the

@@ -14,6 +14,7 @@
 #include "vibe_core/metrics/session_metrics.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/simulation/simulator.hpp"
+#include "vibe_core/simulation/stage_summary.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {
@@ -27,6 +28,7 @@ struct SimulationSettings {
   std::optional<std::uint64_t> seed;  ///< of the first state; empty: that of the scene
   int threads = 1;                    ///< used inside a step, 1 or more; results do not depend on it
   bool metrics = true;                ///< false: metrics() stays empty; for studies that have no use for them
+  bool stages = false;                ///< true: stages() says what steps spend their time on
 
   /// One thread, no metrics.
   static SimulationSettings study(std::uint64_t seed) {
@@ -104,6 +106,8 @@ class Simulation {
   /// Durations of vibe::step(), without metrics, since the simulation was made. Windows are the caller's to clear.
   StepTimer& timer() { return timer_; }
   const StepTimer& timer() const { return timer_; }
+  /// What the steps have spent their time on; null without SimulationSettings::stages.
+  const StageSummary* stages() const { return stages_.get(); }
   /// See vibe::hash().
   std::uint64_t hash() const;
 
@@ -135,6 +139,7 @@ class Simulation {
   StepInput input_;
   std::vector<Event> events_;
   StepTimer timer_;
+  std::unique_ptr<StageSummary> stages_;
 };
 
 }  // namespace vibe

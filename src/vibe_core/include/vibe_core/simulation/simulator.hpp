@@ -35,6 +35,8 @@ class Workspace {
   StepReport& report() { return report_; }
   MarkingScratch* marking() { return marking_.get(); }  ///< null in a scene without marking or scope
   int threads() const { return pool_.threads(); }
+  /// From now on StepReport::stage_times says what a step spends its time on, with the implicit solver.
+  void measureStages();
 
   ThreadPool& threadPool() { return pool_; }
 
@@ -44,6 +46,7 @@ class Workspace {
   std::unique_ptr<MarkingScratch> marking_;
   std::optional<ToolImpedance> tool_impedance_;
   StepReport report_;
+  std::unique_ptr<StageClock> stages_;  // null: not measured
 };
 
 /// One step of model.scene.step_period: the whole simulator. Programs use class Simulation, which calls it. No globals,

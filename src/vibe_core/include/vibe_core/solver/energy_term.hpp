@@ -19,6 +19,8 @@ class EnergyTerm {
   virtual void addStiffness(const double* /*positions4*/, std::vector<StiffnessCoupling>& /*couplings*/) const {}
   /// Whether the energy may forbid a move that meets the constraints. False for springs, which give way.
   virtual bool acts() const { return true; }
+  /// Pairs of points that it acts between, for statistics.
+  virtual int pairCount() const { return 0; }
 };
 
 }  // namespace vibe

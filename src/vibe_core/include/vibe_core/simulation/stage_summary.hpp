@@ -1,0 +1,28 @@
+#pragma once
+#include <array>
+#include <string>
+
+#include "vibe_core/common/step_stages.hpp"
+#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/model/tissue_solver.hpp"
+
+namespace vibe {
+
+/// What steps have spent their time on, and how much there was to do.
+class StageSummary {
+ public:
+  /// @param report  of a step whose stages were measured
+  void add(const StepReport& report);
+  /// A table: mean, median and 99th percentile per stage and step, share of the whole; and mean counts.
+  std::string text() const;
+
+  const DurationHistogram& stage(StepStage stage) const { return stages_[static_cast<std::size_t>(stage)]; }
+  const DurationHistogram& whole() const { return whole_; }
+
+ private:
+  std::array<DurationHistogram, kStepStages> stages_;
+  DurationHistogram whole_;
+  double iterations_ = 0, evaluations_ = 0, rows_ = 0, wall_pairs_ = 0;  // sums
+};
+
+}  // namespace vibe

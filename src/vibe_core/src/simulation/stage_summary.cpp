@@ -1,0 +1,34 @@
+#include "vibe_core/simulation/stage_summary.hpp"
+
+#include <cstdio>
+#include <numeric>
+
+namespace vibe {
+
+void StageSummary::add(const StepReport& report) {
+  for (std::size_t k = 0; k < stages_.size(); ++k) stages_[k].add(report.stage_times[k]);
+  whole_.add(std::accumulate(report.stage_times.begin(), report.stage_times.end(), 0.0));
+  iterations_ += report.iterations;
+  evaluations_ += report.evaluations;
+  rows_ += report.rows;
+  wall_pairs_ += report.wall_pairs;
+}
+
+std::string StageSummary::text() const {
+  const double steps = static_cast<double>(whole_.count());
+  if (steps == 0) return "";
+  char line[160];
+  std::string text = "stage     ms per step    p50    p99   share\n";
+  const auto add = [&](const char* name, const DurationHistogram& times) {
+    std::snprintf(line, sizeof line, "%-10s%11.3f%7.3f%7.3f%6.1f %%\n", name, 1e3 * times.mean(),
+                  1e3 * times.quantile(0.5), 1e3 * times.quantile(0.99), 100 * times.mean() / whole_.mean());
+    text += line;
+  };
+  for (int k = 0; k < kStepStages; ++k) add(toString(static_cast<StepStage>(k)), stages_[static_cast<std::size_t>(k)]);
+  add("all", whole_);
+  std::snprintf(line, sizeof line, "per step: %.2f iterations, %.2f evaluations, %.1f rows, %.1f pairs of walls\n",
+                iterations_ / steps, evaluations_ / steps, rows_ / steps, wall_pairs_ / steps);
+  return text + line;
+}
+
+}  // namespace vibe
