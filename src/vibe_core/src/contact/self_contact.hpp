@@ -12,6 +12,7 @@
 namespace vibe {
 
 class SelfContactMemory;
+struct WallApproach;
 struct ClosePoints;
 
 /// Self-contact of a shell: a contact energy during the solution of a step, and a limit on the paths at its end.
@@ -26,6 +27,11 @@ struct ClosePoints;
 /// linearly, so that force and energy stay finite in any state. Contact sets in from t + 25 % to t - 25 %, with a
 /// continuous stiffness. Within a step d is measured along the direction between vertex and triangle at its start. This
 /// is convex and smooth, and a vertex that an iterate moves through the other wall is pushed back.
+///
+/// Sharing. In a valley of the other wall several places are local minima of the distance. Those that are at most a
+/// tenth of the thickness farther than the nearest share its bar, by how near they are, how much their directions are
+/// alike, and how far the nearest point is from the edge at which one place goes over into the other. The force of a
+/// vertex that moves across the valley is continuous, so that it comes to rest there.
 ///
 /// Places. A vertex and the nearest triangle that faces it see neither edges that cross nor a second triangle. Where
 /// any places of two walls are nearer than 3/8 of the wall (SelfContactClose), a bar of 3/10 of its thickness acts in
@@ -104,9 +110,14 @@ class SelfContact : public EnergyTerm {
   bool isStart(const NodeVectors& x, const NodeVectors& v) const;
   static Eigen::Vector3d awayAt(const Pair& pair, const double* positions4);
   static Eigen::Vector3d slidSince(const Pair& pair, const Eigen::Vector3d& away);
-  void addPairs(double reach);
+  void addPairs();
   void collectApproaches(int vertex, std::size_t first, std::size_t next);
-  void addPairsOf(int vertex, double reach);
+  bool isInReach(int vertex, const WallApproach& approach) const;
+  void addPairsOf(int vertex);
+  void addSharing(int vertex, const WallApproach& nearest);
+  static double alike(const WallApproach& one, const WallApproach& other);
+  bool isPlace(const WallApproach& approach) const;
+  double partBesides(const WallApproach& approach) const;
   void addPair(int vertex, int triangle, double facing);
   void collectFacing(int vertex);
   void addClosePairs();
@@ -114,7 +125,8 @@ class SelfContact : public EnergyTerm {
   void finish(Pair& pair);
   double searchDistance() const;
   double meanThickness(int vertex, int triangle) const;
-  double facing(int vertex, int triangle) const;
+  Eigen::Vector3d areaVector(int triangle) const;
+  static double facing(const Eigen::Vector3d& one, const Eigen::Vector3d& other);
   bool startPaths(const MotionView& motion);
   bool shortenPaths();
   void spreadStops();

@@ -46,6 +46,16 @@ inline Sliding sliding(double way, double smooth) {
   return {way * way / smooth * (1 - way / (3 * smooth)), (2 - way / smooth) / smooth};
 }
 
+/// A triangle that a vertex faces and may touch.
+struct WallApproach {
+  int triangle;
+  Eigen::Vector3d away;    ///< from the triangle to the vertex at detect() [m]
+  double distance;         ///< [m]
+  Eigen::Vector3d weight;  ///< barycentric, of the nearest point
+  double faces;            ///< 1: the triangle faces the vertex, 0: it does not [1]
+  double share;            ///< of the contact of the vertex on that side [1]
+};
+
 /// Working memory of a SelfContact between the calls of a step.
 class SelfContactMemory {
  public:
@@ -72,19 +82,14 @@ class SelfContactMemory {
     return {vectors[0].data(), vectors[1].data(), vectors[2].data()};
   }
 
-  /// A triangle that a vertex may touch.
-  struct Approach {
-    int triangle;
-    Eigen::Vector3d away;  ///< from the triangle to the vertex at detect() [m]
-  };
-
   SurfaceWalls walls;
   SelfContactSearch search;
   SelfContactClose close;
   SelfContactPaths paths;
   std::array<std::vector<double>, 3> start, end;  // positions at detect(), after the step [m]
   std::array<std::vector<double>, 3> speed;       // at detect() [m/s]
-  std::vector<Approach> approaches;               // of one vertex
+  std::vector<WallApproach> approaches;           // of one vertex
+  std::vector<WallApproach*> sharing;             // of its contact on one side
   std::vector<SelfContactClose::Facing> facing;   // what may be close
   std::vector<Eigen::Vector3d> position, move;    // of a step [m]
   std::vector<Eigen::Vector3d> whole;             // moves before they were shortened [m]

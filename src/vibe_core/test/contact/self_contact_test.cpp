@@ -31,6 +31,42 @@ TEST(SelfContact, GradientIsDerivativeOfEnergy) {
   }
 }
 
+/// A valley along y whose sides rise by `slope`, and above it a roof turned over, with its point down.
+SurfaceMesh valley(double slope, double x, double z) {
+  constexpr double kHalf = 10e-3;
+  SurfaceMesh mesh;
+  mesh.vertices = {{0, -kHalf, 0}, {0, kHalf, 0}, {-kHalf, 0, slope * kHalf}, {kHalf, 0, slope * kHalf}};
+  mesh.triangles = {{0, 1, 2}, {1, 0, 3}};
+  for (int k = 0; k < 4; ++k) {
+    const double angle = M_PI / 2 * k;
+    mesh.vertices.push_back({x + kHalf * std::cos(angle), kHalf * std::sin(angle), z + kHalf});
+    mesh.triangles.push_back({4 + k, 8, 4 + (k + 1) % 4});
+  }
+  mesh.vertices.push_back({x, 0, z});
+  return mesh;
+}
+
+// A vertex that crosses a valley at a constant height; its force does not jump where the other side becomes nearer.
+TEST(SelfContact, ForceIsContinuousAcrossAValley) {
+  for (const double slope : {0.05, 0.3, 0.8, 1.0, 1.5}) {
+    ContactWorld world(valley(slope, 0, 50e-3));
+    Eigen::Vector3d before = Eigen::Vector3d::Zero();
+    double largest = 0, jump = 0;
+    for (int k = -600; k <= 600; ++k) {
+      const SurfaceMesh now = valley(slope, 1e-6 * k, 0.6 * kWallThickness);
+      for (std::size_t i = 0; i < world.count(); ++i) world.set(i, now.vertices[i]);
+      world.detect(0.5e-3);
+      ASSERT_GT(world.evaluate(), 0);
+      const Eigen::Vector3d force = world.force(8);
+      if (k > -600) jump = std::max(jump, (force - before).norm());
+      largest = std::max(largest, force.norm());
+      before = force;
+    }
+    EXPECT_LT(jump, 0.03 * largest) << "slope " << slope;
+    EXPECT_LT(before.x(), 0) << "on the right side, to the left";
+  }
+}
+
 // x . K x of the couplings.
 double quadratic(const std::vector<StiffnessCoupling>& couplings, const std::vector<double>& x) {
   double sum = 0;
