@@ -69,6 +69,8 @@ void RowUnknowns::begin(const ConstraintRows& rows) {
     for (int k = 0; k < thread.count(); ++k) compliance_[thread.pullRow(k)] = thread.segments[k].compliance;
   for (Forces* forces : {&force_, &direction_, &left_, &taken_, &last_}) forces->setZero(kYieldDofs + count);
   for (Forces& pair : pair_) pair.setZero(kYieldDofs + count);
+  for (Eigen::VectorXd* lost : {&lost_, &loss_}) lost->setZero(count);
+  for (Eigen::VectorXd& pair : pair_loss_) pair.setZero(count);
 }
 
 double RowUnknowns::product(const Forces& a, const Forces& b) const {
@@ -106,8 +108,26 @@ void RowUnknowns::subtract(int i, double part) {
 void RowUnknowns::setDirection(const ConstraintSchur& schur, Eigen::VectorXd& moves) {
   setForces(schur, last_);
   direction_ = last_ + taken_ - force_;
+  loss_ = schur.lost() - lost_;
   moves = schur.moves();
   addMotion(1, direction_, moves);
+}
+
+void RowUnknowns::reduce(int i, double part, Eigen::VectorXd& moves) {
+  const auto pair = static_cast<std::size_t>(i);
+  direction_ -= part * pair_[pair];
+  loss_ -= part * pair_loss_[pair];
+  moves -= part * pair_loss_[pair];
+}
+
+void RowUnknowns::move(double part) {
+  force_ += part * direction_;
+  lost_ += part * loss_;
+}
+
+void RowUnknowns::keep(int i, double part) {
+  pair_[static_cast<std::size_t>(i)] = part * direction_;
+  pair_loss_[static_cast<std::size_t>(i)] = part * loss_;
 }
 
 void RowUnknowns::push(const ConstraintSchur& schur) {
@@ -121,6 +141,7 @@ double RowUnknowns::energy(double part) const {
 
 void RowUnknowns::forgetOldest() {
   std::rotate(pair_.begin(), pair_.begin() + 1, pair_.end());
+  std::rotate(pair_loss_.begin(), pair_loss_.begin() + 1, pair_loss_.end());
 }
 
 }  // namespace vibe

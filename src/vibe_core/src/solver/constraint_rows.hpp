@@ -143,12 +143,19 @@ class RowUnknowns {
   /// Share of pair i in the scalar product of its change and the direction.
   double directionTerm(int i) const { return product(pair_[static_cast<std::size_t>(i)], direction_); }
   /// The second loop takes `part` of the move of pair i from the direction.
-  void reduce(int i, double part) { direction_ -= part * pair_[static_cast<std::size_t>(i)]; }
+  /// @param moves  those of setDirection(), without what threads slide in that part from now on
+  void reduce(int i, double part, Eigen::VectorXd& moves);
 
   /// From how far rows are from their targets without forces to how far they are now.
   void addDisplacement(Eigen::VectorXd& rhs) const { addMotion(-1, force_, rhs); }
   /// Takes a part of the direction.
-  void move(double part) { force_ += part * direction_; }
+  void move(double part);
+  /// Thread that slid out of each row since begin(), into others of its thread [m].
+  const Eigen::VectorXd& lost() const { return lost_; }
+  /// The same in the direction [m].
+  double loss(int row) const { return loss_[row]; }
+  /// As if so much had slid out of a row [m].
+  void lose(int row, double length) { lost_[row] += length; }
   /// Gives way by the forces of the last elimination in addition.
   void push(const ConstraintSchur& schur);
   /// Energy, and its slope, after a part of the direction [J].
@@ -157,7 +164,7 @@ class RowUnknowns {
   /// Scalar product of the pair that a part of the direction makes.
   double curvature(double part) const { return part * part * product(direction_, direction_); }
   void forgetOldest();
-  void keep(int i, double part) { pair_[static_cast<std::size_t>(i)] = part * direction_; }
+  void keep(int i, double part);
 
  private:
   using Forces = Eigen::VectorXd;  // kYieldDofs, then one per row
@@ -171,6 +178,8 @@ class RowUnknowns {
   Forces left_, taken_;  // of the gradient, in the first loop
   Forces last_;          // of the last elimination
   std::array<Forces, kHistory> pair_;
+  Eigen::VectorXd lost_, loss_;  // thread, per row: since begin(), in the direction
+  std::array<Eigen::VectorXd, kHistory> pair_loss_;
 };
 
 }  // namespace vibe

@@ -8,7 +8,7 @@ namespace vibe {
 namespace {
 
 // Sweeps over threads that slide. Design choice: threads affect each other little; what a sweep more would change
-// slides in the next step.
+// slides in the next iteration.
 constexpr int kSlideSweeps = 30;
 // They end when no force moves its row farther than this. Design choice: a hundredth of what can be seen [m].
 constexpr double kSlideMove = 1e-7;
@@ -117,10 +117,6 @@ void ConstraintSchur::addThread(const ThreadRows& rows) {
   thread.slide.slide.setZero(thread.count - 1);
 }
 
-void ConstraintSchur::holdThreads() {
-  threads_held_ = true;
-}
-
 void ConstraintSchur::setGas(const float* direction4, double stiffness, const Factor& factor) {
   const bool had_gas = gas_stiffness_ != 0;
   gas_stiffness_ = stiffness;
@@ -209,14 +205,11 @@ void ConstraintSchur::slideThreads() {
   }
   for (int t = 0; t < thread_count_; ++t) {
     const Thread& thread = threads_[t];
-    for (int k = 0; k + 1 < thread.count; ++k) {
-      const int row = inequalities_[thread.first + k];
-      const double slid = thread.slide.slide[k];
-      slid_[row] = slid;
-      moves_[row] += slid;  // the segment has lost it: its spots have to come nearer
-      moves_[row + 1] -= slid;
-      contact_residual_[thread.first + k] += slid;
-      contact_residual_[thread.first + k + 1] -= slid;
+    for (int k = 0; k < thread.count; ++k) {
+      const double lost = (k + 1 < thread.count ? thread.slide.slide[k] : 0) - (k > 0 ? thread.slide.slide[k - 1] : 0);
+      lost_[inequalities_[thread.first + k]] = lost;
+      moves_[inequalities_[thread.first + k]] += lost;  // its spots have to come nearer
+      contact_residual_[thread.first + k] += lost;
     }
   }
 }
@@ -277,7 +270,7 @@ void ConstraintSchur::eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, do
   }
   if (m > 0) rows_.values(*cache_, y, row_value_);
   moves_ = rhs;
-  slid_.setZero(m);
+  lost_.setZero(m);
   holds_.assign(static_cast<std::size_t>(m), 1);
   for (const int row : idle_) holds_[static_cast<std::size_t>(row)] = 0;
   residual_ = rhs - row_value_;

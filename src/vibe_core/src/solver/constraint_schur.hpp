@@ -44,10 +44,10 @@ class ConstraintSchur {
   bool holds(int row) const { return holds_[static_cast<std::size_t>(row)] != 0; }
   /// Largest violation of a contact or thread that the last elimination left [m].
   double violation() const { return violation_; }
-  /// Thread that slid out of a row into the next row of its thread [m].
-  double slid(int row) const { return slid_[row]; }
-  /// From now on until setRows() threads do not slide.
-  void holdThreads();
+  /// Per row: thread that slid out of it into others of its thread [m].
+  const Eigen::VectorXd& lost() const { return lost_; }
+  /// Whether threads are kept from sliding, until setRows().
+  void holdThreads(bool hold) { threads_held_ = hold; }
   /// Compliance between rows, gas taken into account (rows x rows) [m/N].
   const Eigen::MatrixXd& compliance() {
     formCompliance();
@@ -100,7 +100,7 @@ class ConstraintSchur {
   Eigen::Matrix<double, kYieldDofs, Eigen::Dynamic> yield_, given_;  // per row: of its target; compliance times this
   std::vector<float> gas_;                                           // L^-1 of the gas direction
   double gas_stiffness_ = 0, gas_norm2_ = 0;
-  Eigen::VectorXd gas_row_, force_, moves_, slid_;
+  Eigen::VectorXd gas_row_, force_, moves_, lost_;
   double gas_force_ = 0;
   Eigen::MatrixXd compliance_, block_, cross_, coupling_,
       thread_compliance_;  // of equations, with contacts, of contacts

@@ -36,9 +36,6 @@ constexpr double kSmallResidual = 1e-4;
 constexpr double kRowRoundings = 10;
 // The same as kSmallResidual for threads, which are elastic. Design choice [1].
 constexpr double kThreadShare = 1.0 / 3;
-// Part of the foreseen slide of a thread that is taken in a step. Design choice: the factor does not contain
-// self-contact, which resists the slide where walls touch; with half of it the slide does not overshoot [1].
-constexpr double kSlidePart = 0.5;
 // Length of a direction over the one before, below which the iteration contracts. Design choice: halving per iteration
 // is the weakest rate that bounds the rest by the last move [1].
 constexpr double kSafeContraction = 0.5;
@@ -128,8 +125,8 @@ void QuasiNewton::rowResidual() {
       [this](int row, const LinearForm& form) { scratch_.rhs[row] = scratch_.target[row] - form.value(scratch_.z); });
 }
 
-// Whether the rows that hold stay where they are, but for rounding. Contacts that open or slip and slack threads may
-// move freely.
+// Whether the rows that hold stay where they are, but for rounding. Contacts that open or slip, threads that slide and
+// slack ones may move freely.
 bool QuasiNewton::rowsStay() const {
   const Eigen::VectorXd &moves = scratch_.row_moves, &forces = scratch_.schur.forces();
   const double rounding = kRowRoundings * resolution();
@@ -139,8 +136,10 @@ bool QuasiNewton::rowsStay() const {
     if (scratch_.schur.holds(row) && std::abs(moves[row]) > limit) return false;
   const double of_thread = std::max(kThreadShare * direction_length_, rounding);
   for (const ThreadRows& thread : scratch_.rows.threads)
-    for (int k = 0; k < thread.count(); ++k)
-      if (forces[thread.pullRow(k)] > 0 && std::abs(moves[thread.pullRow(k)]) > of_thread) return false;
+    for (int k = 0; k < thread.count(); ++k) {
+      const int row = thread.pullRow(k);
+      if (forces[row] > 0 && std::abs(moves[row] - unknowns_.loss(row)) > of_thread) return false;
+    }
   return true;
 }
 
@@ -150,6 +149,7 @@ bool QuasiNewton::satisfyConstraints() {
   if (extra_ != nullptr && extra_->acts()) return false;  // walls that meet may forbid it
   StepperWorkspace& s = scratch_;
   rowResidual();
+  s.rhs += unknowns_.lost();
   unknowns_.addDisplacement(s.rhs);
   double max = 0;
   for (std::size_t i = 0; i < s.rows.equations.size(); ++i) {
@@ -159,7 +159,9 @@ bool QuasiNewton::satisfyConstraints() {
   }
   if (max <= std::max(kSmallResidual * direction_length_, kUnmet * resolution())) return false;
   std::fill(s.half.begin(), s.half.end(), 0.0F);
+  s.schur.holdThreads(true);  // these forces come in addition: those that limit the slide are not among them
   s.schur.eliminate(s.rhs, 0, s.half.data());
+  s.schur.holdThreads(false);
   unknowns_.push(s.schur);
   s.factor->backward(s.half.data());
   s.factor->store(s.half.data(), s.direction.data());
@@ -183,22 +185,6 @@ void QuasiNewton::addRowForces(double sign, std::vector<float>& vector) const {
     const double force = sign * scratch_.schur.forces()[row];
     if (force != 0) form.addForce(force, vector);
   });
-}
-
-// Once per step, so that all iterations look for the same equilibrium.
-void QuasiNewton::slideThreads() {
-  if (threads_have_slid_) return;
-  threads_have_slid_ = true;
-  StepperWorkspace& s = scratch_;
-  s.slid.setZero(s.rows.count());
-  for (const ThreadRows& thread : s.rows.threads)
-    for (int k = 0; k + 1 < thread.count(); ++k) {
-      const int row = thread.pullRow(k);
-      s.slid[row] = kSlidePart * s.schur.slid(row);
-      s.target[row] += s.slid[row];
-      s.target[row + 1] -= s.slid[row];
-    }
-  s.schur.holdThreads();
 }
 
 void QuasiNewton::setGas(double volume) {
@@ -275,14 +261,13 @@ void QuasiNewton::applyInverse(const double* alpha) {
     unknowns_.addTargets(s.rhs);
     s.schur.eliminate(s.rhs, swelling(), s.half.data());
     unknowns_.setDirection(s.schur, s.row_moves);
-    slideThreads();
   }
   s.factor->backward(s.half.data());
   s.factor->store(s.half.data(), s.direction.data());
   for (int i = 0; i < s.pairs; ++i) {
     const double beta = -s.curvature[i] * (dot(s.change[i], s.direction) + unknowns_.directionTerm(i));
     addMultiple(-(alpha[i] - beta), s.move[i], s.direction);
-    unknowns_.reduce(i, alpha[i] - beta);
+    unknowns_.reduce(i, alpha[i] - beta, s.row_moves);
   }
   for (int i = 0; i < body_.nodeCount(); ++i)
     if (body_.fixed[i] != 0)

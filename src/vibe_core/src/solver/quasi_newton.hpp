@@ -56,7 +56,6 @@ class QuasiNewton {
   void loadWork();
   void applyInverse(const double* alpha);
   void rowResidual();
-  void slideThreads();
   bool rowsStay() const;
   void addRowForces(double sign, std::vector<float>& vector) const;
   double lagrangian(double part) const;
@@ -83,7 +82,6 @@ class QuasiNewton {
   double direction_length_ = 0, last_length_ = -1, before_length_ = -1;
   double slope_ = 0;
   double first_length_ = 0;
-  bool threads_have_slid_ = false;
   bool failed_ = false, contracts_ = false;
 };
 

@@ -136,10 +136,7 @@ void storeThread(const StepperWorkspace& scratch, const ThreadRows& rows, double
   thread.tension.resize(thread.length.size());
   for (int k = 0; k < rows.count(); ++k) {
     thread.tension[k] = scratch.schur.forces()[rows.pullRow(k)];
-    if (k + 1 == rows.count()) continue;
-    const double slid = scratch.slid[rows.pullRow(k)] / gain;
-    thread.length[k] -= slid;
-    thread.length[k + 1] += slid;
+    thread.length[k] -= scratch.unknowns.lost()[rows.pullRow(k)] / gain;
   }
   fillShortSegments(thread.length);
 }

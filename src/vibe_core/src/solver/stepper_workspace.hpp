@@ -66,7 +66,6 @@ class StepperWorkspace {
   Eigen::VectorXd target, rhs, force;
   RowUnknowns unknowns;
   Eigen::VectorXd row_moves;     // of the last direction, beyond what rows give way, to the scale of the rows [m]
-  Eigen::VectorXd slid;          // thread that slid out of a row in this step, to the scale of the rows [m]
   double gas_stiffness = 0;      // at the end of a step [Pa/m^3]
   StageClock* stages = nullptr;  // null: nothing is measured
   double elastic_energy = 0, usual_length = 0;  // of the memory before the step [J], [m]

@@ -195,7 +195,7 @@ namespace vibe {
 
 namespace {
 // Problems solved for one thread. Design choice: the second has nearly always the right segments; those that are still
-// missing are found in the next step.
+// missing are found when it is solved again.
 constexpr int kProblems = 4;
 // Rounding of a slide [m].
 constexpr double kSpareRounding = 1e-10;

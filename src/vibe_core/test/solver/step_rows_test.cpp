@@ -183,8 +183,9 @@ TEST(StepRows, ForcesComeBackToTheLoads) {
   scratch.rhs.setConstant(1e-3);
   scratch.rhs.tail<4>().setZero();
   scratch.schur.eliminate(scratch.rhs, 0, scratch.half.data());
-  scratch.slid.setZero(scratch.rows.count());
-  scratch.slid[6] = 2e-3;
+  scratch.unknowns.begin(scratch.rows);
+  scratch.unknowns.lose(6, 2e-3);
+  scratch.unknowns.lose(7, -2e-3);
   storeForces(scratch, 2, fixture.loads);
   const Eigen::VectorXd& force = scratch.schur.forces();
   ASSERT_GT(force.head<8>().cwiseAbs().maxCoeff(), 0);
@@ -198,12 +199,13 @@ TEST(StepRows, ForcesComeBackToTheLoads) {
 TEST(StepRows, AsMuchThreadAsAFoldNeedsStaysBetweenTwoBites) {
   Fixture fixture;
   StepperWorkspace& scratch = *fixture.scratch;
-  scratch.slid.setZero(scratch.rows.count());
+  scratch.unknowns.begin(scratch.rows);
   ASSERT_TRUE(factorAt(fixture.body, {}, 3600, 1, scratch.matrix, *scratch.factor));
   scratch.schur.reset(*scratch.factor);
   scratch.columns.setAttachments(*scratch.factor, fixture.loads.attachments);
   scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
-  scratch.slid[6] = 0.018;
+  scratch.unknowns.lose(6, 0.018);
+  scratch.unknowns.lose(7, -0.018);
   storeForces(scratch, 1, fixture.loads);
   EXPECT_DOUBLE_EQ(fixture.loads.threads[0].length[0], kMinThread);
   EXPECT_NEAR(fixture.loads.threads[0].length[1], 0.035 - kMinThread, 1e-15) << "the sum stays";
