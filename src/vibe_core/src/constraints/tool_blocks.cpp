@@ -80,9 +80,8 @@ class ToolContactBlock : public ConstraintBlock {
 
   void findContacts(const StepContext& context, BodyLoads& loads) {
     const ToolPoses& poses = *context.tool;
-    const bool yields = context.bend != nullptr;
     for (const SurfaceContact& contact :
-         contacts_.find(poses.start, poses.end, path_, kContactMargin, excluded_, yields))
+         contacts_.find(poses.start, poses.end, path_, kContactMargin, excluded_, context.when))
       addContact(context, contact, loads);
   }
 

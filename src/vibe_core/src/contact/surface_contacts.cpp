@@ -34,9 +34,9 @@ constexpr double kDeepestInWall = 0.5;
 // Cosine of the angle between normals of two shapes at one place above which the deeper contact replaces the other.
 // Design choice: 45 degrees [1].
 constexpr double kSameSide = 0.7;
-// Cosine of the angle between the normals at the two ends of a step up to which a contact lies along the secant. Design
+// Cosine of the angle between the normals at the two ends of a step up to which one between them is taken. Design
 // choice: 25 degrees, which a tip reaches at 0.2 m/s; beyond, the distance is far from linear along the way [1].
-constexpr double kSecant = 0.9;
+constexpr double kAlong = 0.9;
 constexpr double kBuried = 1e-6;  // depth of a place of one shape within another from which it cannot touch [m]
 
 std::vector<std::array<int, 3>> neighbours(const std::vector<std::array<int, 3>>& triangles) {
@@ -108,9 +108,9 @@ double SurfaceContacts::halfThickness(const std::array<int, 3>& node, const Eige
 const std::vector<SurfaceContact>& SurfaceContacts::find(const std::vector<Eigen::Isometry3d>& start,
                                                          const std::vector<Eigen::Isometry3d>& end,
                                                          const SurfacePath& path, double margin,
-                                                         const std::vector<char>& excluded, bool yields) {
+                                                         const std::vector<char>& excluded, double when) {
   contacts_.clear(), kept_.clear();
-  yields_ = yields;
+  when_ = when;
   tool_.place(start, end);
   near_triangles_.find(tool_, path, max_half_thickness_ + margin, near_);
   for (std::size_t first = 0, last = 0; first < near_.size(); first = last) {
@@ -247,34 +247,29 @@ void SurfaceContacts::offer(const SurfacePoint& point, const SurfacePath& path, 
     gap = gapAt(fraction = 0);
     if (gap.distance > reach) return;
   }
-  if (fraction < 1 || yields_)
+  if (fraction < 1)
     add(point, shape, fraction, gap, clearance);
   else
-    addAlong(point, shape, placeAt(0), gap, clearance);
+    addAlong(point, shape, placeAt(0), placeAt(1), gap, clearance);
 }
 
-// The plane of a contact is the secant of the distance between the two ends of the step, as seen from the shape: with
-// v from the core to the point, before and after, and the core's nearest point moving across v at most,
-//   (v + v') / (|v| + |v'|) . (v' - v) = |v'| - |v|.
-// A point that slides along the shape in this plane does no work; along the tangent at the end of the step it would
-// come nearer by what the shape curves, and be pushed out in the next step: the tool would be driven by that.
-// @param start  place of the point at the start of the step
-// @param gap    at the end
+// A contact acts along the normal that the point has at the moment at which the forces of the step act, on its straight
+// way as seen from the shape. Where the wall resists at one moment and the shape pushes along the normal of another, a
+// tip that slides is driven or braked by the angle between them. The distance is that at the end.
+// @param start, end  place of the point
+// @param gap         at the end
 void SurfaceContacts::addAlong(const SurfacePoint& point, int shape, const Eigen::Vector3d& start,
-                               const TriangleGap& gap, double clearance) {
+                               const Eigen::Vector3d& end, const TriangleGap& gap, double clearance) {
   const TriangleGap before = tool_.gap(shape, 0, start);
   const Eigen::Vector3d from = tool_.directionAtEnd(shape, 0, before.normal);
-  if (!(from.dot(gap.normal) > kSecant)) return add(point, shape, 1, gap, clearance);
-  const Eigen::Vector3d sum = before.distance * from + gap.distance * gap.normal;
+  if (!(from.dot(gap.normal) > kAlong)) return add(point, shape, 1, gap, clearance);
   SurfaceContact contact;
   contact.point = point;
   contact.shape = shape;
   contact.clearance = clearance;
   contact.distance = gap.distance - tool_.radius(shape);
-  contact.normal = sum.normalized();
-  const double scale = (before.distance + gap.distance) / sum.norm();
-  const double lack = scale * (clearance - (before.distance - tool_.radius(shape)));
-  contact.tool_point = tool_.pointAtEnd(shape, 0, start) + (lack - clearance) * contact.normal;
+  contact.normal = ((1 - when_) * before.distance * from + when_ * gap.distance * gap.normal).normalized();
+  contact.tool_point = end - contact.distance * contact.normal;
   if (!isBuried(contact)) contacts_.push_back(contact);
 }
 

@@ -27,9 +27,9 @@ struct SurfaceContact {
   Eigen::Vector3d tool_point;  ///< of the shape's surface, at the end of the step [m]
 };
 
-/// Contacts of a tool with the triangles of a wall, continuous in time. A normal is the secant between where a point is
-/// before the step and after it if nothing stops it, so that sliding does no work; or it is taken just before the wall
-/// would pass through the shape, so that wall and tool keep their sides however fast they move.
+/// Contacts of a tool with the triangles of a wall, continuous in time. A normal is that of a point at the moment of
+/// the step at which its forces act, if nothing stops it; or it is taken just before the wall would pass through the
+/// shape, so that wall and tool keep their sides however fast they move.
 ///
 /// Contacts are points of the wall that stay the same from step to step: the vertices, and where these leave room for
 /// the shape between them, because it is thin or the triangles are large, points that divide edges and triangles
@@ -48,12 +48,11 @@ class SurfaceContacts {
   /// @param margin  contacts are those that come nearer to touching than this [m]
   /// @param excluded  per vertex: 1: it takes no part; a triangle of only such vertices neither; kHeld: the helix holds
   ///                  it, and draws triangles there into the device on the tip of the scope
-  /// @param yields  the tool gives way to forces, so that its end pose is a guess: normals are then those at the end,
-  ///                because a secant to a guess that lags behind would brake the tool
+  /// @param when    part of the step after which its forces act
   /// @returns ordered by nodes, then depth; valid until the next call
   const std::vector<SurfaceContact>& find(const std::vector<Eigen::Isometry3d>& start,
                                           const std::vector<Eigen::Isometry3d>& end, const SurfacePath& path,
-                                          double margin, const std::vector<char>& excluded, bool yields = false);
+                                          double margin, const std::vector<char>& excluded, double when = 1);
 
   /// Those that the tool cannot pass.
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
@@ -74,8 +73,8 @@ class SurfaceContacts {
   void addInterior(const SurfacePath& path, double margin, int shape, const Pair& pair, int parts);
   void offer(const SurfacePoint& point, const SurfacePath& path, int shape, bool hit, double margin);
   void add(const SurfacePoint& point, int shape, double fraction, const TriangleGap& gap, double clearance);
-  void addAlong(const SurfacePoint& point, int shape, const Eigen::Vector3d& start, const TriangleGap& gap,
-                double clearance);
+  void addAlong(const SurfacePoint& point, int shape, const Eigen::Vector3d& start, const Eigen::Vector3d& end,
+                const TriangleGap& gap, double clearance);
   bool isBuried(const SurfaceContact& contact) const;
   void removeDuplicates();
 
@@ -91,7 +90,7 @@ class SurfaceContacts {
   std::vector<Pair> pairs_;    // of the shape in turn
   std::vector<int> vertices_;  // of those
   std::vector<char> hit_;      // per vertex: the shape would pass through one of its triangles
-  bool yields_ = false;
+  double when_ = 1;
   double fraction_ = 1;               // up to which the shape in turn and all triangles stay apart
   std::vector<int> stamp_, pair_of_;  // per vertex; per triangle, -1: none
   int count_ = 0;

@@ -97,6 +97,9 @@ class ImplicitStep {
   SurfacePath pathOfStep() const;
   bool solve();
   void yieldTool();
+  bool missesTool() const;
+  void expectAgain();
+  void startAgain();
   bool keepApart();
   bool keepToolApart();
   void noteStopped(const ToolMotion& wanted);
@@ -122,6 +125,7 @@ class ImplicitStep {
   std::optional<ShaftBend> bend_;           // of a tool that yields, in the middle of the step
   std::optional<ScopeSpringStep> springs_;  // of it
   ToolDisplacement expected_{};             // of it at the end of the step
+  bool expected_again_ = false;             // after a first solve
   std::optional<ToolMotion> yielded_;       // its motion, after the solve
   std::optional<ToolMotion> limited_;       // to where it can go; empty: it goes where the solve has it
   StepContext context_;

@@ -9,6 +9,7 @@
 #include "geometry/surface_operators.hpp"
 #include "model/step_accounts.hpp"
 #include "solver/stepper_workspace.hpp"
+#include "solver/time_scheme.hpp"
 #include "vibe_core/model/accounting.hpp"
 
 namespace vibe {
@@ -51,7 +52,9 @@ ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, c
       state_(state),
       report_(report),
       scratch_(scratch),
-      context_{model, state, model.scene.step_period, motion != nullptr ? &scratch.tool : nullptr, insufflator_on} {}
+      context_{model, state, model.scene.step_period, motion != nullptr ? &scratch.tool : nullptr, insufflator_on} {
+  context_.when = TimeScheme(stepper.settings(), 0, 0).part();
+}
 
 void ImplicitStep::run() {
   const Activity activity = gather();
@@ -63,6 +66,10 @@ void ImplicitStep::run() {
   }
   if (state_.solver.recovery_steps > 0) return recover();
   if (!solve()) return;
+  if (missesTool()) {
+    expectAgain();
+    if (!solve()) return;
+  }
   if (!keepApart()) {
     giveWay();
     if (!solve()) return;
@@ -150,7 +157,7 @@ bool ImplicitStep::solve() {
   }
   contact_energy_ = state_.energy.contact_energy;
   scratch_.loads.extra = scratch_.terms.simplest();
-  const StepOutcome outcome = limited_
+  const StepOutcome outcome = limited_ || expected_again_
                                   ? stepper_.stepAgain(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper)
                                   : stepper_.step(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper);
   report_.iterations = outcome.iterations;
@@ -179,10 +186,14 @@ bool ImplicitStep::keepApart() {
 // wall would run into it, and both would stand still for good. Solved again with the tool where it can go, the wall
 // makes room for the next step.
 void ImplicitStep::giveWay() {
-  for (std::size_t k = 0; k < kMotion; ++k) state_.*kMotionOf[k] = scratch_.start[k];
   motion_ = &*limited_;
   context_.bend = nullptr;
   yielded_.reset();
+  startAgain();
+}
+
+void ImplicitStep::startAgain() {
+  for (std::size_t k = 0; k < kMotion; ++k) state_.*kMotionOf[k] = scratch_.start[k];
   gather();
   begin();
 }

@@ -105,10 +105,9 @@ Vector3d fromCore(const Isometry3d& pose, double length, const Vector3d& point) 
   return local - Vector3d(std::clamp(local.x(), 0.0, length), 0, 0);
 }
 
-// The row of a contact is violated by as much as the distance is too small at the end of the step, to second order in
-// the step too, and a point that keeps its distance does no work. Exact on sphere, cylinder and, with a radius far
-// beyond the way, plane.
-TEST(SurfaceContacts, AMotionAlongTheShapeDoesNoWork) {
+// The row of a contact lacks what the distance lacks at the end of the step. With the normal of the middle of the step
+// a point that keeps its distance does no work. Exact on sphere, cylinder and, with a radius far beyond the way, plane.
+TEST(SurfaceContacts, AMotionAlongTheShapeDoesNoWorkWithTheNormalOfTheMiddle) {
   std::mt19937 random(13);
   std::uniform_real_distribution<double> c(-1, 1);
   constexpr double kLength = 0.01;
@@ -133,7 +132,8 @@ TEST(SurfaceContacts, AMotionAlongTheShapeDoesNoWork) {
       Points to = scene.start;
       for (auto& x : to)
         for (double& value : x) value += 0.05e-3 * c(random);
-      for (const SurfaceContact& contact : scene.contacts.find(start, end, pathOf(scene.start, to), 1e-3, scene.none)) {
+      const SurfacePath path = pathOf(scene.start, to);
+      for (const SurfaceContact& contact : scene.contacts.find(start, end, path, 1e-3, scene.none, 0.5)) {
         if (contact.point.count != 1) continue;
         const int i = contact.point.node[0];
         const Vector3d p(to[0][i], to[1][i], to[2][i]);
@@ -145,8 +145,7 @@ TEST(SurfaceContacts, AMotionAlongTheShapeDoesNoWork) {
         ++checked;
         const double scale = (v.norm() + w.norm()) / (v + w).norm();
         EXPECT_NEAR(contact.normal.dot(slid), scale * (w.norm() - v.norm()), kRounding);
-        EXPECT_NEAR(contact.normal.dot(p - contact.tool_point),
-                    scale * (w.norm() - radius - contact.clearance) + contact.clearance, kRounding);
+        EXPECT_NEAR(contact.normal.dot(p - contact.tool_point), w.norm() - radius, kRounding);
         tangent = std::max(tangent, w.normalized().dot(slid) - (w.norm() - v.norm()));
       }
     }
