@@ -36,6 +36,11 @@ constexpr int kCheckEvery = 10;
 // rest is motion and what else pulls.
 constexpr double kHeldPart = 0.5;
 
+// How much earlier than the forces of the step the normals of tool contacts are taken, in steps. Design choice:
+// vertices that come into contact within a step drive a tip that slides by 0.2 % of its normal force at 60 Hz; with
+// this it is braked by a tenth of that instead [1].
+constexpr double kEarlier = 0.05;
+
 void stopMotion(State& state) {
   for (std::size_t k = 3; k < kMotion; ++k) std::fill((state.*kMotionOf[k]).begin(), (state.*kMotionOf[k]).end(), 0.0);
 }
@@ -55,7 +60,7 @@ ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, c
       context_{model, state, model.scene.step_period, motion != nullptr ? &scratch.tool : nullptr, insufflator_on} {
   StepSettings settings = stepper.settings();
   settings.backward_euler = settings.backward_euler || state.solver.fallback > 0;
-  context_.when = TimeScheme(settings, 0, 0).part();
+  context_.when = TimeScheme(settings, 0, 0).part() - kEarlier;
 }
 
 void ImplicitStep::run() {

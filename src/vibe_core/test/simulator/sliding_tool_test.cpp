@@ -69,7 +69,8 @@ TEST_P(ToAndFro, WithoutFrictionTakesTheWorkThatIsLost) {
   // per step the tangent at its end comes nearer to a round tip by way^2 / (2 radius)
   const double way_of_step = 2 * kWay / static_cast<double>(steps);
   const double of_tangents = force * 2 * kWay * way_of_step / (2 * kToWall);
-  EXPECT_NEAR(hand, lost, 0.1 * of_tangents) << "J; with normals of the middle or the end of the step: 0.4 or more";
+  EXPECT_GE(hand, 0) << "J; contact drives the tip";
+  EXPECT_NEAR(hand, lost, 0.05 * of_tangents) << "J; with normals of the middle or the end of the step: 0.4 or more";
   const double of_scope = after.scope_loss - before.scope_loss + stored() - stored_before;
   EXPECT_NEAR(hand, tool + of_scope, 0.01 * of_tangents) << "levers are those of the middle of the step";
 }
