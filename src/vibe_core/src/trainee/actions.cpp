@@ -5,8 +5,6 @@
 #include "trainee/bite_attempt.hpp"
 #include "trainee/operator.hpp"
 #include "trainee/picture.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/trainee/suture_pattern.hpp"
 
 namespace vibe {
 
@@ -135,6 +133,7 @@ GoalResult takeBite(const WallPoint& target, Operator& me) {
 }
 
 GoalResult perform(const BiteGoal& goal, Operator& me) {
+  me.set = {};  // of a set that was cancelled
   return takeBite(find(goal.place, me.map()), me);
 }
 
@@ -183,59 +182,6 @@ GoalResult perform(const CinchGoal&, Operator& me) {
   hand.release(Cinch);
   hand.wait(0.5);
   return tight ? GoalResult{true, ""} : GoalResult{false, "the thread did not become tight"};
-}
-
-namespace {
-
-constexpr double kAsideStep = 1e-3;  // [m]
-constexpr double kAsideMost = 0.5;   // of the length of a pattern, so that its shape remains; design choice [1]
-
-}  // namespace
-
-WallPoint besideThreads(const WallPoint& target, double most, const Operator& me) {
-  const AnatomicalMap& map = *me.seen_map;
-  WallPoint beside = target;
-  for (double moved = 0; moved < most; moved += kAsideStep) {
-    const auto distance = [&](const WallPoint& stitch) { return (map.position(stitch) - map.position(beside)).norm(); };
-    const auto nearest =
-        std::min_element(me.stitches.begin(), me.stitches.end(),
-                         [&](const WallPoint& a, const WallPoint& b) { return distance(a) < distance(b); });
-    if (nearest == me.stitches.end() || distance(*nearest) >= kBesideThread) break;
-    const double away = map.along(target) > map.along(*nearest) ? kAsideStep : -kAsideStep;
-    try {
-      beside = map.walk(beside, away, 0);
-    } catch (const Error&) {  // the end of the organ
-      break;
-    }
-  }
-  return beside;
-}
-
-GoalResult perform(const SutureSetGoal& goal, Operator& me) {
-  if (!me.view().needle_loaded) return {false, "there is no needle"};
-  const AnatomicalMap& map = me.map();
-  const WallPoint centre = find(goal.centre, map);
-  std::vector<WallPoint> targets;
-  for (const Eigen::Vector2d& place : suturePattern(goal.pattern, goal.bites, goal.length, goal.width))
-    targets.push_back(besideThreads(map.walk(centre, place.x(), goal.mirrored ? -place.y() : place.y()),
-                                    kAsideMost * goal.length, me));
-  int taken = 0;
-  std::vector<WallPoint> stitches;
-  for (std::size_t k = 0; k < targets.size(); ++k) {
-    me.say("bite " + std::to_string(k + 1) + " of " + std::to_string(targets.size()));
-    if (!takeBite(targets[k], me).reached) continue;
-    ++taken;
-    stitches.push_back(me.tries.needle);
-  }
-  me.stitches.insert(me.stitches.end(), stitches.begin(), stitches.end());
-  if (taken < 2) return {false, "only " + std::to_string(taken) + " bites could be taken"};
-  if (goal.cinched) {
-    me.say("T-tag and cinch");
-    const GoalResult cinch = perform(CinchGoal{}, me);
-    if (!cinch.reached) return cinch;
-  }
-  const std::string count = std::to_string(taken) + " of " + std::to_string(targets.size()) + " bites taken";
-  return {taken == static_cast<int>(targets.size()), count};
 }
 
 }  // namespace vibe

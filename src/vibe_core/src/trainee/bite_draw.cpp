@@ -138,6 +138,8 @@ std::optional<GoalResult> BiteAttempt::judgeView() {
   if (!me_.skill().checks_depth) return {};
   if (missOf(*needle) > acceptedMiss())
     return failedBy(missOf(*needle), "the needle would pass " + millimetres(missOf(*needle)) + " beside its target");
+  if (!last_ && me_.set.isSpoiledBy(needle->where, *me_.seen_map))
+    return failedBy(missOf(*needle), "the bites would not form the pattern");
   if (needle->depth < (last_ ? kHolds : kThrough) * needle->thickness)
     return failedBy(kOnTarget, "the needle would go through a part of the wall only");
   return {};

@@ -112,6 +112,17 @@ struct TriesOfBite {
   WallPoint needle;        ///< where it would pass or has passed
 };
 
+/// The set that is being sewn.
+struct SetInHand {
+  Technique pattern = Technique::Other;
+  std::vector<WallPoint> points{};  ///< bites taken, then the targets of those to come; what was given up is left out
+  std::size_t next = 0;             ///< bite
+
+  /// The set could be read as its pattern with the next bite at its target, but not, or hardly, with it at this place:
+  /// earlier bites have missed as well.
+  bool isSpoiledBy(const WallPoint& place, const AnatomicalMap& map) const;
+};
+
 /// What the actions of a trainee share: hands, knowledge of the organ, random errors, and how to say what is going on.
 struct Operator {
   TraineeHand& hand;
@@ -137,6 +148,7 @@ struct Operator {
   int bites_taken = 0;                ///< for the present goal
   std::vector<WallPoint> stitches{};  ///< where bites of earlier sets are, whose threads hold the wall
   TriesOfBite tries{};                ///< of the present bite
+  SetInHand set{};                    ///< empty in a bite of its own
 
   double nextNormal();
   /// What is really aimed at: a point of the wall beside the target, Skill::aim_error away in each direction. Nobody
@@ -161,9 +173,9 @@ GoalResult perform(const WaitGoal& goal, Operator& me);
 /// helix draws into the device, with a margin; design choice [m]
 constexpr double kBesideThread = 8e-3;
 
-/// A target that is too near to a bite of an earlier set moves along the organ away from it.
-/// @param most  how far at most [m]
-WallPoint besideThreads(const WallPoint& target, double most, const Operator& me);
+/// The points of the wall of a set. Where one would be too near to a bite of an earlier set, the whole pattern moves
+/// along the organ, no farther than helps and than half of its length: single points that moved would change its shape.
+std::vector<WallPoint> targetsOf(const SutureSetGoal& goal, Operator& me);
 
 /// One bite at a point of the wall.
 GoalResult takeBite(const WallPoint& target, Operator& me);

@@ -26,6 +26,7 @@ struct Row {
   int count = 6;
   double from = 0.66, to = 0.31;  // along the axis; distal first, as in practice
 
+  double step() const { return count > 1 ? (to - from) / (count - 1) : 0; }
   double along(int k) const { return count > 1 ? from + (to - from) * k / (count - 1) : from; }
 };
 
@@ -147,6 +148,7 @@ void ProtocolReader::readSleeve(const YamlField& field) {
     protocol_.goals.emplace_back(set);
     return;
   }
+  set.spacing = std::abs(row.step());
   for (int k = 0; k < row.count; ++k) {
     set.centre.along = row.along(k);
     protocol_.goals.emplace_back(set);

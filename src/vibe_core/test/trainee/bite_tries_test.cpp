@@ -56,18 +56,65 @@ double moved(const WallPoint& from, const WallPoint& to, const Onlooker& at) {
   return at.me.seen_map->alongWall(from, at.me.position(to) - at.me.position(from))[0];
 }
 
-TEST(BesideThreads, ATargetMovesAlongTheOrganAwayFromAnEarlierBite) {
+/// How far all points of a set move beside a bite of an earlier set [m].
+double movedBeside(const WallPoint& stitch, const SutureSetGoal& goal, Onlooker& at) {
+  at.me.stitches.clear();
+  const std::vector<WallPoint> free = targetsOf(goal, at.me);
+  at.me.stitches = {stitch};
+  const std::vector<WallPoint> targets = targetsOf(goal, at.me);
+  const double first = moved(free[0], targets[0], at);
+  for (std::size_t k = 1; k < targets.size(); ++k)
+    EXPECT_NEAR(moved(free[k], targets[k], at), first, 1.5e-3) << "the shape remains";
+  return first;
+}
+
+TEST(BesideThreads, TheWholePatternMovesAlongTheOrganAwayFromAnEarlierBite) {
   Onlooker at;
+  SutureSetGoal goal;
+  goal.centre = {0.5, 0.3};
+  const std::vector<WallPoint> free = targetsOf(goal, at.me);
+  const auto beside = [&](const WallPoint& target, double distal) { return at.me.seen_map->walk(target, distal, 0); };
+  EXPECT_NEAR(movedBeside(beside(free[1], 3e-3), goal, at), 3e-3 - kBesideThread, 1.5e-3);
+  EXPECT_NEAR(movedBeside(beside(free.back(), -3e-3), goal, at), kBesideThread - 3e-3, 1.5e-3);
+  EXPECT_EQ(movedBeside(beside(free[1], 12e-3), goal, at), 0) << "far enough";
+  goal.length = 4e-3;
+  EXPECT_NEAR(movedBeside(targetsOf(goal, at.me)[1], goal, at), 0, 2.1e-3) << "at most half of its length";
+}
+
+TEST(BesideThreads, WhereSetsOfARowLieClosePatternsAreShorter) {
+  Onlooker at;
+  SutureSetGoal goal;
+  goal.centre = {0.5, 0.3};
+  const auto lengthWith = [&](double spacing) {
+    goal.spacing = spacing;
+    const std::vector<WallPoint> targets = targetsOf(goal, at.me);
+    return -moved(targets.front(), targets.back(), at);
+  };
   const AnatomicalMap& map = *at.me.seen_map;
-  const WallPoint target = map.at(0.5, 0.3);
-  EXPECT_EQ(moved(target, besideThreads(target, 10e-3, at.me), at), 0) << "no thread";
-  at.me.stitches = {map.walk(target, 3e-3, 0)};
-  EXPECT_NEAR(moved(target, besideThreads(target, 10e-3, at.me), at), 3e-3 - kBesideThread, 1.5e-3);
-  EXPECT_NEAR(moved(target, besideThreads(target, 2e-3, at.me), at), -2e-3, 0.3e-3) << "at most so far";
-  at.me.stitches = {map.walk(target, -3e-3, 0)};
-  EXPECT_NEAR(moved(target, besideThreads(target, 10e-3, at.me), at), kBesideThread - 3e-3, 1.5e-3);
-  at.me.stitches = {map.walk(target, 12e-3, 0)};
-  EXPECT_EQ(moved(target, besideThreads(target, 10e-3, at.me), at), 0) << "far enough";
+  const double spacing = (map.position(map.at(0.53, 0.3)) - map.position(map.at(0.47, 0.3))).norm();
+  const double length = lengthWith(0);
+  EXPECT_EQ(lengthWith(0.5), length) << "there is room";
+  EXPECT_GT(lengthWith(0.06), 0.6 * (spacing - kBesideThread));
+  EXPECT_LT(lengthWith(0.06), 1.1 * (spacing - kBesideThread)) << "walked along a wall that bends";
+  EXPECT_NEAR(lengthWith(1e-3), 0.5 * length, 1e-3) << "not shorter";
+}
+
+TEST(SetInHand, ABiteThatMissesSpoilsThePatternOnlyWhereEarlierOnesHaveMissed) {
+  Onlooker at;
+  SutureSetGoal goal;
+  goal.centre = {0.5, 0.3};
+  goal.length = 13e-3;
+  SetInHand set{Technique::U, targetsOf(goal, at.me), 6};
+  const std::shared_ptr<const AnatomicalMap> map = at.me.seen_map;
+  const WallPoint beside = map->walk(set.points[6], 0, -12e-3);
+  EXPECT_FALSE(set.isSpoiledBy(beside, *map));
+  set.points[4] = map->walk(set.points[4], 0, -8e-3);
+  set.points[5] = map->walk(set.points[5], 0, 8e-3);
+  EXPECT_FALSE(set.isSpoiledBy(set.points[6], *map));
+  EXPECT_TRUE(set.isSpoiledBy(beside, *map));
+  set.pattern = Technique::C;
+  EXPECT_FALSE(set.isSpoiledBy(beside, *map)) << "it was spoiled already";
+  EXPECT_FALSE(SetInHand{}.isSpoiledBy(beside, *map)) << "a bite of its own";
 }
 
 /// Steps for a motion under a force [N]; -1: stopped.

@@ -83,6 +83,7 @@ TEST(Protocol, ASleeveIsARowOfSets) {
   for (int k = 0; k < 3; ++k) {
     const SutureSetGoal set = std::get<SutureSetGoal>(protocol.goals[k]);
     EXPECT_NEAR(set.centre.along, along[k], 1e-12);
+    EXPECT_NEAR(set.spacing, 0.2, 1e-12);
     EXPECT_EQ(set.bites, 5);
   }
 }

@@ -52,6 +52,7 @@ struct SutureSetGoal {
   double width = 60e-3;   ///< and around it [m]
   bool mirrored = false;  ///< begins on the posterior instead of the anterior side
   bool cinched = true;    ///< ends with T-tag and cinch
+  double spacing = 0;     ///< of the sets of its row, as Place::along; leaves less `length`; 0: it is alone [1]
 };
 
 struct CinchGoal {};
