@@ -151,7 +151,9 @@ GoalResult BiteAttempt::closeArm() {
     const bool deep =
         pierced->particle >= 0 && pierced->value >= share * me_.model().organ.thickness[pierced->particle];
     result.reason = "the needle went through a part of the wall only";
-    if (deep || !me_.skill().checks_depth) result = exchange();
+    const std::optional<GoalResult> beside = judgePlace();  // folds slip past the needle as the arm closes
+    if (beside) result = *beside;
+    if (!beside && (deep || !me_.skill().checks_depth)) result = exchange();
   }
   hand_.move(NeedleDriver, 0.0, 0.3);
   settle();

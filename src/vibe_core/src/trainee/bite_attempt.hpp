@@ -46,6 +46,7 @@ class BiteAttempt {
   void learn(const NeedleView& needle);
   GoalResult failedBy(double miss, const std::string& reason);
   std::optional<GoalResult> judgeView();
+  std::optional<GoalResult> judgePlace();
   GoalResult closeArm();
   GoalResult exchange();
   void letGo();

@@ -128,18 +128,27 @@ GoalResult BiteAttempt::failedBy(double miss, const std::string& reason) {
   return {false, reason};
 }
 
-// What is seen before the arm closes; empty: all is well.
-std::optional<GoalResult> BiteAttempt::judgeView() {
-  if (!me_.view().grips) return failedBy(kBlocked, "the helix slipped");
+// Where the needle passes as it is seen now; empty: near enough to its target.
+std::optional<GoalResult> BiteAttempt::judgePlace() {
   const std::optional<NeedleView> needle = look();
-  if (!needle) return failedBy(kBlocked, "no tissue is before the needle");
-  learn(*needle);
+  if (!needle) return {};
   me_.tries.needle = needle->where;
   if (!me_.skill().checks_depth) return {};
   if (missOf(*needle) > acceptedMiss())
     return failedBy(missOf(*needle), "the needle would pass " + millimetres(missOf(*needle)) + " beside its target");
   if (!last_ && me_.set.isSpoiledBy(needle->where, *me_.seen_map))
     return failedBy(missOf(*needle), "the bites would not form the pattern");
+  return {};
+}
+
+// What is seen before the arm closes; empty: all is well.
+std::optional<GoalResult> BiteAttempt::judgeView() {
+  if (!me_.view().grips) return failedBy(kBlocked, "the helix slipped");
+  const std::optional<NeedleView> needle = look();
+  if (!needle) return failedBy(kBlocked, "no tissue is before the needle");
+  learn(*needle);
+  if (const std::optional<GoalResult> bad = judgePlace()) return bad;
+  if (!me_.skill().checks_depth) return {};
   if (needle->depth < (last_ ? kHolds : kThrough) * needle->thickness)
     return failedBy(kOnTarget, "the needle would go through a part of the wall only");
   return {};
