@@ -120,7 +120,7 @@ def organs_in_a_sentence(store):
     text += f"{span(of('sets_as_planned'), whole)} of {PLANNED_SETS} sets as planned, "
     text += f"{span(of('bites'), whole)} of {PLANNED_BITES} bites taken, {whole(sum(of('tear_outs')))} torn out in all"
     text += f", {digits(max(of('max_force')))} N at most ([table](docs/protocols.md#on-other-organs))."
-    return sentence(text), [("", row) for row in rows]
+    return sentence(text), [(f"`{row['part']}`", row) for row in rows]
 
 
 @made_from("organs")
