@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -17,7 +16,6 @@ namespace {
 
 // Distance along the surface within which it counts as one wall, in thicknesses: about a half circle of diameter t.
 constexpr double kOneWallThicknesses = 1.6;
-constexpr float kFacingCosine = 0.3F;   // of the normals of walls in contact: the next wall along a line faces this one
 constexpr double kSoftness = 0.1;       // modulus of the contact, relative to that of the wall
 constexpr double kStraightBelow = 0.2;  // fraction of the thickness below which the energy is extended linearly
 // Coulomb friction of mucosa on mucosa: the upper end of 0.007 to 0.054, measured with a sled on the lumen of small
@@ -26,21 +24,10 @@ constexpr double kFriction = 0.05;
 // Speed of sliding from which friction is that of Coulomb; below it is viscous, as of a film of mucus. Design choice: a
 // tenth of the usual speed of folds that are drawn together [m/s].
 constexpr double kSlidingSpeed = 5e-3;
-// Stretch of an edge in a step because one of its nodes stops earlier than the other on its path. Design choice: a
-// tenth, which a step can resolve [1].
-constexpr double kStretchByStop = 0.1;
-constexpr double kFewer = 1e-3;  // part of it that is not worth another change
-constexpr int kSweeps = 100;     // over the triangles, while stops spread
-// Searches of fast paths until all moves are given up, and those before nodes that still collide are stopped in place.
-constexpr int kSearches = 20, kPatience = 4;
 // Motion of a node until the next search around it, in thicknesses. Design choice: small enough that what is found is
 // little more than what is near, large enough that slow nodes need few searches.
 constexpr double kSlack = 0.3;
-// How much farther than the nearest triangle others share its contact, in thicknesses. Design choice: far below the
-// distance itself, far above what a step moves a wall that rests [1].
-constexpr double kSharing = 0.1;
-constexpr double kSame = 1 - 1e-9;  // ratio of two distances that are the same but for rounding
-constexpr double kFloor = 0.05;     // minimum distance of walls, in thicknesses
+constexpr double kFloor = 0.05;  // minimum distance of walls, in thicknesses
 // Thickness of two half walls whose mucosa is squeezed flat, over that of the wall. Design choice: far below what
 // usual pressures leave, far above the minimum distance [1].
 constexpr double kCore = 0.3;
@@ -133,24 +120,6 @@ double SelfContact::searchDistance() const {
   return std::max((1 + kContactOnset) * max_thickness_ + reach_, close_distance_);
 }
 
-double SelfContact::meanThickness(int vertex, int triangle) const {
-  const auto& n = rest_.triangles[triangle];
-  return 0.5 * (thickness_[vertex] + (thickness_[n[0]] + thickness_[n[1]] + thickness_[n[2]]) / 3);
-}
-
-// Twice the area, along the normal [m^2].
-Eigen::Vector3d SelfContact::areaVector(int triangle) const {
-  const auto& n = rest_.triangles[triangle];
-  const Eigen::Vector3d a = memory_->at(n[0]);
-  return (memory_->at(n[1]) - a).cross(memory_->at(n[2]) - a);
-}
-
-// 1 where the angle between two area vectors is more than a right angle, 0 where they do not face each other.
-double SelfContact::facing(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
-  const double size = std::sqrt(one.squaredNorm() * other.squaredNorm());
-  return size > 0 ? std::clamp(1 - one.dot(other) / (kFacingCosine * size), 0.0, 1.0) : 0;
-}
-
 void SelfContact::addPairs() {
   const std::vector<SelfContactSearch::Near>& near = memory_->search.near();
   memory_->facing.clear();
@@ -163,104 +132,6 @@ void SelfContact::addPairs() {
     addPairsOf(vertex);
     collectFacing(vertex);
   }
-}
-
-// The triangles of a part of the list of what is near that may be as near as was asked for and face the vertex.
-void SelfContact::collectApproaches(int vertex, std::size_t first, std::size_t next) {
-  SelfContactMemory& m = *memory_;
-  m.approaches.clear();
-  const Eigen::Vector3d p = m.at(vertex);
-  Eigen::Vector3d own = Eigen::Vector3d::Zero();
-  m.search.rings().visit(vertex, [&](int t) { own += areaVector(t); });
-  const double farthest = searchDistance();
-  for (std::size_t k = first; k < next; ++k) {
-    const SelfContactSearch::Near& near = m.search.near()[k];
-    if (m.search.leastDistance(near) > farthest) continue;
-    const double faces = facing(own, areaVector(near.triangle));
-    if (faces == 0) continue;
-    const auto& n = rest_.triangles[near.triangle];
-    const TriangleFoot foot = triangleFoot(p, m.at(n[0]), m.at(n[1]), m.at(n[2]));
-    m.approaches.push_back({near.triangle, foot.away, foot.away.norm(), foot.weight, faces, 0});
-  }
-}
-
-// Whether contact of a vertex may act there in the step.
-bool SelfContact::isInReach(int vertex, const WallApproach& approach) const {
-  return approach.distance < (1 + kContactOnset) * meanThickness(vertex, approach.triangle) + reach_;
-}
-
-// The nearest triangles, and the nearest on the opposite side.
-void SelfContact::addPairsOf(int vertex) {
-  const WallApproach* first = nullptr;
-  for (int side = 0; side < 2; ++side) {
-    const WallApproach* nearest = nullptr;
-    for (const WallApproach& one : memory_->approaches) {
-      if (nearest != nullptr && one.distance >= nearest->distance) continue;
-      if (side == 1 && one.away.dot(first->away) >= 0) continue;
-      if (isInReach(vertex, one)) nearest = &one;
-    }
-    if (nearest == nullptr) return;
-    if (side == 0) first = nearest;
-    addSharing(vertex, *nearest);
-  }
-}
-
-// In a valley two triangles may be equally near. If the nearest one alone acted, it would push the vertex to where the
-// other one is nearer, and the step after it back: places that are nearly as near share. The more their directions
-// differ, the less they share; at a right angle each acts as if it were alone.
-void SelfContact::addSharing(int vertex, const WallApproach& nearest) {
-  SelfContactMemory& m = *memory_;
-  const double spread = kSharing * thickness_[vertex];
-  m.sharing.clear();
-  for (WallApproach& one : m.approaches) {
-    const double farther = alike(one, nearest) * (one.distance - nearest.distance) / spread;
-    if (!(farther < 1) || one.away.dot(nearest.away) < 0 || !isInReach(vertex, one) || !isPlace(one)) continue;
-    one.share = (1 - farther) * (1 - farther);
-    m.sharing.push_back(&one);
-  }
-  for (WallApproach* one : m.sharing) one->share *= partBesides(*one);
-  for (const WallApproach* one : m.sharing) {
-    double sum = 0;
-    for (const WallApproach* other : m.sharing) sum += other->share * alike(*one, *other);
-    if (sum > 0) addPair(vertex, one->triangle, one->faces * one->share / sum);
-  }
-}
-
-// Cosine between the directions, 0 beyond a right angle.
-double SelfContact::alike(const WallApproach& one, const WallApproach& other) {
-  const double size = one.distance * other.distance;
-  return size > 0 ? std::clamp(one.away.dot(other.away) / size, 0.0, 1.0) : 1;
-}
-
-// Whether no triangle beside it is nearer; of feet at one place the first counts.
-bool SelfContact::isPlace(const WallApproach& approach) const {
-  if ((approach.weight.array() > 0).all()) return true;
-  for (const WallApproach& other : memory_->approaches) {
-    if (&other == &approach) continue;
-    bool has_foot = true;
-    for (Eigen::Index k = 0; k < 3; ++k)
-      if (approach.weight[k] > 0)
-        has_foot = has_foot && hasVertex(rest_.triangles[other.triangle], rest_.triangles[approach.triangle][k]);
-    if (has_foot && (other.distance < kSame * approach.distance ||
-                     (kSame * other.distance < approach.distance && &other < &approach)))
-      return false;
-  }
-  return true;
-}
-
-// How far a foot is from the triangles beside it that share, over the height of its own: there it goes over into
-// theirs.
-double SelfContact::partBesides(const WallApproach& approach) const {
-  const auto& n = rest_.triangles[approach.triangle];
-  double least = 1;
-  for (const WallApproach* other : memory_->sharing)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto& t = rest_.triangles[other->triangle];
-      const bool beside = other != &approach && hasVertex(t, n[(k + 1) % 3]) && hasVertex(t, n[(k + 2) % 3]);
-      const double height = approach.weight[static_cast<Eigen::Index>(k)];
-      if (beside && height > 0) least = std::min(least, height);
-    }
-  return least;
 }
 
 void SelfContact::addPair(int vertex, int triangle, double facing) {
@@ -276,14 +147,6 @@ void SelfContact::addPair(int vertex, int triangle, double facing) {
   pair.straight_below = kStraightBelow;
   pair.stiffness = 0.5 * facing * area_[vertex] * stiffness_ * pair.thickness;
   finish(pair);
-}
-
-// The triangles that a vertex faces: where walls are close, one of the vertices there is not far.
-void SelfContact::collectFacing(int vertex) {
-  SelfContactMemory& m = *memory_;
-  for (const WallApproach& one : m.approaches) {
-    if (one.distance < close_distance_) m.facing.push_back({vertex, one.triangle});
-  }
 }
 
 void SelfContact::addClosePairs() {
@@ -376,85 +239,6 @@ Eigen::Vector3d SelfContact::awayAt(const Pair& pair, const double* positions4) 
 Eigen::Vector3d SelfContact::slidSince(const Pair& pair, const Eigen::Vector3d& away) {
   const Eigen::Vector3d change = away - pair.away;
   return change - pair.normal.dot(change) * pair.normal;
-}
-
-const std::vector<int>& SelfContact::resolvePenetrations(const MotionView& motion, double step) {
-  stopped_.clear();
-  SelfContactMemory& m = *memory_;
-  if (!startPaths(motion) || !shortenPaths()) return stopped_;
-  for (std::size_t i = 0; i < m.position.size(); ++i) {
-    if (m.move[i] == m.whole[i]) continue;
-    stop(motion, static_cast<int>(i), m.position[i] + m.move[i], step);
-    stopped_.push_back(static_cast<int>(i));
-  }
-  return stopped_;
-}
-
-// Finds the pairs of triangles that may meet, and sets positions and moves if there are some.
-// @returns false if nothing can meet, or the paths are not finite
-bool SelfContact::startPaths(const MotionView& motion) {
-  SelfContactMemory& m = *memory_;
-  const std::array<const double*, 3> end{motion.x[0], motion.x[1], motion.x[2]};
-  found_ = found_ && m.search.adapt(SelfContactMemory::view(m.start), end, searchDistance());
-  if (!found_ || m.search.meetings().empty()) return false;
-  for (std::size_t i = 0; i < m.position.size(); ++i) {
-    m.position[i] = m.at(static_cast<int>(i));
-    m.whole[i] = Eigen::Vector3d(end[0][i], end[1][i], end[2][i]) - m.position[i];
-    m.move[i] = m.whole[i];
-  }
-  return true;
-}
-
-// Paths that become shorter by different parts may meet others: they are searched again until nothing changes.
-// @returns whether any was shortened
-bool SelfContact::shortenPaths() {
-  SelfContactMemory& m = *memory_;
-  for (int search = 0; search < kSearches; ++search) {
-    if (!m.paths.shorten(m.position, m.search.meetings(), search >= kPatience, m.move)) return search > 0;
-    spreadStops();
-    for (std::size_t i = 0; i < m.move.size(); ++i)
-      for (std::size_t k = 0; k < 3; ++k) m.end[k][i] = m.position[i][k] + m.move[i][k];
-    m.search.adapt(SelfContactMemory::view(m.start), SelfContactMemory::view(m.end), searchDistance());
-  }
-  std::fill(m.move.begin(), m.move.end(), Eigen::Vector3d::Zero());
-  return true;
-}
-
-// Nodes around one that stops slow down, so that its triangles are not torn apart.
-void SelfContact::spreadStops() {
-  SelfContactMemory& m = *memory_;
-  for (std::size_t i = 0; i < m.move.size(); ++i) {
-    const double whole2 = m.whole[i].squaredNorm();
-    m.part[i] = whole2 > 0 ? m.move[i].dot(m.whole[i]) / whole2 : 1;
-    m.length[i] = std::sqrt(whole2);
-  }
-  bool changed = true;
-  for (int sweep = 0; sweep < kSweeps && changed; ++sweep) {
-    changed = false;
-    for (const auto& n : rest_.triangles)
-      for (int k = 0; k < 3; ++k) {
-        int slow = n[k], fast = n[(k + 1) % 3];
-        if (m.part[slow] > m.part[fast]) std::swap(slow, fast);
-        const double late = m.length[fast] * (m.part[fast] - m.part[slow]);
-        const double allowed = kStretchByStop * (m.position[fast] - m.position[slow]).norm();
-        if (late <= allowed * (1 + kFewer)) continue;
-        m.part[fast] = m.part[slow] + allowed / m.length[fast];
-        m.move[fast] = m.part[fast] * m.whole[fast];
-        changed = true;
-      }
-  }
-}
-
-void SelfContact::stop(const MotionView& motion, int node, const Eigen::Vector3d& end, double step) const {
-  double before2 = 0;
-  const Eigen::Vector3d speed = (end - memory_->at(node)) / step;
-  for (int k = 0; k < 3; ++k) before2 += motion.v[k][node] * motion.v[k][node];
-  const double part = std::min(1.0, std::sqrt(before2 / std::max(speed.squaredNorm(), before2 * 1e-12)));
-  for (int k = 0; k < 3; ++k) {
-    motion.x[k][node] = end[k];
-    motion.v[k][node] = before2 > 0 ? part * speed[k] : 0;
-    motion.a[k][node] = 0;
-  }
 }
 
 }  // namespace vibe

@@ -126,6 +126,7 @@ class SelfContact : public EnergyTerm {
   double searchDistance() const;
   double meanThickness(int vertex, int triangle) const;
   Eigen::Vector3d areaVector(int triangle) const;
+  Eigen::Vector3d ringVector(int vertex) const;
   static double facing(const Eigen::Vector3d& one, const Eigen::Vector3d& other);
   bool startPaths(const MotionView& motion);
   bool shortenPaths();

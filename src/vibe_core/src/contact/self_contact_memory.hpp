@@ -15,6 +15,8 @@
 namespace vibe {
 
 constexpr double kContactOnset = 0.25;  ///< strain over which contact of walls sets in [1]
+/// Cosine between normals of walls in contact, at most: the next wall along a line faces this one [1].
+constexpr float kFacingCosine = 0.3F;
 
 /// Of a wall that is squeezed to s of its thickness, per A E' t / 2.
 struct Squeeze {

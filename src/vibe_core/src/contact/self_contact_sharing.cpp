@@ -1,0 +1,152 @@
+// Which places of other walls act on a vertex, and with which share.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "contact/self_contact.hpp"
+#include "contact/self_contact_distance.hpp"
+#include "contact/self_contact_memory.hpp"
+
+namespace vibe {
+
+namespace {
+
+// How much farther than the nearest triangle others share its contact, in thicknesses. Design choice: far below the
+// distance itself, far above what a step moves a wall that rests [1].
+constexpr double kSharing = 0.1;
+constexpr double kSame = 1 - 1e-9;  // ratio of two distances that are the same but for rounding
+
+}  // namespace
+
+double SelfContact::meanThickness(int vertex, int triangle) const {
+  const auto& n = rest_.triangles[triangle];
+  return 0.5 * (thickness_[vertex] + (thickness_[n[0]] + thickness_[n[1]] + thickness_[n[2]]) / 3);
+}
+
+// Twice the area, along the normal [m^2].
+Eigen::Vector3d SelfContact::areaVector(int triangle) const {
+  const auto& n = rest_.triangles[triangle];
+  const Eigen::Vector3d a = memory_->at(n[0]);
+  return (memory_->at(n[1]) - a).cross(memory_->at(n[2]) - a);
+}
+
+// Their sum around a vertex [m^2].
+Eigen::Vector3d SelfContact::ringVector(int vertex) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  memory_->search.rings().visit(vertex, [&](int t) { sum += areaVector(t); });
+  return sum;
+}
+
+// 1 where the angle between two area vectors is more than a right angle, 0 where they do not face each other.
+double SelfContact::facing(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
+  const double size = std::sqrt(one.squaredNorm() * other.squaredNorm());
+  return size > 0 ? std::clamp(1 - one.dot(other) / (kFacingCosine * size), 0.0, 1.0) : 0;
+}
+
+// The triangles of a part of the list of what is near that may be as near as was asked for and face the vertex.
+void SelfContact::collectApproaches(int vertex, std::size_t first, std::size_t next) {
+  SelfContactMemory& m = *memory_;
+  m.approaches.clear();
+  const Eigen::Vector3d p = m.at(vertex);
+  const double farthest = searchDistance();
+  std::optional<Eigen::Vector3d> own;
+  for (std::size_t k = first; k < next; ++k) {
+    const SelfContactSearch::Near& near = m.search.near()[k];
+    if (m.search.leastDistance(near) > farthest) continue;
+    if (!own) own = ringVector(vertex);
+    const double faces = facing(*own, areaVector(near.triangle));
+    if (faces == 0) continue;
+    const auto& n = rest_.triangles[near.triangle];
+    const TriangleFoot foot = triangleFoot(p, m.at(n[0]), m.at(n[1]), m.at(n[2]));
+    m.approaches.push_back({near.triangle, foot.away, foot.away.norm(), foot.weight, faces, 0});
+  }
+}
+
+// Whether contact of a vertex may act there in the step.
+bool SelfContact::isInReach(int vertex, const WallApproach& approach) const {
+  return approach.distance < (1 + kContactOnset) * meanThickness(vertex, approach.triangle) + reach_;
+}
+
+// The nearest triangles, and the nearest on the opposite side.
+void SelfContact::addPairsOf(int vertex) {
+  const WallApproach* first = nullptr;
+  for (int side = 0; side < 2; ++side) {
+    const WallApproach* nearest = nullptr;
+    for (const WallApproach& one : memory_->approaches) {
+      if (nearest != nullptr && one.distance >= nearest->distance) continue;
+      if (side == 1 && one.away.dot(first->away) >= 0) continue;
+      if (isInReach(vertex, one)) nearest = &one;
+    }
+    if (nearest == nullptr) return;
+    if (side == 0) first = nearest;
+    addSharing(vertex, *nearest);
+  }
+}
+
+// In a valley two triangles may be equally near. If the nearest one alone acted, it would push the vertex to where the
+// other one is nearer, and the step after it back: places that are nearly as near share. The more their directions
+// differ, the less they share; at a right angle each acts as if it were alone.
+void SelfContact::addSharing(int vertex, const WallApproach& nearest) {
+  SelfContactMemory& m = *memory_;
+  const double spread = kSharing * thickness_[vertex];
+  m.sharing.clear();
+  for (WallApproach& one : m.approaches) {
+    const double farther = alike(one, nearest) * (one.distance - nearest.distance) / spread;
+    if (!(farther < 1) || one.away.dot(nearest.away) < 0 || !isInReach(vertex, one) || !isPlace(one)) continue;
+    one.share = (1 - farther) * (1 - farther);
+    m.sharing.push_back(&one);
+  }
+  for (WallApproach* one : m.sharing) one->share *= partBesides(*one);
+  for (const WallApproach* one : m.sharing) {
+    double sum = 0;
+    for (const WallApproach* other : m.sharing) sum += other->share * alike(*one, *other);
+    if (sum > 0) addPair(vertex, one->triangle, one->faces * one->share / sum);
+  }
+}
+
+// Cosine between the directions, 0 beyond a right angle.
+double SelfContact::alike(const WallApproach& one, const WallApproach& other) {
+  const double size = one.distance * other.distance;
+  return size > 0 ? std::clamp(one.away.dot(other.away) / size, 0.0, 1.0) : 1;
+}
+
+// Whether no triangle beside it is nearer; of feet at one place the first counts.
+bool SelfContact::isPlace(const WallApproach& approach) const {
+  if ((approach.weight.array() > 0).all()) return true;
+  for (const WallApproach& other : memory_->approaches) {
+    if (&other == &approach) continue;
+    bool has_foot = true;
+    for (Eigen::Index k = 0; k < 3; ++k)
+      if (approach.weight[k] > 0)
+        has_foot = has_foot && hasVertex(rest_.triangles[other.triangle], rest_.triangles[approach.triangle][k]);
+    if (has_foot && (other.distance < kSame * approach.distance ||
+                     (kSame * other.distance < approach.distance && &other < &approach)))
+      return false;
+  }
+  return true;
+}
+
+// How far a foot is from the triangles beside it that share, over the height of its own: there it goes over into
+// theirs.
+double SelfContact::partBesides(const WallApproach& approach) const {
+  const auto& n = rest_.triangles[approach.triangle];
+  double least = 1;
+  for (const WallApproach* other : memory_->sharing)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& t = rest_.triangles[other->triangle];
+      const bool beside = other != &approach && hasVertex(t, n[(k + 1) % 3]) && hasVertex(t, n[(k + 2) % 3]);
+      const double height = approach.weight[static_cast<Eigen::Index>(k)];
+      if (beside && height > 0) least = std::min(least, height);
+    }
+  return least;
+}
+
+// The triangles that a vertex faces: where walls are close, one of the vertices there is not far.
+void SelfContact::collectFacing(int vertex) {
+  SelfContactMemory& m = *memory_;
+  for (const WallApproach& one : m.approaches) {
+    if (one.distance < close_distance_) m.facing.push_back({vertex, one.triangle});
+  }
+}
+
+}  // namespace vibe
