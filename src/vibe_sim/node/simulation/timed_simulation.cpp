@@ -8,6 +8,7 @@ namespace {
 
 SimulationSettings makeSettings(std::uint64_t seed, int threads) {
   SimulationSettings settings;
+  settings.stages = true;
   settings.seed = seed;
   settings.threads = threads;
   return settings;

@@ -8,6 +8,7 @@
 #include <ros/console.h>
 
 #include "conversions/conversions.hpp"
+#include "conversions/timing_message.hpp"
 #include "vibe_core/common/files.hpp"
 #include "vibe_node/startup.hpp"
 #include "vibe_node/wall_clock.hpp"
@@ -227,6 +228,7 @@ void SimulationThread::endTiming() {
   if (!publishers_.hasTimingListener()) return;
   timing_.header.stamp = toRosTime(simulation_.now());
   timing_.published = toRosTime(node::wallTime());
+  setWork(simulation_.simulation().report(), timing_);
   publishers_.stepTiming(timing_);
 }
 

@@ -92,6 +92,17 @@ class TimingTest(unittest.TestCase):
         self.assertEqual(steps, list(range(steps[0], steps[0] + len(steps))))
         self.assertTrue(wait_until(lambda: len(set(self.pose.stamps()) & set(self.timing.stamps())) > 50))
 
+    def test_stages_add_up_to_the_time_of_the_step(self):
+        self.start()
+        for message in self.timing.messages[10:]:
+            stages = [getattr(message, name) for name in message.__slots__ if name.startswith("stage_")]
+            self.assertEqual(len(stages), 8)
+            self.assertGreater(message.stage_energy, 0)
+            self.assertTrue(all(s >= 0 for s in stages), stages)
+            # of the thread's CPU, and so no more than the wall time around it
+            self.assertLess(sum(stages), 1e-9 * (ns(message.solved) - ns(message.begin)) + 1e-4)
+            self.assertGreaterEqual(message.evaluations, message.iterations)
+
     def test_steps_that_follow_begin_when_a_sample_arrives(self):
         self.start(follow="scope/measured_js")
         device = self.device_after_steps()
