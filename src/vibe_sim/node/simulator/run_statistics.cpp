@@ -65,6 +65,7 @@ vibe_msgs::SolverStatistics RunStatistics::message(const TimedSimulation& simula
   message.particle_count = static_cast<std::uint32_t>(simulation.model().particle_count);
   message.active_count = static_cast<std::uint32_t>(
       std::count_if(inverse_mass.begin(), inverse_mass.end(), [](double w) { return w > 0; }));
+  message.session = simulation.session();
   message.contact_count = static_cast<std::uint32_t>(simulation.state().contact_count);
   return message;
 }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <random>
 
 #include <ros/console.h>
 
@@ -25,6 +26,14 @@ constexpr double kLagReportPeriodMax = 60;         // [s]
 constexpr std::chrono::milliseconds kIdle(40);
 constexpr std::chrono::microseconds kSamplePoll(200);
 
+// In the order of starts: milliseconds since 1970, and 20 random bits, since two simulators may start in the same
+// instant.
+std::uint64_t drawSession() {
+  constexpr int kRandomBits = 20;
+  const auto milliseconds = static_cast<std::uint64_t>(node::wallTime() / 1'000'000);
+  return (milliseconds << kRandomBits) | (std::random_device()() & ((1U << kRandomBits) - 1));
+}
+
 std::int64_t startOrigin(const Parameters& parameters) {
   return parameters.time_source == TimeSource::Sim ? kEpoch : node::wallTime();
 }
@@ -40,6 +49,7 @@ SimulationThread::SimulationThread(const Parameters& parameters, const SceneMode
       pace_(simulation_, parameters.time_source),
       last_step_(stepsIn(parameters.duration, made.model->scene.step_period)) {
   status_.paused = parameters.start_paused;
+  simulation_.setSession(drawSession());
 }
 
 SimulationThread::~SimulationThread() {

@@ -102,12 +102,12 @@ def thinned_of(recording):
 
 def warnings_of(recording):
     """Sentences: what is wrong with the recording, then what the simulator said, each once with its number of times."""
-    found = [recording.cut_reason] if recording.cut_reason else []
+    found = [sentence for sentence in (recording.remark, recording.cut_reason) if sentence]
     dropped = dropped_of(recording)
     if dropped["missing_steps"]:
         found.append(
-            "{missing_steps} steps are missing in {gaps} gaps of applied_input: the session cannot be "
-            "replayed.".format(**dropped)
+            "{missing_steps} steps are missing in {gaps} gaps of applied_input: the session can be replayed up to the "
+            "first gap, and again from the snapshot after each.".format(**dropped)
         )
     if dropped["restarts"]:
         found.append(
@@ -116,7 +116,10 @@ def warnings_of(recording):
             )
         )
     if dropped["first_step"] > 0:
-        found.append("The recording begins at step {first_step}: it began late, or from a snapshot.".format(**dropped))
+        found.append(
+            "The recording begins at step {first_step}: the recorder may have begun late, the file may be a part of another, "
+            "or the session began from a snapshot.".format(**dropped)
+        )
     if recording.skill is None:
         found.append("There is no procedure/skill_metrics: the measures are not known.")
     said = {}
