@@ -27,6 +27,8 @@ constexpr double kHapticRate = 100;                       // of haptic/parameter
 constexpr std::int64_t kSnapshotPeriod = 10'000'000'000;  // of simulated time [ns]
 constexpr std::int64_t kProcedurePeriod = 1'000'000'000;  // of procedure and sutures when nothing happens [ns]
 
+constexpr std::int64_t kSameTime = 1000;                  // stamps that count as equal [ns]
+
 constexpr std::uint32_t kCloudQueue = 600;  // of large clouds, as many as fit into some 60 MB
 
 int hapticInterval(double step_period) {
@@ -65,11 +67,15 @@ void ArmPublishers::place(const TimedSimulation& simulation, bool continues, std
 
 void ArmPublishers::operatingState(const TimedSimulation& simulation, const RunStatus& status) {
   const bool present = simulation.model().tool != nullptr;
-  const auto scope = makeOperatingState(present, status.paused, status.scope_moves, simulation.now());
-  const auto overstitch = makeOperatingState(present, status.paused, status.overstitch_moves, simulation.now());
+  // CRTK clients take a state only if its stamp is later than the last one, also of a simulation that stands still
+  const std::int64_t since = simulation.now() - last_state_stamp_;
+  const std::int64_t stamp = since <= 0 && since > -kSameTime ? last_state_stamp_ + 1 : simulation.now();
+  const auto scope = makeOperatingState(present, status.paused, status.scope_moves, stamp);
+  const auto overstitch = makeOperatingState(present, status.paused, status.overstitch_moves, stamp);
   const std::string state = scope.state + (scope.is_busy ? " scope" : "") + (overstitch.is_busy ? " overstitch" : "");
   if (state == last_state_) return;
   last_state_ = state;
+  last_state_stamp_ = stamp;
   scope_state_.publish(scope);
   overstitch_state_.publish(overstitch);
 }

@@ -34,6 +34,7 @@ class ArmPublishers {
   Outlet scope_, overstitch_, jacobian_, wall_, scope_state_, overstitch_state_;
   JointArray last_joints_{};
   std::string last_state_;  // of both, to see a change
+  std::int64_t last_state_stamp_ = 0;
 };
 
 /// Between warnings about the same [s].

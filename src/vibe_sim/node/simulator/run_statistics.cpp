@@ -21,6 +21,12 @@ double ratio(double simulated, double wall) {
 
 }  // namespace
 
+const char* lagRemedy(double usual, double longest, double period) {
+  if (usual >= period) return "use fewer particles or substeps";
+  if (longest >= period) return "single steps are long; if that comes often, use fewer particles or substeps";
+  return "no step was too long, so the machine may be busy with something else; stop other programs";
+}
+
 void RunStatistics::begin(TimedSimulation& simulation) {
   begin_ = steadyTime();
   startWindow(simulation);

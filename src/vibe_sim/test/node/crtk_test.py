@@ -173,7 +173,13 @@ class CrtkTest(unittest.TestCase):
         self.assertTrue(self.state.waits_for(lambda m: m.state == "ENABLED"))
         command.publish(StateCommand(string="pause"))
         self.assertTrue(self.state.waits_for(lambda m: m.state == "PAUSED"))
-        self.assertEqual([m.state for m in self.state.messages], ["ENABLED", "PAUSED"])
+        command.publish(StateCommand(string="enable"))
+        self.assertTrue(wait_until(lambda: self.state.messages[-1].state == "ENABLED"))
+        command.publish(StateCommand(string="pause"))
+        self.assertTrue(wait_until(lambda: len(self.state.messages) == 4))
+        self.assertEqual([m.state for m in self.state.messages], ["ENABLED", "PAUSED"] * 2)
+        stamps = self.state.stamps()
+        self.assertEqual(stamps, sorted(set(stamps)), "a client takes a state only if its stamp is later")
 
     def test_another_command_ends_a_move(self):
         self.send("scope/move_jp", [0.05, 0, 0, 0])
