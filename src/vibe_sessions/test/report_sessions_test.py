@@ -101,6 +101,22 @@ class SessionsTest(unittest.TestCase):
         self.path = copy
         self.assertIn("messages of several sessions in '/' in turns", self.problem_of())
 
+    def test_a_recording_that_was_merged_with_a_part_of_itself(self):
+        self.write({"identity": FIRST})
+        copy = os.path.join(self.folder, "copy.bag")
+        with rosbag.Bag(copy, "w") as target:
+            for begin, end in ((1.4, 9), (0, 1.6)):
+                with rosbag.Bag(self.path) as source:
+                    for topic, message, stamp in source.read_messages():
+                        if begin <= stamp.to_sec() < end:
+                            target.write(topic, message, stamp)
+        recording = read_recording(copy)
+        self.assertEqual(list(recording.steps), list(range(60)))
+        self.assertAlmostEqual(recording.duration(), 1.0, places=6)
+        said = " ".join(warnings_of(recording))
+        self.assertIn("12 steps are in the recording twice", said)
+        self.assertNotIn("reset", said)
+
     def test_parts_in_time(self):
         self.write({"identity": FIRST, "origin": 1e9}, {"identity": SECOND, "origin": 1e9 + 20})
         copy = os.path.join(self.folder, "copy.bag")

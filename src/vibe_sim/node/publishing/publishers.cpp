@@ -27,7 +27,7 @@ constexpr double kHapticRate = 100;                       // of haptic/parameter
 constexpr std::int64_t kSnapshotPeriod = 10'000'000'000;  // of simulated time [ns]
 constexpr std::int64_t kProcedurePeriod = 1'000'000'000;  // of procedure and sutures when nothing happens [ns]
 
-constexpr std::int64_t kSameTime = 1000;                  // stamps that count as equal [ns]
+constexpr std::int64_t kSameTime = 1000;  // stamps that count as equal [ns]
 
 constexpr std::uint32_t kCloudQueue = 600;  // of large clouds, as many as fit into some 60 MB
 

@@ -159,9 +159,11 @@ bool SessionReader::mayBegin(const RawSession& raw, const RecordedStep& step) co
 }
 
 void SessionReader::refuseTwice(const RecordedStep& step) const {
-  throw Error("Recording '" + name_ + "' has " + placeOf(step) +
-              " twice, with different content: inputs were edited, or two sessions without identities (of a release " +
-              "that had none) overlap in time; give a recording of one session as it was recorded.");
+  throw Error("Recording '" + name_ + "' has " + placeOf(step) + " twice, with different content: " +
+              (step.session != 0 ? "one of them may have been edited"
+                                 : "one of them may have been edited, or two sessions without identities, of an older "
+                                   "release, overlap in time") +
+              "; give a recording of one session as it was recorded.");
 }
 
 // What belongs to the steps: snapshots by their stamps, and of each run the information that was sent before it.

@@ -152,6 +152,12 @@ void Recording::takeRuns() {
     takeRun(run);
   }
   if (runs_.empty()) refuseWithoutBegin(snapshots);
+  if (gaps_.steps > 0)
+    lose("applied_input lacks " + countOf(gaps_.steps) + " in " + std::to_string(gaps_.places) +
+         (gaps_.places == 1 ? " place" : " places") + ", first after " + gaps_.first);
+  if (unreachable_.steps > 0)
+    lose("there is no snapshot from which " + countOf(unreachable_.steps) + " could be repeated, first " +
+         unreachable_.first);
 }
 
 // A bag is read in the order of its times, and these go back where a reset sets the clock back.
@@ -166,9 +172,7 @@ void Recording::takeRun(RecordedRun& run) {
     auto end = begin + 1;
     while (end != run.steps.end() && end->step == (end - 1)->step + 1) ++end;
     takePiece(run, {begin, end}, is_first);
-    if (end != run.steps.end())
-      lose("applied_input has a gap of " + countOf(end->step - (end - 1)->step - 1) + " after " +
-           placeIn(run, (end - 1)->step));
+    if (end != run.steps.end()) gaps_.add(end->step - (end - 1)->step - 1, placeIn(run, (end - 1)->step));
     begin = end;
   }
 }
@@ -182,8 +186,7 @@ void Recording::takePiece(const RecordedRun& run, std::vector<RecordedStep> step
   if (is_first) {
     left_out_ += before;
   } else if (before > 0) {
-    lose("there is no snapshot from which " + countOf(before) + " from " + placeIn(run, steps.front().step) +
-         " on could be repeated");
+    unreachable_.add(before, placeIn(run, steps.front().step));
   }
   steps.erase(steps.begin(), start);
   if (steps.empty()) return;
@@ -202,8 +205,9 @@ void Recording::refuseWithoutInputs() const {
   if (!ours.empty())
     refuse("has no topic applied_input with steps, which a replay repeats, but " + firstOf(ours) +
            "; if topics were chosen, keep applied_input, scene, session_info and snapshot");
-  refuse("is not of this simulator: it has no topic applied_input, but " +
-         (others.empty() ? "no message at all" : "only " + firstOf(others)) + "; record with scripts/record");
+  if (others.empty()) refuse("holds no message at all; record with scripts/record");
+  refuse("is not of this simulator: it has no topic applied_input, but only " + firstOf(others) +
+         "; record with scripts/record");
 }
 
 void Recording::refuseWithoutBegin(std::size_t snapshots) const {

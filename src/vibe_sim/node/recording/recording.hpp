@@ -54,6 +54,17 @@ class Recording {
   }
 
  private:
+  /// Steps that something is wrong with.
+  struct Count {
+    std::size_t steps = 0, places = 0;
+    std::string first;  // place
+
+    void add(std::size_t more, const std::string& place) {
+      if (places++ == 0) first = place;
+      steps += more;
+    }
+  };
+
   void choose(const SessionChoice& choice);
   void takeRuns();
   void takeRun(RecordedRun& run);
@@ -70,6 +81,7 @@ class Recording {
   bool is_chosen_ = false;  // among several
   std::vector<RecordedRun> runs_;
   std::size_t left_out_ = 0;
+  Count gaps_, unreachable_;
   std::string lost_;
 };
 

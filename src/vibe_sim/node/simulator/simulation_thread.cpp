@@ -276,10 +276,11 @@ void SimulationThread::reportLag(double lag) {
   const double longest = std::max(cpu.window.max(), last_longest_step_), period = simulation_.time().period();
   const double usual = cpu.all.quantile(0.5);
   char sentence[400];
-  std::snprintf(sentence, sizeof sentence,
-                "The simulation is %.2f s behind the wall clock and gives that time up: a step simulates %.1f ms and takes "
-                "%.1f ms of processor time in the median, lately %.1f ms at most; %s.",
-                lag, 1e3 * period, 1e3 * usual, 1e3 * longest, lagRemedy(usual, longest, period));
+  std::snprintf(
+      sentence, sizeof sentence,
+      "The simulation is %.2f s behind the wall clock and gives that time up: a step simulates %.1f ms and takes "
+      "%.1f ms of processor time in the median, lately %.1f ms at most; %s.",
+      lag, 1e3 * period, 1e3 * usual, 1e3 * longest, lagRemedy(usual, longest, period));
   ROS_WARN_STREAM(sentence);
   publishers_.warn(sentence);
 }

@@ -237,7 +237,7 @@ TEST_F(MangledRecording, MissingTopicsAreNamed) {
   }
   mangle(only({"/applied_input", "/scene"}));
   EXPECT_EQ(stepsOf(Recording(file)), 100U);
-  expectMentions(Recording(file).lost(), "no snapshot from which 20 steps from step 0 of run 2 on");
+  expectMentions(Recording(file).lost(), "no snapshot from which 20 steps could be repeated, first step 0 of run 2");
   mangle(without({"/session_info"}));
   EXPECT_EQ(Recording(file).runs()[0].scene, "name: scene1\n");
   mangle(without({"/scene"}));
@@ -278,10 +278,10 @@ TEST_F(MangledRecording, StepsThatAreMissingAreNamedAndTheRestIsRead) {
     ASSERT_EQ(recording.runs().size(), 3U);
     EXPECT_EQ(recording.runs()[1].firstStep(), 60U);
     EXPECT_EQ(stepsOf(recording), 40U + 40 + 20);
-    EXPECT_EQ(
-        recording.lost(),
-        "applied_input has a gap of 5 steps after step 39 of run 1; there is no snapshot from which 15 steps from "
-        "step 45 of run 1 on could be repeated");
+    EXPECT_EQ(recording.lost(),
+              "applied_input lacks 5 steps in 1 place, first after step 39 of run 1; there is no snapshot from which "
+              "15 steps "
+              "could be repeated, first step 45 of run 1");
   }
   mangle(withoutSteps(0, 1));
   EXPECT_EQ(Recording(file).stepsLeftOut(), 29U);
@@ -314,7 +314,8 @@ TEST_F(MangledRecording, AStepThatComesTwiceAndDiffersIsRefused) {
   input.session = kFirst, input.run = 1, input.state_hash = 7;
   out.write("/applied_input", ros::Time(99), input);
   out.close();
-  expectMentions(refusal(), "has step 50 of run 1 twice, with different content: inputs were edited, or two");
+  expectMentions(refusal(),
+                 "has step 50 of run 1 twice, with different content: one of them may have been edited; give");
 }
 
 TEST_F(MangledRecording, NamespacesMayBeChangedAndFilesCompressed) {

@@ -128,7 +128,7 @@ TEST_F(RecordingFile, WithoutATopicIsRejectedAndWithAGapReadUpToIt) {
   }
   const Recording recording(file);
   EXPECT_EQ(recording.runs().front().steps.size(), 1U);
-  expectMentions(recording.lost(), "applied_input has a gap of 1 step after step 0 of run 0");
+  expectMentions(recording.lost(), "applied_input lacks 1 step in 1 place, first after step 0 of run 0");
 }
 
 void writeFile(const std::string& file, const std::string& bytes) {

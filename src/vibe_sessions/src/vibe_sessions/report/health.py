@@ -69,7 +69,7 @@ def dropped_of(recording):
         "gaps": int(len(gaps)),
         "restarts": int(restarts.sum()),
         "first_step": int(steps[0]),
-        "steps_without_hash": len(steps) - recording.hashed_steps if recording.inputs_have_hashes else None,
+        "steps_without_hash": len(steps) - sum(recording.hashes) if recording.inputs_have_hashes else None,
         "lost_inputs": sum(recording.lost.values()),
         "lost_inputs_by_topic": dict(sorted(recording.lost.items())),
         "frames": recording.frames[0],
@@ -108,6 +108,11 @@ def warnings_of(recording):
         found.append(
             "{missing_steps} steps are missing in {gaps} gaps of applied_input: the session can be replayed up to the "
             "first gap, and again from the snapshot after each.".format(**dropped)
+        )
+    if recording.doubled:
+        found.append(
+            "{} steps are in the recording twice and count once, as in bags that were merged; messages of other topics may be "
+            "there twice, too.".format(recording.doubled)
         )
     if dropped["restarts"]:
         found.append(

@@ -31,7 +31,8 @@ class Recording:
     stamps: array = field(default_factory=lambda: array("q"))  # of applied_input [ns]
     steps: array = field(default_factory=lambda: array("Q"))
     runs: array = field(default_factory=lambda: array("L"))  # one more after each reset or load
-    hashed_steps: int = 0
+    doubled: int = 0  # steps that were recorded twice, which count once
+    hashes: array = field(default_factory=lambda: array("B"))  # 1 for steps that have one
     inputs_have_hashes: bool = False
     states: list = field(default_factory=list)  # (stamp, phase, pressure, volume, blood lost)
     events: list = field(default_factory=list)  # (stamp, kind, particle, value, text)
@@ -190,7 +191,7 @@ class Reader:
         self.recording.stamps.append(stamp)
         self.recording.steps.append(step)
         self.recording.runs.append(run)
-        self.recording.hashed_steps += state_hash != 0
+        self.recording.hashes.append(state_hash != 0)
 
     def _state(self, connection, _received, data):
         state = self.recording.state = parse(self._bag.connections[connection], data)
@@ -269,6 +270,7 @@ class Reader:
         if not recording.steps:
             raise self._no_steps()
         self._tell_sessions()
+        self._sort_steps()
         recording.begin = recording.stamps[0]
         recording.skill = self._newest("procedure/skill_metrics")
         recording.sutures = self._newest("sutures")
@@ -286,13 +288,29 @@ class Reader:
                 recording.callers[topic] = names
         recording.is_simulated_time = bool(self._topics["/clock"]) or recording.begin / 1e9 < FIRST_WALL_TIME
 
+    def _sort_steps(self):
+        """Steps that were received twice count once, as in bags that were merged; those of a release without runs stay."""
+        recording = self.recording
+        keys = list(zip(recording.runs, recording.steps))
+        if not all(recording.runs) or len(set(keys)) == len(keys):
+            return
+        first = {}
+        for place, key in enumerate(keys):
+            first.setdefault(key, place)
+        order = [first[key] for key in sorted(first)]
+        recording.doubled = len(keys) - len(order)
+        recording.stamps = array("q", (recording.stamps[k] for k in order))
+        recording.steps = array("Q", (recording.steps[k] for k in order))
+        recording.runs = array("L", (recording.runs[k] for k in order))
+        recording.hashes = array("B", (recording.hashes[k] for k in order))
+
     def _tell_sessions(self):
         tracker, recording = self._tracker, self.recording
         if tracker.alternate:
             raise BagError(
-                "{}: has messages of several sessions in '{}' in turns, as when a program that sorts by time has copied "
-                "simulated time, so those without identity cannot be told apart; report on the recording as it was, or on "
-                "one session of it".format(recording.path, recording.namespace or "/")
+                "{}: has messages of several sessions in '{}' in turns, so those without identity cannot be told apart; it may "
+                "have been merged, or copied in the order of simulated time; report on the recording as it was, or on one "
+                "session of it".format(recording.path, recording.namespace or "/")
             )
         ours = self._sessions[self._chosen] if self._sessions else tracker.sessions[self._number]
         sessions = self._sessions or tracker.sessions
