@@ -13,12 +13,21 @@ checkCall() {
     /usr/bin/python3 -B "$vibe_root/src/vibe_bringup/programs/$name" --check "$@"
 }
 
+# useScratchHome: ROS and matplotlib keep logs and caches in the home, which `nobody` and containers may not have.
+useScratchHome() {
+  [ -z "${ROS_HOME:-}${ROS_LOG_DIR:-}" ] || return 0
+  ! mkdir -p -- "${HOME:-/nonexistent}/.ros" 2>/dev/null || [ ! -w "$HOME/.ros" ] || return 0
+  ROS_HOME=$(mktemp -d "${TMPDIR:-/tmp}/vibe_home.XXXXXX") || die 'neither the home nor the folder for temporary files can be written to; set ROS_HOME to a folder that can'
+  export ROS_HOME MPLCONFIGDIR=$ROS_HOME
+}
+
 main() {
   local said parts part flags=()
   /usr/bin/python3 -c 'import argparse' 2>/dev/null || installMissing session # a bare Debian has no Python
   said=$(checkCall "$@") || exit $?
   if [[ $said != 'needs: '* ]]; then printf '%s\n' "$said"; exit 0; fi
   read -ra parts <<<"${said#needs: }"
+  useScratchHome
   installMissing "${parts[@]}"
   runGuarded "$@"
   for part in "${parts[@]}"; do flags+=(--part "$part"); done

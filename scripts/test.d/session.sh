@@ -72,6 +72,7 @@ def messages(path):
     for topic, message, _, header in rosbag.Bag(path).read_messages(return_connection_header=True):
         if header.get("callerid", b"/sim_node") != b"/sim_node": continue  # what was filled in has no sender
         if hasattr(message, "header"): message.header.seq = 0
+        if hasattr(message, "session"): message.session = 0  # which start of the simulator
         text = io.BytesIO()
         message.serialize(text)
         found[topic].append(text.getvalue())

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Command lines: what is refused and in which words, defaults, and that a check leaves nothing behind."""
 
+import concurrent.futures
 import contextlib
 import importlib
 import io
@@ -154,16 +155,29 @@ class Run(OptionsTest):
         open("old/session.bag", "wb").close()
         self.refuses("'old' already holds a session", "run", "--output", "old")
 
+    def test_names_are_claimed_by_one_only(self):
+        with concurrent.futures.ThreadPoolExecutor(8) as pool:
+            names = list(pool.map(lambda _: places.claim_session("new", free_name=True), range(8)))
+        self.assertEqual(sorted(names), ["new"] + ["new-{}".format(k) for k in range(2, 9)])
+        for name in ("new", "new-8"):
+            with self.assertRaises(FileExistsError):
+                places.claim_session(name)
+            self.refuses("already holds a session", "run", "--output", name)
+
 
 class OthersTest(OptionsTest):
     def test_recordings(self):
         for name in ("replay", "dataset"):
             self.refuses("which recording?", name)
             self.refuses("there is no file 'no.bag'", name, "no.bag")
-            self.refuses("one recording at a time, not 'b' as well", name, "file.yaml", "--to", "3", "b")
+        self.refuses("one recording at a time, not 'b' as well", "dataset", "file.yaml", "--to", "3", "b")
+        self.refuses("there is no file 'b'", "replay", "file.yaml", "--to", "3", "b")
         arguments = self.accepts("replay", "--from", "0", "file.yaml", "--to", "3")
         self.assertEqual(arguments.words, ["--from", "0", "--to", "3"])
         self.refuses("--view goes without --from", "replay", "file.yaml", "--view", "--from", "3")
+        arguments = self.accepts("replay", "file.yaml", "file.yaml", "--session", "2", "--namespace", "/left")
+        self.assertEqual((len(arguments.bags), arguments.words), (2, ["--session", "2", "--namespace", "/left"]))
+        self.assertEqual(self.accepts("replay", "--list", "file.yaml").words, ["--list"])
         self.refuses("is there already", "replay", "--fill", "file.yaml", "file.yaml")
 
     def test_dataset(self):

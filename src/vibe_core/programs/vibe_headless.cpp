@@ -83,12 +83,14 @@ std::unique_ptr<TraineeScript> loadScript(const Options& o) {
   return std::make_unique<TraineeScript>(TraineeScript::load(resolveAddress(o.script)));
 }
 
-std::unique_ptr<Trainee> loadTrainee(const Options& o, const std::shared_ptr<const Model>& model) {
-  if (o.script.empty() || !isProtocol(resolveAddress(o.script))) {
-    if (o.novice) throw Error("--novice is the skill of a protocol of goals; name one with --script.");
-    return nullptr;
-  }
-  const Protocol protocol = Protocol::load(resolveAddress(o.script));
+std::optional<Protocol> loadProtocol(const Options& o) {
+  if (!o.script.empty() && isProtocol(resolveAddress(o.script))) return Protocol::load(resolveAddress(o.script));
+  if (o.novice) throw Error("--novice is the skill of a protocol of goals; name one with --script.");
+  return std::nullopt;
+}
+
+std::unique_ptr<Trainee> makeTrainee(const Options& o, const Protocol& protocol,
+                                     const std::shared_ptr<const Model>& model) {
   const Skill skill = o.novice ? between(Skill::expert(), Skill::novice(), *o.novice) : protocol.skill;
   auto trainee = std::make_unique<Trainee>(model, skill, o.seed.value_or(protocol.seed));
   for (const Goal& goal : protocol.goals) trainee->add(goal);
@@ -160,9 +162,11 @@ void writeMeasures(const std::string& file, const Simulation& simulation, const 
 void run(const Options& o) {
   if (o.script_length) return printScriptLength(o);
   if (o.list_measures) return void(std::cout << toJson(outcomeOf(SessionMetrics(), {}, nullptr)));
-  const std::shared_ptr<const Model> model = load(o);
+  // the script first: to build the model takes longer
   const std::unique_ptr<TraineeScript> script = loadScript(o);
-  const std::unique_ptr<Trainee> trainee = loadTrainee(o, model);
+  const std::optional<Protocol> protocol = loadProtocol(o);
+  const std::shared_ptr<const Model> model = load(o);
+  const std::unique_ptr<Trainee> trainee = protocol ? makeTrainee(o, *protocol, model) : nullptr;
   const std::string softness = softnessWarning(*model);
   if (!softness.empty()) std::fprintf(stderr, "%s\n", softness.c_str());
   const double duration = durationOf(o, script.get(), trainee.get());

@@ -17,7 +17,7 @@ constexpr double kMasterPatience = 10;  // [s]
 int main(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // the player reads what to press first, also through a pipe
   try {
-    ros::init(argc, argv, "gamepad_node");
+    vibe::node::init(argc, argv, "gamepad_node");
     vibe::node::waitForMaster(kMasterPatience);
     ros::NodeHandle handle;
     const vibe::hardware::GamepadParameters parameters = vibe::hardware::readGamepadParameters(ros::NodeHandle("~"));

@@ -39,7 +39,7 @@ void run() {
 int main(int argc, char** argv) {
   try {
     // roscpp's own handler would close the topics before the buttons are released
-    ros::init(argc, argv, "hardware_node", ros::init_options::NoSigintHandler);
+    vibe::node::init(argc, argv, "hardware_node", ros::init_options::NoSigintHandler);
     signal(SIGINT, onSignal);
     signal(SIGTERM, onSignal);
     if (!vibe::node::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return 0;

@@ -42,7 +42,7 @@ void run() {
 
 int main(int argc, char** argv) {
   try {
-    ros::init(argc, argv, "latency_probe", ros::init_options::NoSigintHandler);
+    vibe::node::init(argc, argv, "latency_probe", ros::init_options::NoSigintHandler);
     if (vibe::node::asksForHelp(argc, argv)) {
       std::fputs(kHelp, stdout);
       return 0;

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <string>
 
 #include <malloc.h>
+#include <ros/init.h>
 #include <ros/master.h>
 #include <ros/this_node.h>
 #include <ros/time.h>
@@ -39,6 +41,24 @@ std::string refusal(int error, int priority) {
 }
 
 }  // namespace
+
+// roscpp makes this folder in ros::init() and fails with the words of a library.
+std::string logFolderFault() {
+  const char* home = std::getenv("HOME");
+  if (std::getenv("ROS_LOG_DIR") != nullptr || std::getenv("ROS_HOME") != nullptr || home == nullptr) return "";
+  const auto folder = std::filesystem::path(home) / ".ros" / "log";
+  std::error_code code;
+  std::filesystem::create_directories(folder, code);
+  if (!code) return "";
+  return "The folder for logs, '" + folder.string() + "', cannot be made (" + code.message() +
+         "); set ROS_HOME to a folder that you may write to, such as ROS_HOME=/tmp/ros_home.";
+}
+
+void init(int& argc, char** argv, const std::string& name, std::uint32_t options) {
+  const std::string fault = logFolderFault();
+  if (!fault.empty()) throw Error(fault);
+  ros::init(argc, argv, name, options);
+}
 
 bool waitForMaster(double patience, const std::function<bool()>& stopped) {
   const ros::WallTime begin = ros::WallTime::now();

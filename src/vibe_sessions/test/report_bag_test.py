@@ -186,7 +186,7 @@ class BadFileTest(BagTest):
                 session.bag = bag
                 session._begin()
                 session._step(0)
-        self.assertIn("--namespace", self.problem_of())
+        self.assertEqual(read_recording(self.path).namespace, "/left")
         self.assertIn("'/left', '/right'", self.problem_of(namespace="/middle"))
         self.assertEqual(read_recording(self.path, "/right/").namespace, "/right")
 

@@ -55,6 +55,7 @@ class SyntheticSession:
         self.windows = options.get("windows")  # of solver_statistics [s]; default: one a second
         self.lose_every = options.get("lose_every", 0)  # input message on the way to the recorder
         self.unhashed = options.get("unhashed", ())
+        self.identity = options.get("identity", 0)  # of the session
         self.run = 1
         self.without = options.get("without", ())
         self.sequence = 0
@@ -94,7 +95,8 @@ class SyntheticSession:
         stamp = self.origin + step * PERIOD
         if step not in self.skip_steps:
             state_hash = 0 if step in self.unhashed else step + 1
-            message = StepInput(step=step, version=2, run=self.run, state_hash=state_hash)
+            message = StepInput(step=step, version=2, run=self.run, state_hash=state_hash,
+                                session=self.identity)  # fmt: skip
             self.put("applied_input", message, stamp, stamp + PERIOD)
         seconds = (step + 1) * PERIOD
         if step % max(1, round(60 / self.rate)) == 0:

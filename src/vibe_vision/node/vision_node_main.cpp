@@ -22,7 +22,7 @@ void onSignal(int) {
 
 int main(int argc, char** argv) {
   try {
-    ros::init(argc, argv, "vision_node");
+    vibe::node::init(argc, argv, "vision_node");
     vibe::node::waitForMaster(kMasterPatience);
     ros::NodeHandle handle, private_handle("~");
     const vibe::vision::VisionParameters parameters = vibe::vision::readVisionParameters(private_handle);

@@ -75,7 +75,7 @@ class Parser(argparse.ArgumentParser):
             writable = False
         places.remove_empty(made)
         if not writable:
-            self.error("--output: cannot write to '{}'".format(folder))
+            self.error("--output: cannot write to '{}'; give a folder that you may write to".format(folder))
         return folder
 
 
@@ -133,6 +133,16 @@ def recording(parser, arguments):
     return os.path.realpath(arguments.bags[0])
 
 
+def recordings(parser, arguments):
+    """The absolute paths of the recordings."""
+    if not arguments.bags:
+        parser.error("which recording?")
+    for bag in arguments.bags:
+        if not os.path.isfile(bag):
+            parser.error("there is no file '{}'".format(bag))
+    return [os.path.realpath(bag) for bag in arguments.bags]
+
+
 # --- programs
 
 
@@ -163,4 +173,9 @@ def start(name):
     if only_check:
         print("needs:", *(module.parts(arguments) if hasattr(module, "parts") else ["session"]))
         return
-    sys.exit(module.run(arguments))
+    try:
+        sys.exit(module.run(arguments))
+    except OSError as error:  # a folder, a disk, a program that is missing
+        where = " '{}'".format(error.filename) if error.filename else ""
+        print("{}: {}{}".format(name, error.strerror or error, where), file=sys.stderr)
+        sys.exit(1)

@@ -32,8 +32,36 @@ def find(address):
 
 
 def output_folder(name):
-    """Where a program writes by default: in the workspace if scripts/* started it, else in the present folder."""
-    return os.path.join(os.environ.get("VIBE_WORKSPACE", ""), name)
+    """Where a program writes by default: in the workspace if scripts/* started it and the user may write there, else in
+    the present folder."""
+    workspace = os.environ.get("VIBE_WORKSPACE", "")
+    existing = os.path.join(workspace, os.path.dirname(name))
+    while existing and not os.path.exists(existing):
+        existing = os.path.dirname(existing)
+    return os.path.join(workspace, name) if os.access(existing or ".", os.W_OK) else os.path.abspath(name)
+
+
+def holds_session(folder):
+    """Whether a session has been there, or runs there now."""
+    return any(os.path.lexists(os.path.join(folder, name)) for name in ("session.bag", "session.bag.active", "log"))
+
+
+def claim_session(folder, free_name=False):
+    """Makes the folder of a session with its folder for logs, which no other session gets; with `free_name` the first
+    free one of FOLDER, FOLDER-2 and so on. Returns its path. Raises FileExistsError."""
+    name, number = folder, 1
+    while True:
+        os.makedirs(name, exist_ok=True)
+        try:
+            if os.path.lexists(os.path.join(name, "session.bag")):
+                raise FileExistsError("'{}' already holds a session".format(name))
+            os.mkdir(os.path.join(name, "log"))  # only one succeeds
+            return name
+        except FileExistsError:
+            if not free_name:
+                raise FileExistsError("'{}' already holds a session; give another folder".format(name)) from None
+        number += 1
+        name = "{}-{}".format(folder, number)
 
 
 def missing_folders(path):

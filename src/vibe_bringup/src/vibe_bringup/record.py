@@ -18,8 +18,9 @@ def parse(words):
     add("--duration", metavar="S", type=cli.whole("whole seconds above zero"), default=0, help="end after S seconds")
     add("--all", action="store_true", help="record every message of every topic (7 MB per second)")
     arguments = made.parse(words)
+    arguments.free_name = not arguments.output  # another recorder may begin in the same second
     arguments.output = arguments.output or places.output_folder("sessions/{}.bag".format(cli.time_stamp()))
-    if os.path.exists(arguments.output):
+    if not arguments.free_name and os.path.exists(arguments.output):
         made.error("--output: '{}' is there already".format(arguments.output))
     made.check_output(os.path.dirname(arguments.output) or ".")
     return arguments
@@ -31,6 +32,6 @@ def run(arguments):
         print("record: no ROS master answers at {}; start one or set ROS_MASTER_URI".format(uri), file=sys.stderr)
         return 1
     os.makedirs(os.path.dirname(arguments.output) or ".", exist_ok=True)
-    command = ["rosrun", "vibe_sim", "vibe_record", *cli.words_of(arguments, "all"), arguments.output]
+    command = ["rosrun", "vibe_sim", "vibe_record", *cli.words_of(arguments, "all", "free_name"), arguments.output]
     # timeout with 0 is no limit
     return cli.become(["timeout", "--signal=INT", "--preserve-status", str(arguments.duration), *command])

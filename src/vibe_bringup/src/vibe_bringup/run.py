@@ -172,15 +172,16 @@ def defaults(**values):
     """The arguments of a session that other programs begin."""
     arguments = parser().parse_args([])
     arguments.duration = 0.0
-    return argparse.Namespace(**{**vars(arguments), **values})
+    return argparse.Namespace(**{**vars(arguments), "free_name": False, **values})
 
 
 def parse(words):
     made = parser()
     arguments = made.parse(words)
     check_drive(arguments, made.error)
+    arguments.free_name = not arguments.output  # another session may begin in the same second
     output = arguments.output or places.output_folder("sessions/" + cli.time_stamp())
-    if os.path.exists(os.path.join(output, "session.bag")):
+    if not arguments.free_name and places.holds_session(output):
         made.error("--output: '{}' already holds a session".format(output))
     arguments.output = made.check_output(output)
     return arguments

@@ -35,11 +35,10 @@ def interrupt(number, _frame):
 class Session:
     def __init__(self, arguments):
         self.arguments = arguments
-        self.output = arguments.output
+        self.output = arguments.output = places.claim_session(arguments.output, arguments.free_name)
         self.summary = os.path.join(self.output, "summary.txt")
         self.bag = os.path.join(self.output, "session.bag")
         self.logs = os.path.join(self.output, "log")
-        os.makedirs(self.logs, exist_ok=True)
         self.graph = Graph(self.logs, own_master=not arguments.master)
         self.driver = DRIVERS[arguments.drive](arguments)
         self.vision = Vision(arguments) if arguments.camera else None
@@ -177,7 +176,11 @@ def carry_out(name, parts, stop, may_be_interrupted=False):
 
 def perform(arguments):
     """A whole session; returns the exit status."""
-    session = Session(arguments)
+    try:
+        session = Session(arguments)
+    except OSError as error:
+        print("run: {}".format(error), file=sys.stderr)
+        return 1
 
     def end():
         try:

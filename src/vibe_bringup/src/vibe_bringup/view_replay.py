@@ -21,11 +21,13 @@ def rviz_config(folder):
     return path
 
 
-def show(graph, bag, folder):
+def show(graph, arguments, folder):
     graph.start_master()
     print(graph.how_to_attach(), flush=True)
     graph.set_parameter("/use_sim_time", True)
-    graph.set_parameter("/vibe_player/recording", bag)
+    graph.set_parameter("/vibe_player/recording", arguments.bags[0])
+    graph.set_parameter("/vibe_player/session", arguments.session or "")
+    graph.set_parameter("/vibe_player/namespace", arguments.namespace or "")
     graph.start_robot()
     player = graph.start_node("vibe_sim", "vibe_player", visible=True)
     rviz = graph.start_node("rviz", "rviz", "-d", rviz_config(folder), essential=False)
@@ -38,8 +40,8 @@ def show(graph, bag, folder):
         time.sleep(0.1)
 
 
-def view(bag):
+def view(arguments):
     """Returns the exit status."""
     with tempfile.TemporaryDirectory(prefix="vibe_replay_") as folder:
         graph = Graph(folder)
-        return carry_out("replay", [lambda: show(graph, bag, folder)], graph.stop_all, may_be_interrupted=True)
+        return carry_out("replay", [lambda: show(graph, arguments, folder)], graph.stop_all, may_be_interrupted=True)

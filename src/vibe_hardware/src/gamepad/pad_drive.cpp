@@ -20,7 +20,8 @@ double axisOf(const PadState& pad, int code) {
 
 /// From 0 at rest to 1; an axis that is missing rests.
 double triggerOf(const PadState& pad, int code) {
-  return pad.axes.count(code) == 0 ? 0 : 0.5 * (axisOf(pad, code) + 1);
+  const auto axis = pad.axes.find(code);
+  return axis == pad.axes.end() ? 0 : axis->second.pressure();
 }
 
 double buttonOf(const PadState& pad, int code) {
@@ -51,7 +52,8 @@ void moveJoint(const JointMapping& mapping, const JointLimits& limits, const Pad
   double& joint = state.joints[i];
   double motion = controlDeflection(mapping, pad) * mapping.rate * dt;
   if (mapping.mode == JointMapping::Mode::Position) {
-    if (pad.axes.count(mapping.forward) == 0) return;
+    const auto axis = pad.axes.find(mapping.forward);
+    if (axis == pad.axes.end() || !axis->second.is_known) return;
     const double target = positionTarget(mapping, pad);
     state.engaged[i] = state.engaged[i] || picksUp(mapping, joint, target, state.targets[i]);
     state.targets[i] = target;

@@ -94,8 +94,9 @@ class RecordingParser {
     PadAxis axis;
     if (!(stream >> std::hex >> code >> std::dec >> axis.minimum >> axis.maximum) || code < 0 || code >= ABS_CNT)
       fail("needs a code in hexadecimal and the axis' minimum and maximum");
-    if (axis.minimum >= axis.maximum) fail("has a minimum that is not below its maximum; write them in order");
-    axis.value = static_cast<int>((static_cast<std::int64_t>(axis.minimum) + axis.maximum) / 2);
+    if (axis.minimum > axis.maximum) fail("has a minimum that is above its maximum; write them in order");
+    if (axis.minimum == axis.maximum) return;  // some pads describe axes that they do not have
+    axis.is_known = false;
     recording_.state.axes[code] = axis;
   }
 
@@ -213,8 +214,9 @@ void PadRecorder::writeHeader(const PadInfo& info, const PadState& state) {
     std::fprintf(file_, "A: %02x %d %d 0 0 0\n", static_cast<unsigned>(code), axis.minimum, axis.maximum);
   // the format has no state at the beginning, so it begins with events that bring the axes to where they are
   for (const auto& [code, axis] : state.axes)
-    std::fprintf(file_, "E: 0.000000 %04x %04x %d\n", static_cast<unsigned>(EV_ABS), static_cast<unsigned>(code),
-                 axis.value);
+    if (axis.is_known)
+      std::fprintf(file_, "E: 0.000000 %04x %04x %d\n", static_cast<unsigned>(EV_ABS), static_cast<unsigned>(code),
+                   axis.value);
   std::fprintf(file_, "E: 0.000000 0000 0000 0\n");
   std::fflush(file_);
 }

@@ -7,15 +7,21 @@
 namespace vibe::hardware {
 
 double PadAxis::deflection() const {
-  if (maximum <= minimum) return 0;
+  if (maximum <= minimum || !is_known) return 0;
   const double low = minimum, high = maximum;
   return std::clamp((2.0 * value - low - high) / (high - low), -1.0, 1.0);
+}
+
+double PadAxis::pressure() const {
+  return is_known ? 0.5 * (deflection() + 1) : 0;
 }
 
 void PadState::apply(const PadEvent& event) {
   if (event.type == EV_ABS) {
     const auto axis = axes.find(event.code);
-    if (axis != axes.end()) axis->second.value = event.value;
+    if (axis == axes.end()) return;
+    axis->second.value = event.value;
+    axis->second.is_known = true;
   } else if (event.type == EV_KEY) {
     const auto button = buttons.find(event.code);
     if (button == buttons.end()) return;

@@ -70,6 +70,20 @@ TEST(PadRecording, PlaysEventsWhenTheyAreDueAndEnds) {
   EXPECT_FALSE(pad->update(101.02));
 }
 
+// The format has no state at the beginning: an axis rests, as a stick or as a trigger, until its first event.
+TEST(PadRecording, AnAxisRestsUntilItIsMoved) {
+  const std::string text = std::string("A: 02 0 255 0 0 0\nA: 05 10 10 0 0 0\n") + kRecording;
+  const auto pad = playPadRecording(parsePadRecording(text + "E: 12 0003 0002 64\n", "pad.evemu"));
+  EXPECT_TRUE(pad->update(100));
+  EXPECT_EQ(pad->state().axes.count(ABS_RZ), 0U) << "an axis without a range is none";
+  EXPECT_EQ(pad->state().axes.at(ABS_Z).pressure(), 0);
+  EXPECT_EQ(pad->state().axes.at(ABS_Z).deflection(), 0);
+  EXPECT_EQ(pad->state().axes.at(ABS_Y).deflection(), 0);
+  EXPECT_LT(pad->state().axes.at(ABS_X).deflection(), 0) << "moved";
+  EXPECT_TRUE(pad->update(103));
+  EXPECT_NEAR(pad->state().axes.at(ABS_Z).pressure(), 0.25, 1e-2);
+}
+
 TEST(PadRecording, WhatIsWrittenIsReadAgain) {
   const std::string file = testing::TempDir() + "/pad_recording_test.evemu";
   PadState pad = twoStickPad();
@@ -124,7 +138,7 @@ TEST(PadRecording, NamesTheLineOfAMistake) {
   EXPECT_NE(errorOf("# a\nhello\n").find("pad.evemu:2: is no line of a recording"), std::string::npos);
   EXPECT_NE(errorOf("Q: 1\n").find("pad.evemu:1: begins with the unknown letter 'Q'"), std::string::npos);
   EXPECT_NE(errorOf("I: 1 2\n").find("needs four hexadecimal numbers"), std::string::npos);
-  EXPECT_NE(errorOf("A: 00 5 5\n").find("minimum that is not below"), std::string::npos);
+  EXPECT_NE(errorOf("A: 00 6 5\n").find("minimum that is above"), std::string::npos);
   EXPECT_NE(errorOf("A: ff 0 5\n").find("needs a code"), std::string::npos);
   EXPECT_NE(errorOf("B: 99 00\n").find("needs an event type"), std::string::npos);
   EXPECT_NE(errorOf("B: 01 100\n").find("from 00 to ff"), std::string::npos);

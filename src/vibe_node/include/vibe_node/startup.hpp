@@ -1,10 +1,18 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
 namespace vibe::node {
+
+/// What is wrong with the folder for logs that ros::init() makes, and the remedy, as one sentence; empty: nothing.
+[[nodiscard]] std::string logFolderFault();
+
+/// ros::init(), where that could say only in the words of a library what is missing.
+/// @throws Error if it cannot make the folder for logs
+void init(int& argc, char** argv, const std::string& name, std::uint32_t options = 0);
 
 /// Waits for an answer of the ROS master. Call it after ros::init() and before the first NodeHandle, which waits for a
 /// master for ever and hears no signal meanwhile. Says once that it waits.

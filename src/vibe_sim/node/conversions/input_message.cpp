@@ -104,7 +104,7 @@ InputSample readButtons(const sensor_msgs::Joy& message) {
 
 InputSample readTipTarget(const geometry_msgs::PoseStamped& message) {
   const std::string& frame = message.header.frame_id;
-  if (frame != kWorldFrame && frame != kScopeBaseFrame) {
+  if (!frame.empty() && frame != kWorldFrame && frame != kScopeBaseFrame) {
     throw Error("its frame is '" + frame + "'; give the pose of scope_tip in frame '" + kWorldFrame + "' or '" +
                 kScopeBaseFrame + "'.");
   }
@@ -121,8 +121,14 @@ InputSample readTipTarget(const geometry_msgs::PoseStamped& message) {
   InputSample sample;
   sample.channel = InputChannel::Scope;
   sample.stamp = fromRosTime(message.header.stamp);
-  sample.target = frame == kWorldFrame ? ScopeTarget::TipInWorld : ScopeTarget::TipInBase;
+  sample.target = frame == kScopeBaseFrame ? ScopeTarget::TipInBase : ScopeTarget::TipInWorld;
   sample.tip_pose = Eigen::Translation3d(position) * rotation.normalized();
+  return sample;
+}
+
+InputSample readTipMove(const geometry_msgs::PoseStamped& message) {
+  InputSample sample = readTipTarget(message);
+  sample.move = true;
   return sample;
 }
 

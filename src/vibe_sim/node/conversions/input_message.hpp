@@ -39,8 +39,11 @@ InputSample readMove(const sensor_msgs::JointState& message, InputChannel channe
 /// Buttons by position; more than kButtonCount or fewer is an error, as is a value other than 0 or 1.
 InputSample readButtons(const sensor_msgs::Joy& message);
 
-/// Pose of scope_tip in the frame world or scope_base.
+/// Pose of scope_tip in the frame world or scope_base; without a frame, as CRTK clients send it, in world.
 InputSample readTipTarget(const geometry_msgs::PoseStamped& message);
+
+/// The goal of a move: the same.
+InputSample readTipMove(const geometry_msgs::PoseStamped& message);
 
 /// A pull at the tissue, with its target in the frame world or stomach, which are the same.
 /// @throws Error with one sentence if the message cannot be used

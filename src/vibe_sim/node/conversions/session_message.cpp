@@ -95,6 +95,7 @@ vibe_msgs::SessionInfo makeSessionInfo(const TimedSimulation& simulation) {
   message.scene = makeSceneText(model.scene, simulation.seed()).data;
   message.scene_hash = hash(message.scene);
   message.model_hash = modelFingerprint(model);
+  message.session = simulation.session();
   return message;
 }
 
@@ -105,6 +106,7 @@ vibe_msgs::StateSnapshot makeStateSnapshot(const TimedSimulation& simulation) {
   message.step = static_cast<std::uint64_t>(simulation.state().step);
   const std::string bytes = encodeSnapshot(simulation.model(), simulation.state());
   message.data.assign(bytes.begin(), bytes.end());
+  message.session = simulation.session();
   return message;
 }
 

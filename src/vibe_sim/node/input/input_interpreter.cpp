@@ -18,23 +18,30 @@ double leastJerk(double s) {
   return s * s * s * (10 - 15 * s + 6 * s * s);
 }
 
-std::string beyondReach(const Eigen::Vector3d& target, const Model& model, const StepInput& input) {
+std::string nameOf(const InputSample& sample) {
+  const bool scope = sample.channel == InputChannel::Scope;
+  return std::string(scope ? "scope/" : "overstitch/") + (sample.move ? "move_" : "servo_") +
+         (sample.target == ScopeTarget::Joints ? "jp" : "cp");
+}
+
+std::string beyondReach(const std::string& topic, const Eigen::Vector3d& target, const Model& model,
+                        const StepInput& input) {
   std::vector<Eigen::Isometry3d> poses;
   model.tool->forwardKinematics(input.joints, poses);
   const double miss = (poses[model.tip_link].translation() - target).norm();
   if (miss < kReached) return "";
-  return "scope/servo_cp asks for a place that the scope misses by " + std::to_string(std::lround(1e3 * miss)) +
+  return topic + " asks for a place that the scope misses by " + std::to_string(std::lround(1e3 * miss)) +
          " mm; it goes as near as it can.";
 }
 
 std::string reachTip(const InputSample& sample, const Model& model, StepInput& input) {
+  const std::string topic = nameOf(sample);
   if (!model.tool)
-    return "scope/servo_cp has no effect because the scene '" + model.scene.name +
-           "' has no scope; load a scene with one.";
+    return topic + " has no effect because the scene '" + model.scene.name + "' has no scope; load a scene with one.";
   const bool in_world = sample.target == ScopeTarget::TipInWorld;
   const Eigen::Isometry3d pose = in_world ? model.tool_base.inverse() * sample.tip_pose : sample.tip_pose;
   input.joints = model.tool->inverseKinematics(pose, input.joints);
-  return beyondReach(pose.translation(), model, input);
+  return beyondReach(topic, pose.translation(), model, input);
 }
 
 // A pull that the model rejects ends the pull in force: the user has asked for another one.
@@ -97,6 +104,7 @@ JointMove::JointMove(const JointArray& start, const JointArray& goal, int first,
     const double seconds = kPeakSpeed * std::abs(way_[j]) / limits[j].velocity;
     duration_ = std::max(duration_, static_cast<std::int64_t>(std::ceil(1e9 * seconds)));
   }
+  duration_ = std::max<std::int64_t>(duration_, 1);  // a move to where the joints are is busy for a step as well
 }
 
 void JointMove::apply(std::int64_t stamp, JointArray& joints) const {
@@ -131,12 +139,15 @@ std::string InputInterpreter::beginMove(const InputSample& sample, std::int64_t 
                                         const JointArray& hand) {
   const bool scope = sample.channel == InputChannel::Scope;
   if (!model.tool)
-    return std::string(scope ? "scope" : "overstitch") + "/move_jp has no effect because the scene '" +
-           model.scene.name + "' has no scope; load a scene with one.";
+    return nameOf(sample) + " has no effect because the scene '" + model.scene.name +
+           "' has no scope; load a scene with one.";
+  StepInput goal;
+  goal.joints = sample.target == ScopeTarget::Joints ? sample.joints : hand;
+  const std::string sentence = sample.target == ScopeTarget::Joints ? "" : reachTip(sample, model, goal);
   const int first = scope ? 0 : kScopeJointCount, count = scope ? kScopeJointCount : kJointCount - kScopeJointCount;
-  moves_[static_cast<std::size_t>(sample.channel)].emplace(hand, sample.joints, first, count, model.tool->limits(),
+  moves_[static_cast<std::size_t>(sample.channel)].emplace(hand, goal.joints, first, count, model.tool->limits(),
                                                            stamp);
-  return "";
+  return sentence;
 }
 
 void InputInterpreter::applyMoves(std::int64_t stamp, JointArray& joints) {

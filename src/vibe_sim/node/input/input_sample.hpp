@@ -25,7 +25,7 @@ struct InputSample {
   InputChannel channel = InputChannel::Scope;
   std::int64_t stamp = 0;  ///< time of the sample [ns]; 0: as soon as possible
   JointArray joints{};
-  bool move = false;  ///< the joints are the goal of a JointMove from where the hand is; else where it is to be now
+  bool move = false;  ///< joints or pose are the goal of a JointMove from where the hand is; else where it is to be now
   std::array<std::uint8_t, kButtonCount> buttons{};
   ScopeTarget target = ScopeTarget::Joints;
   Eigen::Isometry3d tip_pose = Eigen::Isometry3d::Identity();  ///< in world or in the tool's root link

@@ -100,7 +100,7 @@ int run() {
 
 int main(int argc, char** argv) {
   try {
-    ros::init(argc, argv, "sim_node", ros::init_options::NoSigintHandler);
+    vibe::node::init(argc, argv, "sim_node", ros::init_options::NoSigintHandler);
     if (vibe::node::asksForHelp(argc, argv)) {
       std::fputs(kHelp, stdout);
       return 0;

@@ -19,7 +19,8 @@ constexpr double kIdle = 0.002;         // [s]
 
 constexpr char kHelp[] =
     "vibe_player: plays a recording into the graph.\n"
-    "Usage: rosrun vibe_sim vibe_player _recording:=BAG [_play:=true] [_rate:=1.0]\n"
+    "Usage: rosrun vibe_sim vibe_player _recording:=BAG [_play:=true] [_rate:=1.0] [_session:=S]\n"
+    "                                   [_namespace:=NS]\n"
     "It needs /use_sim_time true, takes replay/command and says where it is on replay/status.\n";
 
 volatile std::sig_atomic_t stop_signal = 0;
@@ -35,11 +36,15 @@ void play() {
   double rate = 1;
   reader.read("play", plays);
   reader.read("rate", rate, 0.01, 100, "");
+  vibe::sim::SessionChoice choice;
+  reader.read("session", choice.session);
+  reader.read("namespace", choice.name_space);
   reader.finish();
   bool use_sim_time = false;
   if (!ros::param::get("/use_sim_time", use_sim_time) || !use_sim_time)
     throw vibe::Error("/use_sim_time is not true; run 'rosparam set /use_sim_time true' before any node starts.");
-  const vibe::sim::Recording recording(file);
+  const vibe::sim::Recording recording(file, choice);
+  if (!recording.remarkOnChoice().empty()) ROS_INFO_STREAM(recording.remarkOnChoice());
   vibe::sim::Player player(recording, ros::NodeHandle(), plays, rate);
   while (ros::ok() && !stop_signal) {
     player.spinOnce();
@@ -51,7 +56,7 @@ void play() {
 
 int main(int argc, char** argv) {
   try {
-    ros::init(argc, argv, "vibe_player", ros::init_options::NoSigintHandler);
+    vibe::node::init(argc, argv, "vibe_player", ros::init_options::NoSigintHandler);
     if (vibe::node::asksForHelp(argc, argv)) {
       std::fputs(kHelp, stdout);
       return 0;

@@ -5,6 +5,7 @@
 
 #include <ros/ros.h>
 
+#include "recording/bag_name.hpp"
 #include "recording/recorder.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_node/startup.hpp"
@@ -28,6 +29,7 @@ void onSignal(int number) {
 struct Options {
   std::string file;
   std::string last_topic = "applied_input";
+  bool free_name = false;
   vibe::sim::RecordingDepth depth = vibe::sim::RecordingDepth::Replayable;
 };
 
@@ -37,16 +39,19 @@ Options readOptions(const std::vector<std::string>& words) {
   for (std::size_t i = 1; i < words.size(); ++i) {
     if (words[i] == "--last" && i + 1 < words.size()) {
       options.last_topic = words[++i];
+    } else if (words[i] == "--free-name") {
+      options.free_name = true;
     } else if (words[i] == "--all") {
       options.depth = vibe::sim::RecordingDepth::Everything;
     } else if (words[i].rfind('-', 0) != 0 && options.file.empty()) {
       options.file = words[i];
     } else {
       throw vibe::Error("Argument '" + words[i] +
-                        "' is not understood; call it as: vibe_record [--all] [--last TOPIC] FILE");
+                        "' is not understood; call it as: vibe_record [--all] [--free-name] [--last TOPIC] FILE");
     }
   }
-  if (options.file.empty()) throw vibe::Error("No file is given; call it as: vibe_record [--all] [--last TOPIC] FILE");
+  if (options.file.empty())
+    throw vibe::Error("No file is given; call it as: vibe_record [--all] [--free-name] [--last TOPIC] FILE");
   return options;
 }
 
@@ -75,13 +80,14 @@ void recordUntilStopped(vibe::sim::Recorder& recorder) {
 int main(int argc, char** argv) {
   bool running = false;
   try {
-    ros::init(argc, argv, "vibe_record", ros::init_options::NoSigintHandler | ros::init_options::AnonymousName);
+    vibe::node::init(argc, argv, "vibe_record", ros::init_options::NoSigintHandler | ros::init_options::AnonymousName);
     if (vibe::node::asksForHelp(argc, argv)) {
       std::puts(
           "vibe_record: records the graph to a bag until Ctrl-C: inputs, events and all that a replay cannot compute\n"
           "again; of the rest enough to look at it.\n"
-          "Usage: rosrun vibe_sim vibe_record [--all] [--last TOPIC] FILE\n"
+          "Usage: rosrun vibe_sim vibe_record [--all] [--free-name] [--last TOPIC] FILE\n"
           "  --all         every message of every topic, some 7 MB per second\n"
+          "  --free-name   where FILE is there already, FILE-2, FILE-3 and so on\n"
           "  --last TOPIC  is subscribed to when all other topics are connected (default: applied_input)");
       return 0;
     }
@@ -89,12 +95,18 @@ int main(int argc, char** argv) {
     std::signal(SIGINT, onSignal);
     std::signal(SIGTERM, onSignal);
     if (!vibe::node::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return kFailure;
-    vibe::sim::Recorder recorder(options.file, options.last_topic, options.depth);
+    std::string file = options.file;
+    if (options.free_name) {
+      file = vibe::sim::claimFreeBag(file);
+    } else {
+      vibe::sim::claimBag(file);
+    }
+    vibe::sim::Recorder recorder(file, options.last_topic, options.depth);
     running = true;
     recordUntilStopped(recorder);
     recorder.close();
     std::printf("%llu messages on %zu topics recorded to %s\n",
-                static_cast<unsigned long long>(recorder.messageCount()), recorder.topicCount(), options.file.c_str());
+                static_cast<unsigned long long>(recorder.messageCount()), recorder.topicCount(), file.c_str());
     ros::shutdown();
     return 0;
   } catch (const std::exception& error) {

@@ -23,18 +23,25 @@ constexpr int kSame = 0, kDiffers = 1, kUsage = 2, kNotChecked = 3;
 constexpr int kProgressSteps = 120;
 
 const char kHelp[] =
-    "usage: vibe_replay [--from S] [--to S] [--fill FILE] BAG\n"
+    "usage: vibe_replay [--from S] [--to S] [--fill FILE] [--session S] [--namespace NS] BAG...\n"
+    "       vibe_replay --list BAG...\n"
     "Repeats a recorded session from its scene and inputs, without a roscore, compares every step with the recorded\n"
-    "hashes, and prints its summary.\n"
-    "  --from S     begin at the last snapshot before S seconds\n"
-    "  --to S       end after S seconds\n"
-    "  --fill FILE  also write a bag with every message of every topic that the simulator sent\n"
+    "hashes, and prints its summary. Several bags are the parts of a split recording.\n"
+    "  --from S        begin at the last snapshot before S seconds\n"
+    "  --to S          end after S seconds\n"
+    "  --fill FILE     also write a bag with every message of every topic that the simulator sent\n"
+    "  --session S     which session: its number in the list, or the beginning of its identity (default: the first)\n"
+    "  --namespace NS  the first session in this namespace\n"
+    "  --list          list the sessions and end\n"
     "Ends with 0 if all steps are the same, 1 if one differs, 2 if the recording cannot be repeated, 3 if it could "
     "not\n"
     "be checked, or not all of it, because hashes are missing or are of another version.\n";
 
 struct Options {
-  std::string bag, fill;
+  std::vector<std::string> bags;
+  std::string fill;
+  SessionChoice choice;
+  bool list = false;
   double from = 0, to = INFINITY;
 };
 
@@ -56,13 +63,19 @@ Options readOptions(const std::vector<std::string>& words) {
       options.to = readSeconds("--to", words[++i]);
     } else if (words[i] == "--fill" && has_value) {
       options.fill = words[++i];
-    } else if (words[i].rfind('-', 0) == 0 || !options.bag.empty()) {
+    } else if (words[i] == "--session" && has_value) {
+      options.choice.session = words[++i];
+    } else if (words[i] == "--namespace" && has_value) {
+      options.choice.name_space = words[++i];
+    } else if (words[i] == "--list") {
+      options.list = true;
+    } else if (words[i].rfind('-', 0) == 0) {
       throw Error("argument '" + words[i] + "' is not understood; see --help.");
     } else {
-      options.bag = words[i];
+      options.bags.push_back(words[i]);
     }
   }
-  if (options.bag.empty()) throw Error("takes one recording; see --help.");
+  if (options.bags.empty()) throw Error("takes a recording; see --help.");
   if (options.to <= options.from) throw Error("--to must be later than --from.");
   if (!options.fill.empty() && (options.from > 0 || std::isfinite(options.to)))
     throw Error("--fill writes the whole recording; leave --from and --to out.");
@@ -79,7 +92,7 @@ int reportDifference(const ReplayDifference& d, std::uint64_t same) {
 int report(const Recording& recording, const ReplayResult& result) {
   const auto same = static_cast<unsigned long long>(result.same);
   if (recording.stepsLeftOut() > 0)
-    std::printf("%zu steps before the first snapshot were left out: the recording began late\n",
+    std::printf("%zu steps before the first snapshot were left out: nothing before them is recorded to begin from\n",
                 recording.stepsLeftOut());
   if (result.difference) return reportDifference(*result.difference, result.same);
   if (result.unchecked > 0) {
@@ -101,8 +114,32 @@ void showProgress(const Replay& replay) {
   std::fprintf(stderr, "\rrepeated %.0f of %.0f s ", replay.time(), replay.duration());
 }
 
+// The scene's name is in its text, as a line "name: ...".
+std::string sceneOf(const RecordedSession& session) {
+  const auto first = session.runs.begin();
+  const std::string text =
+      first != session.runs.end() && first->second.info ? first->second.info->scene : session.scene;
+  const std::size_t at = text.rfind("name: ", 0) == 0 ? 0 : text.find("\nname: ");
+  if (at == std::string::npos) return "-";
+  const std::size_t begin = text.find(' ', at) + 1;
+  return text.substr(begin, text.find('\n', begin) - begin);
+}
+
+int list(const std::vector<std::string>& bags) {
+  const std::vector<RecordedSession> sessions = listSessions(bags);
+  std::printf("%6s  %-16s  %-12s  %10s  %8s  %5s  %s\n", "number", "session", "namespace", "length", "steps", "runs",
+              "scene");
+  for (std::size_t i = 0; i < sessions.size(); ++i)
+    std::printf("%6zu  %-16s  %-12s  %8.2f s  %8zu  %5zu  %s\n", i + 1, sessions[i].idText().c_str(),
+                sessions[i].nameSpace().c_str(), (sessions[i].end - sessions[i].begin).toSec(), sessions[i].stepCount(),
+                sessions[i].runs.size(), sceneOf(sessions[i]).c_str());
+  return kSame;
+}
+
 int run(const Options& options) {
-  const Recording recording(options.bag);
+  if (options.list) return list(options.bags);
+  const Recording recording(options.bags, options.choice);
+  if (!recording.remarkOnChoice().empty()) std::printf("%s\n", recording.remarkOnChoice().c_str());
   Replay::Listener nobody;
   std::unique_ptr<BagFiller> filler;
   if (!options.fill.empty()) filler = std::make_unique<BagFiller>(recording, options.fill);

@@ -70,7 +70,7 @@ void performGoals(const vibe::Protocol& protocol, const Parameters& parameters) 
 
 int main(int argc, char** argv) {
   try {
-    ros::init(argc, argv, "vibe_trainee");
+    vibe::node::init(argc, argv, "vibe_trainee");
     if (vibe::node::asksForHelp(argc, argv)) {
       std::puts(kHelp);
       return 0;

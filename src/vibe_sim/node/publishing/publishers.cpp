@@ -27,6 +27,8 @@ constexpr double kHapticRate = 100;                       // of haptic/parameter
 constexpr std::int64_t kSnapshotPeriod = 10'000'000'000;  // of simulated time [ns]
 constexpr std::int64_t kProcedurePeriod = 1'000'000'000;  // of procedure and sutures when nothing happens [ns]
 
+constexpr std::int64_t kSameTime = 1000;  // stamps that count as equal [ns]
+
 constexpr std::uint32_t kCloudQueue = 600;  // of large clouds, as many as fit into some 60 MB
 
 int hapticInterval(double step_period) {
@@ -65,11 +67,15 @@ void ArmPublishers::place(const TimedSimulation& simulation, bool continues, std
 
 void ArmPublishers::operatingState(const TimedSimulation& simulation, const RunStatus& status) {
   const bool present = simulation.model().tool != nullptr;
-  const auto scope = makeOperatingState(present, status.paused, status.scope_moves, simulation.now());
-  const auto overstitch = makeOperatingState(present, status.paused, status.overstitch_moves, simulation.now());
+  // CRTK clients take a state only if its stamp is later than the last one, also of a simulation that stands still
+  const std::int64_t since = simulation.now() - last_state_stamp_;
+  const std::int64_t stamp = since <= 0 && since > -kSameTime ? last_state_stamp_ + 1 : simulation.now();
+  const auto scope = makeOperatingState(present, status.paused, status.scope_moves, stamp);
+  const auto overstitch = makeOperatingState(present, status.paused, status.overstitch_moves, stamp);
   const std::string state = scope.state + (scope.is_busy ? " scope" : "") + (overstitch.is_busy ? " overstitch" : "");
   if (state == last_state_) return;
   last_state_ = state;
+  last_state_stamp_ = stamp;
   scope_state_.publish(scope);
   overstitch_state_.publish(overstitch);
 }
@@ -80,6 +86,7 @@ bool ArmPublishers::hasListener() const {
 
 Publishers::Publishers(OutletSource outlets, bool with_clock)
     : scope_pose_(outlets.advertise<geometry_msgs::PoseStamped>("scope/measured_cp", kSmallQueue)),
+      hand_pose_(outlets.advertise<geometry_msgs::PoseStamped>("scope/setpoint_cp", kSmallQueue)),
       helix_pose_(outlets.advertise<geometry_msgs::PoseStamped>("overstitch/helix/measured_cp", kSmallQueue)),
       wrench_(outlets.advertise<geometry_msgs::WrenchStamped>("scope/measured_cf", kSmallQueue)),
       joint_states_(outlets.advertise<sensor_msgs::JointState>("joint_states", kSmallQueue)),
@@ -107,6 +114,7 @@ Publishers::Publishers(OutletSource outlets, bool with_clock)
 }
 
 void Publishers::announceModel(const TimedSimulation& simulation) {
+  announceRun(simulation);  // first: what is latched below then belongs to this session in a recording
   const Model& model = simulation.model();
   cloud_ = std::make_unique<ParticleCloud>(model, simulation.state(), simulation.revision());
   scene_.publish(makeSceneText(model.scene, simulation.seed()));
@@ -115,7 +123,6 @@ void Publishers::announceModel(const TimedSimulation& simulation) {
       makeTransform(Eigen::Isometry3d::Identity(), kWorldFrame, kTissueFrame, simulation.now())};
   if (model.tool) transforms.push_back(makeTransform(model.tool_base, kWorldFrame, kScopeBaseFrame, simulation.now()));
   if (static_transforms_) static_transforms_->sendTransform(transforms);
-  announceRun(simulation);
 }
 
 void Publishers::announceRun(const TimedSimulation& simulation) {
@@ -127,6 +134,7 @@ void Publishers::appliedInput(const TimedSimulation& simulation) {
   snapshot(simulation);
   vibe_msgs::StepInput message = makeStepInput(simulation.input(), simulation.state().step, simulation.now());
   message.run = simulation.run();
+  message.session = simulation.session();
   if (hasRecorder()) {
     message.input_hash = hash(simulation.input(), simulation.state().step);
     message.state_hash = hash(simulation.state());
@@ -208,10 +216,10 @@ void Publishers::warn(const std::string& text) {
 bool Publishers::hasListener() const {
   return arms_.hasListener() ||
          anyIsHeard(
-             {&scope_pose_,        &helix_pose_,  &wrench_,        &joint_states_, &hand_joints_, &topology_,
-              &particles_,         &procedure_,   &skill_metrics_, &events_,       &sutures_,     &applied_input_,
-              &solver_statistics_, &scene_,       &haptic_,        &pull_,         &step_result_, &session_info_,
-              &snapshot_,          &step_timing_, &clock_});
+             {&scope_pose_,    &hand_pose_,         &helix_pose_,  &wrench_,        &joint_states_, &hand_joints_,
+              &topology_,      &particles_,         &procedure_,   &skill_metrics_, &events_,       &sutures_,
+              &applied_input_, &solver_statistics_, &scene_,       &haptic_,        &pull_,         &step_result_,
+              &session_info_,  &snapshot_,          &step_timing_, &clock_});
 }
 
 void Publishers::tool(const TimedSimulation& simulation, bool continues, std::int64_t stamp) {
@@ -221,6 +229,10 @@ void Publishers::tool(const TimedSimulation& simulation, bool continues, std::in
   model.tool->forwardKinematics(simulation.state().joints, simulation.state().tool_displacement, link_poses_);
   scope_pose_.publish(makePose(model.tool_base * link_poses_[model.tip_link], kWorldFrame, stamp));
   helix_pose_.publish(makePose(model.tool_base * link_poses_[model.helix_link], kWorldFrame, stamp));
+  if (hand_pose_.getNumSubscribers() > 0) {
+    model.tool->forwardKinematics(simulation.state().joints, link_poses_);
+    hand_pose_.publish(makePose(model.tool_base * link_poses_[model.tip_link], kWorldFrame, stamp));
+  }
   wrench_.publish(makeWrench(simulation.state(), stamp));
   joint_states_.publish(makeJointState(model, simulation.state(), stamp));
   hand_joints_.publish(makeHandJoints(simulation.state(), stamp));

@@ -34,6 +34,7 @@ class ArmPublishers {
   Outlet scope_, overstitch_, jacobian_, wall_, scope_state_, overstitch_state_;
   JointArray last_joints_{};
   std::string last_state_;  // of both, to see a change
+  std::int64_t last_state_stamp_ = 0;
 };
 
 /// Between warnings about the same [s].
@@ -80,7 +81,7 @@ class Publishers {
   bool hasRecorder() const { return applied_input_.getNumSubscribers() > 0; }
 
  private:
-  Outlet scope_pose_, helix_pose_, wrench_, joint_states_, hand_joints_, topology_, particles_, procedure_,
+  Outlet scope_pose_, hand_pose_, helix_pose_, wrench_, joint_states_, hand_joints_, topology_, particles_, procedure_,
       skill_metrics_, events_, sutures_, applied_input_, solver_statistics_, scene_, haptic_, pull_, step_result_,
       session_info_, snapshot_, step_timing_, clock_;
   ArmPublishers arms_;

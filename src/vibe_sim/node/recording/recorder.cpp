@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <sstream>
 #include <vector>
 
 #include <ros/master.h>
 
+#include "recording/bag_name.hpp"
 #include "recording/recording.hpp"
 #include "vibe_core/common/error.hpp"
 
@@ -68,10 +67,6 @@ Recorder::Recorder(const std::string& file, const std::string& last_topic, Recor
   if (!last_topic_.empty()) {
     last_topic_ = handle_.resolveName(last_topic_);
     simulators_.insert(last_topic_.substr(0, last_topic_.rfind('/') + 1));
-  }
-  if (std::filesystem::is_regular_file(file_ + ".active")) {
-    throw Error("Recording '" + file_ + ".active' is there already, from a recorder that was killed; keep it with " +
-                "`rosbag reindex`, or give another path.");
   }
   try {
     bag_->open(file_ + ".active", rosbag::bagmode::Write);
@@ -225,10 +220,7 @@ void Recorder::close() {
     }
   }
   if (!write_error_.empty()) throw Error(write_error_);
-  if (std::rename((file_ + ".active").c_str(), file_.c_str()) != 0) {
-    throw Error("Recording '" + file_ + ".active' cannot be renamed to '" + file_ + "' (" + std::strerror(errno) +
-                "); rename it by hand.");
-  }
+  finishBag(file_);
 }
 
 }  // namespace vibe::sim

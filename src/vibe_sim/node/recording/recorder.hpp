@@ -27,7 +27,7 @@ enum class RecordingDepth {
 /// the recorder is killed or the disk is full, the last one is lost. Not thread-safe: call everything from one thread.
 class Recorder {
  public:
-  /// @param file        the bag; until close() it is called `file`.active
+  /// @param file        the bag, claimed with claimBag(); until close() it is called `file`.active
   /// @param last_topic  subscribed to only when every other topic is connected, so that a publisher that waits for a
   ///                    listener of this topic can rely on the recording of all; after 10 s it is subscribed to with a
   ///                    warning, since publishers that were killed stay registered; empty: none

@@ -2,158 +2,232 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <tuple>
+#include <utility>
 
 #include <rosbag/view.h>
-#include <std_msgs/String.h>
-#include <vibe_msgs/SolverStatistics.h>
 #include <vibe_msgs/StateSnapshot.h>
-#include <vibe_msgs/StepInput.h>
 
-#include "conversions/conversions.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::sim {
 
 namespace {
 
-template <class M>
-bool is(const rosbag::MessageInstance& message) {
-  return message.getDataType() == ros::message_traits::datatype<M>();
-}
-
-std::unique_ptr<rosbag::Bag> open(const std::string& file) {
+std::shared_ptr<rosbag::Bag> open(const std::string& file) {
   std::error_code code;
   const auto size = std::filesystem::file_size(file, code);
   if (code) throw Error("Recording '" + file + "' cannot be read (" + code.message() + "); check the path.");
   if (size == 0) throw Error("Recording '" + file + "' is empty: nothing was recorded.");
   try {
-    return std::make_unique<rosbag::Bag>(file, rosbag::bagmode::Read);
+    return std::make_shared<rosbag::Bag>(file, rosbag::bagmode::Read);
   } catch (const rosbag::BagUnindexedException&) {
-    throw Error("Recording '" + file + "' was cut off: the recorder was killed or the disk was full; mend it with " +
-                "`rosbag reindex '" + file + "'`, which keeps all but the last chunk.");
+    throw Error("Recording '" + file + "' has no index, as a recorder leaves it that was killed or whose disk was " +
+                "full; mend it with `rosbag reindex '" + file + "'`, which keeps all but the last chunk.");
   } catch (const std::exception& error) {  // of a damaged file also what is not a BagException
     throw Error("Recording '" + file + "' cannot be read as a bag (" + error.what() +
                 "); if it was damaged, try `rosbag reindex` on a copy.");
   }
 }
 
-}  // namespace
-
-Recording::Recording(const std::string& file) : file_(file), bag_(open(file)) {
+std::pair<Bags, std::vector<RecordedSession>> openAll(const std::vector<std::string>& files) {
+  Bags bags;
+  for (const std::string& file : files) bags.push_back(open(file));
   try {
-    readAll();
+    auto sessions = readSessions(bags, files.front());
+    return {std::move(bags), std::move(sessions)};
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
-    throw Error("Recording '" + file_ + "' is damaged (" + error.what() + "); try `rosbag reindex` on a copy.");
-  }
-  check();
-}
-
-void Recording::readAll() {
-  const auto wanted = [](const rosbag::ConnectionInfo* connection) {
-    for (const char* name : {"scene", "session_info", "snapshot", "applied_input", "solver_statistics"})
-      if (isTopic(connection->topic, name)) return true;
-    return false;
-  };
-  for (const rosbag::MessageInstance& message : rosbag::View(*bag_, wanted)) readMessage(message);
-}
-
-void Recording::readMessage(const rosbag::MessageInstance& message) {
-  if (is<vibe_msgs::StepInput>(message)) {
-    const std::string topic = message.getTopic();
-    prefix_ = topic.substr(0, topic.size() - std::string("applied_input").size());
-    const RecordedStep step = readStep(message);
-    runOf(step.run).steps.push_back(step);
-  } else if (const auto snapshot = message.instantiate<vibe_msgs::StateSnapshot>()) {
-    runOf(snapshot->run).snapshots.emplace(snapshot->step, message.getTime());
-  } else if (const auto info = message.instantiate<vibe_msgs::SessionInfo>()) {
-    runOf(info->run).info = *info;
-  } else if (const auto statistics = message.instantiate<vibe_msgs::SolverStatistics>()) {
-    state_hashes_.emplace(fromRosTime(statistics->header.stamp), statistics->state_hash);
-  } else if (const auto scene = message.instantiate<std_msgs::String>()) {
-    if (isTopic(message.getTopic(), "scene")) scenes_.emplace_back(message.getTime(), scene->data);
+    throw Error("Recording '" + files.front() + "' is damaged (" + error.what() + "); try `rosbag reindex` on a copy.");
   }
 }
 
-RecordedStep Recording::readStep(const rosbag::MessageInstance& message) {
-  std::vector<std::uint8_t> bytes(message.size());
-  ros::serialization::OStream out(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-  message.write(out);
-  try {
-    const auto reader = readers_.try_emplace(message.getMD5Sum(), message.getMessageDefinition()).first;
-    return reader->second.read(bytes.data(), bytes.size());
-  } catch (const Error& error) {
-    throw Error("Recording '" + file_ + "' cannot be replayed: " + error.what());
-  }
+// "/left/" of "left", "/left" or "/left/"; empty of nothing.
+std::string withSlashes(std::string name) {
+  if (name.empty()) return name;
+  if (name.front() != '/') name = "/" + name;
+  return name.back() == '/' ? name : name + "/";
 }
 
-RecordedRun& Recording::runOf(std::uint32_t number) {
-  RecordedRun& run = by_number_[number];
-  run.number = number;
-  return run;
+// Whether these words are the number of a session in the list, or the beginning of its identity.
+bool isMeant(const RecordedSession& session, std::size_t number, const std::string& words) {
+  if (words.empty() || words == std::to_string(number)) return true;
+  return words.size() >= 4 && session.idText().rfind(words, 0) == 0;
+}
+
+std::string nameOf(const RecordedSession& session) {
+  const std::string id = session.id == 0 ? "without identity" : session.idText();
+  return id + " in " + session.nameSpace();
+}
+
+std::string namesOf(const std::vector<RecordedSession>& sessions) {
+  std::string all;
+  for (std::size_t i = 0; i < sessions.size(); ++i)
+    all += (i == 0 ? "" : ", ") + std::to_string(i + 1) + " (" + nameOf(sessions[i]) + ")";
+  return all;
+}
+
+std::string countOf(std::size_t steps) {
+  return std::to_string(steps) + (steps == 1 ? " step" : " steps");
+}
+
+std::string placeIn(const RecordedRun& run, std::uint64_t step) {
+  return "step " + std::to_string(step) + " of run " + std::to_string(run.number);
+}
+
+// Up to three of these names.
+std::string firstOf(const std::set<std::string>& names) {
+  std::string all;
+  std::size_t count = 0;
+  for (const std::string& name : names) {
+    if (++count > 3) return all + ", ...";
+    all += (all.empty() ? "" : ", ") + name;
+  }
+  return all;
+}
+
+}  // namespace
+
+Recording::Recording(const std::string& file, const SessionChoice& choice)
+    : Recording(std::vector<std::string>{file}, choice) {}
+
+Recording::Recording(const std::vector<std::string>& files, const SessionChoice& choice) : file_(files.front()) {
+  std::tie(bags_, sessions_) = openAll(files);
+  if (sessions_.empty()) refuseWithoutInputs();
+  choose(choice);
+  takeRuns();
+}
+
+std::vector<RecordedSession> listSessions(const std::vector<std::string>& files) {
+  return openAll(files).second;
+}
+
+void Recording::refuse(const std::string& why) const {
+  throw Error("Recording '" + file_ + "' " + why + "." + (is_chosen_ ? " " + remarkOnChoice() : ""));
+}
+
+void Recording::lose(const std::string& what) {
+  lost_ += (lost_.empty() ? "" : "; ") + what;
+}
+
+void Recording::choose(const SessionChoice& choice) {
+  const std::string wanted = withSlashes(choice.name_space);
+  std::vector<std::size_t> fitting;
+  for (std::size_t i = 0; i < sessions_.size(); ++i)
+    if ((wanted.empty() || sessions_[i].prefix == wanted) && isMeant(sessions_[i], i + 1, choice.session))
+      fitting.push_back(i);
+  const auto asked = (choice.session.empty() ? "" : " '" + choice.session + "'") +
+                     (wanted.empty() ? std::string() : " in the namespace '" + choice.name_space + "'");
+  if (fitting.empty()) refuse("has no session" + asked + ", but " + namesOf(sessions_) + "; choose one of them");
+  if (fitting.size() > 1 && !choice.session.empty())
+    refuse("has several sessions" + asked + ": " + namesOf(sessions_) + "; choose one by its number");
+  chosen_ = fitting.front();
+  is_chosen_ = sessions_.size() > 1;
+}
+
+std::string Recording::remarkOnChoice() const {
+  if (sessions_.size() < 2) return "";
+  return "The recording holds " + std::to_string(sessions_.size()) + " sessions; this is number " +
+         std::to_string(chosen_ + 1) + " (" + nameOf(session()) +
+         "). --session and --namespace choose another, --list lists them.";
+}
+
+void Recording::takeRuns() {
+  std::map<std::uint32_t, RecordedRun> by_number = std::move(sessions_[chosen_].runs);
+  for (RecordedSession& each : sessions_) each.runs.clear();
+  std::uint32_t due = by_number.begin()->first;
+  std::size_t snapshots = 0;
+  for (auto& [number, run] : by_number) {
+    if (number != due) lose("the recording lacks run " + std::to_string(due));
+    due = number + 1;
+    snapshots += run.snapshots.size();
+    if (run.steps.empty()) continue;
+    run.scene = run.info ? run.info->scene : session().scene;
+    if (run.scene.empty())
+      refuse(
+          "has neither the topic scene nor session_info, which say what was simulated and are sent when a session "
+          "begins; if it was filtered, keep them, and if it is a part of a split recording, give the first part as "
+          "well");
+    takeRun(run);
+  }
+  if (runs_.empty()) refuseWithoutBegin(snapshots);
+  if (gaps_.steps > 0)
+    lose("applied_input lacks " + countOf(gaps_.steps) + " in " + std::to_string(gaps_.places) +
+         (gaps_.places == 1 ? " place" : " places") + ", first after " + gaps_.first);
+  if (unreachable_.steps > 0)
+    lose("there is no snapshot from which " + countOf(unreachable_.steps) + " could be repeated, first " +
+         unreachable_.first);
 }
 
 // A bag is read in the order of its times, and these go back where a reset sets the clock back.
-void Recording::sortSteps(RecordedRun& run) const {
+void Recording::takeRun(RecordedRun& run) {
   std::stable_sort(run.steps.begin(), run.steps.end(),
                    [](const RecordedStep& a, const RecordedStep& b) { return a.step < b.step; });
-  std::uint64_t due = run.steps.front().has_hashes ? run.steps.front().step : 0;
-  for (const RecordedStep& step : run.steps) {
-    if (step.step != due)
-      throw Error("Recording '" + file_ + "' has step " + std::to_string(step.step) + " where step " +
-                  std::to_string(due) + " was due: messages of applied_input are missing, were edited, or (in older " +
-                  "releases) it began late or the session was reset; record it again.");
-    ++due;
+  if (!run.steps.front().has_hashes && run.steps.front().step != 0)
+    refuse("has step " + std::to_string(run.steps.front().step) +
+           " where step 0 was due: it began late, and it has no snapshots from which a replay could begin");
+  bool is_first = runs_.empty();
+  for (auto begin = run.steps.begin(); begin != run.steps.end(); is_first = false) {
+    auto end = begin + 1;
+    while (end != run.steps.end() && end->step == (end - 1)->step + 1) ++end;
+    takePiece(run, {begin, end}, is_first);
+    if (end != run.steps.end()) gaps_.add(end->step - (end - 1)->step - 1, placeIn(run, (end - 1)->step));
+    begin = end;
   }
 }
 
-// A run can be repeated from its first snapshot. Of the first one steps before it may be missing: it began late.
-void Recording::takeRun(RecordedRun& run) {
-  sortSteps(run);
-  const auto start = std::find_if(run.steps.begin(), run.steps.end(), [&run](const RecordedStep& step) {
+// A piece can be repeated from its first snapshot. Of the first one steps before it may be missing: it began late.
+void Recording::takePiece(const RecordedRun& run, std::vector<RecordedStep> steps, bool is_first) {
+  const auto start = std::find_if(steps.begin(), steps.end(), [&run](const RecordedStep& step) {
     return run.snapshots.count(step.step) > 0 || (step.step == 0 && run.number <= 1);
   });
-  const auto before = static_cast<std::size_t>(start - run.steps.begin());
-  if (runs_.empty()) {
+  const auto before = static_cast<std::size_t>(start - steps.begin());
+  if (is_first) {
     left_out_ += before;
-  } else if (before > 0 && lost_.empty()) {
-    lost_ = std::to_string(before) + " steps of run " + std::to_string(run.number) +
-            " come before its first snapshot, which the recording lacks";
+  } else if (before > 0) {
+    unreachable_.add(before, placeIn(run, steps.front().step));
   }
-  run.steps.erase(run.steps.begin(), start);
-  if (!run.steps.empty()) runs_.push_back(std::move(run));
+  steps.erase(steps.begin(), start);
+  if (steps.empty()) return;
+  RecordedRun& piece = runs_.emplace_back();
+  piece.number = run.number, piece.scene = run.scene, piece.info = run.info;
+  piece.snapshots = {run.snapshots.lower_bound(steps.front().step), run.snapshots.upper_bound(steps.back().step)};
+  piece.steps = std::move(steps);
 }
 
-void Recording::check() {
-  if (by_number_.empty())
-    throw Error("Recording '" + file_ +
-                "' has no topic applied_input with inputs: it is not of this simulator, or was " +
-                "made without it; record with scripts/record.");
-  std::uint32_t due = by_number_.begin()->first;
-  for (auto& [number, run] : by_number_) {
-    if (number != due && lost_.empty()) lost_ = "the recording lacks run " + std::to_string(due);
-    due = number + 1;
-    if (run.steps.empty()) continue;
-    if (run.info) run.scene = run.info->scene;
-    if (run.scene.empty() && !scenes_.empty()) run.scene = scenes_.front().second;
-    if (run.scene.empty())
-      throw Error("Recording '" + file_ + "' has no topic scene; record all topics of the simulator.");
-    takeRun(run);
-  }
-  by_number_.clear();
-  if (runs_.empty())
-    throw Error("Recording '" + file_ + "' has no step that a replay can begin from: it began late and ended before " +
-                "the first snapshot, which comes at most 10 s later; record for longer.");
+void Recording::refuseWithoutInputs() const {
+  std::set<std::string> ours, others;
+  for (const auto& bag : bags_)
+    for (const rosbag::ConnectionInfo* connection : rosbag::View(*bag).getConnections())
+      (connection->datatype.rfind("vibe_msgs/", 0) == 0 || isTopic(connection->topic, "scene") ? ours : others)
+          .insert(connection->topic);
+  if (!ours.empty())
+    refuse("has no topic applied_input with steps, which a replay repeats, but " + firstOf(ours) +
+           "; if topics were chosen, keep applied_input, scene, session_info and snapshot");
+  if (others.empty()) refuse("holds no message at all; record with scripts/record");
+  refuse("is not of this simulator: it has no topic applied_input, but only " + firstOf(others) +
+         "; record with scripts/record");
+}
+
+void Recording::refuseWithoutBegin(std::size_t snapshots) const {
+  const std::string where = "has no step that a replay can begin from: it has not step 0 of the session, and ";
+  if (snapshots == 0)
+    refuse(where +
+           "no snapshot. One is sent when a recorder comes and every 10 s; if topics were chosen, keep the topic "
+           "snapshot, and if the recording was cut or split, give the part before it as well");
+  refuse(where + "none of its snapshots is followed by its step; give the part after it as well");
 }
 
 std::string Recording::snapshot(const RecordedRun& run, std::uint64_t step) const {
   const ros::Time time = run.snapshots.at(step);
-  rosbag::View view(*bag_, rosbag::TopicQuery(prefix_ + "snapshot"), time, time);
-  for (const rosbag::MessageInstance& message : view) {
-    const auto snapshot = message.instantiate<vibe_msgs::StateSnapshot>();
-    if (snapshot && snapshot->run == run.number && snapshot->step == step)
-      return {snapshot->data.begin(), snapshot->data.end()};
+  for (const auto& bag : bags_) {
+    rosbag::View view(*bag, rosbag::TopicQuery(prefix() + "snapshot"), time, time);
+    for (const rosbag::MessageInstance& message : view) {
+      const auto snapshot = instantiateGrown<vibe_msgs::StateSnapshot>(message, kFormerSnapshot);
+      if (snapshot && snapshot->session == session().id && snapshot->run == run.number && snapshot->step == step)
+        return {snapshot->data.begin(), snapshot->data.end()};
+    }
   }
   throw Error("Recording '" + file_ + "' is damaged: its snapshot of step " + std::to_string(step) +
               " cannot be read.");
@@ -170,6 +244,7 @@ const std::vector<RecordingRule>& recordingRules() {
       {"joint_states", 0.1, true},
       {"overstitch/helix/measured_cp", kNever, true},
       {"scope/setpoint_js", kNever, true},
+      {"scope/setpoint_cp", kNever, true},
       {"scope/simulated/measured_js", kNever, true},
       {"overstitch/simulated/measured_js", kNever, true},
       {"scope/jacobian", kNever, true},
@@ -184,12 +259,6 @@ const std::vector<RecordingRule>& recordingRules() {
       {"type:sensor_msgs/CameraInfo", kNever, false},
   };
   return rules;
-}
-
-bool isTopic(const std::string& topic, const std::string& name) {
-  if (topic == name) return true;
-  return topic.size() > name.size() && topic.compare(topic.size() - name.size(), name.size(), name) == 0 &&
-         topic[topic.size() - name.size() - 1] == '/';
 }
 
 const RecordingRule* recordingRule(const std::string& topic, const std::string& type,

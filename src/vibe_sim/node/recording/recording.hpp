@@ -3,28 +3,18 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
-#include <rosbag/bag.h>
-#include <vibe_msgs/SessionInfo.h>
-
-#include "recording/step_input_reader.hpp"
+#include "recording/recorded_sessions.hpp"
 
 namespace vibe::sim {
 
-/// The part of a session from one start, reset or load to the next.
-struct RecordedRun {
-  std::uint32_t number = 1;
-  std::string scene;                             ///< text of the scene file
-  std::optional<vibe_msgs::SessionInfo> info;    ///< what it was made with; empty: of an older release
-  std::vector<RecordedStep> steps;               ///< consecutive; the first is step 0 or has a snapshot
-  std::map<std::uint64_t, ros::Time> snapshots;  ///< by the step that starts there; time in the bag
-
-  std::uint64_t firstStep() const { return steps.front().step; }
-  std::uint64_t endStep() const { return steps.back().step + 1; }
+/// Which session of a recording is meant.
+struct SessionChoice {
+  std::string name_space;  ///< of the simulator's topics; empty: any
+  std::string session;     ///< its number in the list, or the beginning of its identity; empty: the first
 };
 
 /// What of a recorded session is needed to repeat it, read from the topics scene, session_info, snapshot, applied_input
@@ -32,46 +22,72 @@ struct RecordedRun {
 /// stay in the file.
 class Recording {
  public:
-  /// @throws Error if the file is missing, empty, cut off or no bag; if it holds no session; if steps are missing in
-  /// it; or if it is of a version that this build does not read
-  explicit Recording(const std::string& file);
+  /// @param files  one bag, or the parts of a split one, in any order
+  /// @throws Error if a file is missing, empty, cut off or no bag; if no session is the chosen one; if what a replay
+  /// needs is missing, by its name; or if it is of a version that this build does not read
+  explicit Recording(const std::vector<std::string>& files, const SessionChoice& choice = {});
+  explicit Recording(const std::string& file, const SessionChoice& choice = {});
 
-  const std::string& file() const { return file_; }
+  const std::string& file() const { return file_; }  ///< the first one
+  /// All sessions, without their runs.
+  const std::vector<RecordedSession>& sessions() const { return sessions_; }
+  const RecordedSession& session() const { return sessions_[chosen_]; }  ///< the chosen one
+  /// That there are others, as a sentence; empty if this is the only one.
+  std::string remarkOnChoice() const;
+
   const std::vector<RecordedRun>& runs() const { return runs_; }  ///< at least one, each with at least one step
   /// Hashes of the state by the stamp of its message [ns]; 16 hex digits. Several where a reset set the time back.
-  const std::multimap<std::int64_t, std::string>& stateHashes() const { return state_hashes_; }
-  /// Steps before the first snapshot of a recording that began late; they cannot be repeated.
+  const std::multimap<std::int64_t, std::string>& stateHashes() const { return session().hashes; }
+  /// Steps before the first snapshot; they cannot be repeated.
   std::size_t stepsLeftOut() const { return left_out_; }
-  /// What of a later run cannot be repeated, as a sentence without a full stop; empty: nothing.
+  /// What of a later part cannot be repeated, as a sentence without a full stop; empty: nothing.
   const std::string& lost() const { return lost_; }
-  const std::string& prefix() const { return prefix_; }  ///< namespace of the simulator's topics, with a slash
+  const std::string& prefix() const { return session().prefix; }  ///< namespace of its topics, with a slash
 
   /// The bytes of a snapshot.
   /// @throws Error if the bag cannot be read
   std::string snapshot(const RecordedRun& run, std::uint64_t step) const;
 
-  rosbag::Bag& bag() const { return *bag_; }
+  /// The messages on which the query is true. @see viewOf()
+  std::unique_ptr<rosbag::View> view(const boost::function<bool(const rosbag::ConnectionInfo*)>& query) const {
+    return viewOf(bags_, query);
+  }
 
  private:
-  void readAll();
-  void readMessage(const rosbag::MessageInstance& message);
-  RecordedStep readStep(const rosbag::MessageInstance& message);
-  RecordedRun& runOf(std::uint32_t number);
-  void sortSteps(RecordedRun& run) const;
+  /// Steps that something is wrong with.
+  struct Count {
+    std::size_t steps = 0, places = 0;
+    std::string first;  // place
+
+    void add(std::size_t more, const std::string& place) {
+      if (places++ == 0) first = place;
+      steps += more;
+    }
+  };
+
+  void choose(const SessionChoice& choice);
+  void takeRuns();
   void takeRun(RecordedRun& run);
-  void check();
+  void takePiece(const RecordedRun& run, std::vector<RecordedStep> steps, bool is_first);
+  void lose(const std::string& what);
+  [[noreturn]] void refuse(const std::string& why) const;
+  [[noreturn]] void refuseWithoutInputs() const;
+  [[noreturn]] void refuseWithoutBegin(std::size_t snapshots) const;
 
   std::string file_;
-  std::unique_ptr<rosbag::Bag> bag_;
-  std::map<std::string, StepInputReader> readers_;  // by md5 sum of the definition
-  std::map<std::uint32_t, RecordedRun> by_number_;
-  std::vector<std::pair<ros::Time, std::string>> scenes_;
+  Bags bags_;
+  std::vector<RecordedSession> sessions_;
+  std::size_t chosen_ = 0;
+  bool is_chosen_ = false;  // among several
   std::vector<RecordedRun> runs_;
-  std::multimap<std::int64_t, std::string> state_hashes_;
   std::size_t left_out_ = 0;
+  Count gaps_, unreachable_;
   std::string lost_;
-  std::string prefix_ = "/";
 };
+
+/// All sessions of a bag, or of the parts of a split one, also those that cannot be replayed.
+/// @throws Error if a file is missing, empty, cut off or no bag, or of a version that this build does not read
+std::vector<RecordedSession> listSessions(const std::vector<std::string>& files);
 
 /// How much of a topic a recording keeps. What a replay computes again is thinned or left out.
 struct RecordingRule {
@@ -91,8 +107,5 @@ const std::vector<RecordingRule>& recordingRules();
 /// @param prefixes  namespaces of simulators, with a slash at the end
 const RecordingRule* recordingRule(const std::string& topic, const std::string& type,
                                    const std::set<std::string>& prefixes);
-
-/// Whether a topic's whole name is `name` in any namespace.
-bool isTopic(const std::string& topic, const std::string& name);
 
 }  // namespace vibe::sim

@@ -178,6 +178,7 @@ RecordedStep StepInputReader::read(const std::uint8_t* bytes, std::size_t size) 
     message.get("input_hash", "uint64", 1, &result.input_hash);
     message.get("state_hash", "uint64", 1, &result.state_hash);
   }
+  if (message.has("session")) message.get("session", "uint64", 1, &result.session);
   message.get("step", "uint64", 1, &result.step);
   message.get("joints", "float64", kJointCount, result.input.joints.data());
   message.get("buttons", "uint8", kButtonCount, result.input.buttons.data());

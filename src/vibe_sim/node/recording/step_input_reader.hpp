@@ -42,6 +42,7 @@ struct RecordedStep {
   std::uint64_t step = 0;  ///< its number
   StepInput input;
   std::uint32_t run = 1;         ///< see vibe_msgs/StepInput
+  std::uint64_t session = 0;     ///< see vibe_msgs/StepInput; 0 in those of older releases
   std::int64_t stamp = 0;        ///< of the start of the step [ns]
   bool has_hashes = false;       ///< false: of a release that did not record them
   std::uint64_t input_hash = 0;  ///< of step and input

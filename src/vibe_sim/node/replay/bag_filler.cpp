@@ -1,10 +1,11 @@
 #include "replay/bag_filler.hpp"
 
-#include <filesystem>
+#include <algorithm>
 
 #include <rosbag/view.h>
 
 #include "conversions/conversions.hpp"
+#include "recording/bag_name.hpp"
 #include "recording/recording.hpp"
 #include "vibe_core/common/error.hpp"
 
@@ -17,14 +18,22 @@ bool isReplayed(const std::string& topic, const std::string& prefix) {
   return rule != nullptr && rule->replayed;
 }
 
-bool hasClock(const rosbag::Bag& bag) {
-  rosbag::View view(bag, rosbag::TopicQuery("/clock"));
-  return view.size() > 0;
+bool hasClock(const Recording& recording) {
+  return recording.view(rosbag::TopicQuery("/clock"))->size() > 0;
+}
+
+// Messages without an identity could not be told apart.
+void checkAlone(const Recording& recording) {
+  const auto& all = recording.sessions();
+  if (std::count_if(all.begin(), all.end(), [&](const auto& each) { return each.prefix == recording.prefix(); }) > 1)
+    throw Error("Recording '" + recording.file() + "' holds several sessions in the namespace '" +
+                recording.session().nameSpace() +
+                "', whose topics cannot be told apart; --fill needs one of one session.");
 }
 
 // An open bag with the name of the file while it is incomplete.
 std::unique_ptr<rosbag::Bag> begin(const std::string& file) {
-  if (std::filesystem::exists(file)) throw Error("'" + file + "' is there already; give another path.");
+  claimBag(file);
   auto bag = std::make_unique<rosbag::Bag>();
   try {
     bag->open(file + ".active", rosbag::bagmode::Write);
@@ -44,7 +53,9 @@ BagFiller::BagFiller(const Recording& recording, const std::string& file)
       file_(file),
       target_{*bag_, recording.prefix(),
               [prefix = recording.prefix()](const std::string& topic) { return isReplayed(topic, prefix); }},
-      publishers_(OutletSource(target_), hasClock(recording.bag())) {}
+      publishers_(OutletSource(target_), hasClock(recording)) {
+  checkAlone(recording);
+}
 
 // A bag is closed by its destructor, and one that cannot be written throws there, which ends the program.
 BagFiller::~BagFiller() {
@@ -88,7 +99,8 @@ void BagFiller::afterStep(const TimedSimulation& simulation) {
 void BagFiller::finish(const TimedSimulation& simulation) {
   newState(simulation);
   try {
-    for (const rosbag::MessageInstance& message : rosbag::View(recording_.bag()))
+    const auto all = recording_.view([](const rosbag::ConnectionInfo*) { return true; });
+    for (const rosbag::MessageInstance& message : *all)
       if (!isReplayed(message.getTopic(), recording_.prefix()))
         bag_->write(message.getTopic(), message.getTime(), message);
     bag_->close();
@@ -97,7 +109,7 @@ void BagFiller::finish(const TimedSimulation& simulation) {
   } catch (const rosbag::BagException& error) {
     fail(error.what());
   }
-  std::filesystem::rename(file_ + ".active", file_);
+  finishBag(file_);
 }
 
 }  // namespace vibe::sim

@@ -44,16 +44,21 @@ constexpr double kBurst = 0.05;            // of steps before commands are looke
 constexpr double kMaxReplayLag = 0.25;     // after which lost time is given up [s]
 constexpr double kMinRate = 0.01, kMaxRate = 100;
 
+// Whether it is not of another session of this namespace. The last events come after the last step.
+bool isDuring(const RecordedSession& session, const ros::Time& time) {
+  return time >= session.begin && time <= session.end + ros::Duration(1);
+}
+
 }  // namespace
 
 std::vector<ReplayMark> readMarks(const Recording& recording) {
   const std::int64_t origin = recording.runs().front().steps.front().stamp;
   std::vector<ReplayMark> marks;
   try {
-    for (const rosbag::MessageInstance& message :
-         rosbag::View(recording.bag(), rosbag::TopicQuery(recording.prefix() + "procedure/events"))) {
+    const auto view = recording.view(rosbag::TopicQuery(recording.prefix() + "procedure/events"));
+    for (const rosbag::MessageInstance& message : *view) {
       const auto event = message.instantiate<EventMessage>();
-      if (!event) continue;
+      if (!event || !isDuring(recording.session(), message.getTime())) continue;
       const std::string name = nameOf(*event);
       if (!name.empty()) marks.push_back({1e-9 * static_cast<double>(fromRosTime(event->header.stamp) - origin), name});
     }

@@ -58,15 +58,15 @@ std::string findEdit(const vibe_msgs::SessionInfo& info) {
 
 std::string causeOfModel(const vibe_msgs::SessionInfo& info) {
   const std::string all = differences(info);
-  return "the surface file that the scene names has changed" +
+  return "the surface file that the scene names may have changed" +
          (all.empty() ? "" : ", or another build makes another model: " + all);
 }
 
 std::string causeOfState(const vibe_msgs::SessionInfo& info) {
   const std::string all = differences(info);
   if (!all.empty()) return "what differs: " + all;
-  return "version and machine are those of the recording; the file was edited, or this is an error of the simulator: "
-         "please report it";
+  return "version and machine are those of the recording; the file may have been edited, or this is an error of the "
+         "simulator: please report it";
 }
 
 Replay::Replay(const Recording& recording, Listener& listener, Stamps stamps)
@@ -155,6 +155,7 @@ void Replay::beginRun(std::size_t number, std::size_t index) {
   restore(begun, index, new_model);
   const bool has_revision = begun.info && begun.info->revision > 0;
   simulation_->renumber(begun.number, has_revision ? begun.info->revision : simulation_->revision());
+  simulation_->setSession(recording_.session().id);
   matchStamp();
   if (!first) goForward(before);
   if (new_model) listener_.newModel(*simulation_);
@@ -209,7 +210,7 @@ void Replay::matchStamp() {
 void Replay::checkRun() {
   if (!run().info || result_.difference) return;
   const std::string edited = findEdit(*run().info);
-  if (!edited.empty()) return differ(edited, "it was edited after the recording");
+  if (!edited.empty()) return differ(edited, "it may have been edited after the recording");
   if (run().info->model_hash != modelFingerprint(simulation_->model()))
     differ("the model (rest shape, masses) is not the recorded one", causeOfModel(*run().info));
 }
@@ -224,7 +225,8 @@ void Replay::checkStep() {
   }
   const std::uint64_t state = hash(simulation_->state());
   if (recorded().input_hash != hash(recorded().input, simulation_->state().step))
-    return differ("the input of this step is not the recorded one", "it was edited after the recording");
+    return differ("the input of this step is not the recorded one: it does not have its hash",
+                  "it may have been edited after the recording");
   if (recorded().state_hash != state)
     return differ("the state at the start of this step has hash " + toHex(state) + ", recorded was " +
                       toHex(recorded().state_hash),
@@ -246,7 +248,8 @@ void Replay::checkEnd() {
 }
 
 std::string Replay::uncheckedWhy() const {
-  if (!recorded().has_hashes || !run().info) return "the recording has no hashes: an older release made it";
+  if (!recorded().has_hashes) return "the topic applied_input has no hashes, as in recordings of older releases";
+  if (!run().info) return "the topic session_info, which says to which version the hashes belong, is not recorded";
   if (recorded().state_hash == 0) return "nobody listened to applied_input when they were sent";
   if (run().info->state_version != kStateVersion)
     return "version " + run().info->version + " recorded it, whose state has other fields (version " +

@@ -84,6 +84,9 @@ class TimedSimulation {
   std::int64_t now() const { return time_.stamp(state().step); }  ///< stamp of the state [ns]
   std::uint32_t revision() const { return revision_; }            ///< of the topology
   std::uint32_t run() const { return run_; }                      ///< one more whenever another state takes over
+  /// Which start of a simulator it is, for its messages only; 0: not known.
+  std::uint64_t session() const { return session_; }
+  void setSession(std::uint64_t session) { session_ = session; }
   std::uint64_t seed() const { return seed_; }       ///< of the model's first state, in the published scene
   const std::string& urdf() const { return urdf_; }  ///< text that the tool was made from; empty without a tool
 
@@ -105,6 +108,7 @@ class TimedSimulation {
   TimeLine time_;
   std::string urdf_;
   std::uint64_t seed_;
+  std::uint64_t session_ = 0;
   std::uint32_t revision_ = 1, run_ = 1;
 };
 

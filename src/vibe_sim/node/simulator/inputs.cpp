@@ -37,6 +37,7 @@ Inputs::Inputs(const ros::NodeHandle& handle, InputQueue& queue, Publishers& pub
     return readJoints(message, InputChannel::Overstitch, JointSource::Commanded);
   });
   listen<JointState>("scope/move_jp", [](const JointState& message) { return readMove(message, InputChannel::Scope); });
+  listen<geometry_msgs::PoseStamped>("scope/move_cp", readTipMove);
   listen<JointState>("overstitch/move_jp",
                      [](const JointState& message) { return readMove(message, InputChannel::Overstitch); });
   listen<sensor_msgs::Joy>("scope/buttons", readButtons);

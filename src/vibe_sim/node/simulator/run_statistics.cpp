@@ -21,6 +21,12 @@ double ratio(double simulated, double wall) {
 
 }  // namespace
 
+const char* lagRemedy(double usual, double longest, double period) {
+  if (usual >= period) return "use fewer particles or substeps";
+  if (longest >= period) return "single steps are long; if that comes often, use fewer particles or substeps";
+  return "no step was too long, so the machine may be busy with something else; stop other programs";
+}
+
 void RunStatistics::begin(TimedSimulation& simulation) {
   begin_ = steadyTime();
   startWindow(simulation);
@@ -65,6 +71,7 @@ vibe_msgs::SolverStatistics RunStatistics::message(const TimedSimulation& simula
   message.particle_count = static_cast<std::uint32_t>(simulation.model().particle_count);
   message.active_count = static_cast<std::uint32_t>(
       std::count_if(inverse_mass.begin(), inverse_mass.end(), [](double w) { return w > 0; }));
+  message.session = simulation.session();
   message.contact_count = static_cast<std::uint32_t>(simulation.state().contact_count);
   return message;
 }

@@ -11,6 +11,12 @@
 
 namespace vibe::sim {
 
+/// What to do when the simulation falls behind the wall clock: the steps cost too much, or the machine has no time for
+/// them. A part of a sentence.
+/// @param usual, longest  processor time of a step lately [s]
+/// @param period          that it simulates [s]
+const char* lagRemedy(double usual, double longest, double period);
+
 /// How long the work takes and whether it keeps up with time. The times of the steps themselves are those of
 /// Simulation::timer(). Belongs to the stepping thread.
 class RunStatistics {

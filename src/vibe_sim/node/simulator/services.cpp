@@ -1,12 +1,32 @@
 #include "simulator/services.hpp"
 
+#include <ros/console.h>
 #include <std_srvs/SetBool.h>
 #include <vibe_msgs/LoadScene.h>
 #include <vibe_msgs/Reset.h>
 #include <vibe_msgs/Snapshot.h>
+#include <vibe_msgs/StateCommand.h>
 #include <vibe_msgs/Step.h>
 
 namespace vibe::sim {
+
+namespace {
+
+constexpr std::uint32_t kCommandQueue = 10;
+
+// Both tools are always powered and homed, and there is one pause, that of the simulation.
+void obeyStateCommand(SimulationThread& thread, const std::string& topic, const std::string& command) {
+  if (command == "enable" || command == "resume") {
+    thread.setPaused(false);
+  } else if (command == "pause") {
+    thread.setPaused(true);
+  } else if (command != "home") {
+    ROS_WARN_STREAM("A message on " << topic << " is ignored: there is no command '" << command
+                                    << "'; send pause, resume, enable or home.");
+  }
+}
+
+}  // namespace
 
 template <typename Service, typename Work>
 void Services::offer(const std::string& name, Work work) {
@@ -34,6 +54,11 @@ Services::Services(const ros::NodeHandle& handle, SimulationThread& thread) : ha
                              [&thread](const vibe_msgs::Snapshot::Request& r) { return thread.loadSnapshot(r.file); });
   offer<vibe_msgs::LoadScene>("load_scene",
                               [&thread](const vibe_msgs::LoadScene::Request& r) { return thread.loadScene(r.file); });
+  for (const char* topic : {"scope/state_command", "overstitch/state_command"})
+    commands_.push_back(handle_.subscribe<vibe_msgs::StateCommand>(
+        topic, kCommandQueue, [&thread, topic](const vibe_msgs::StateCommand::ConstPtr& command) {
+          obeyStateCommand(thread, topic, command->string);
+        }));
   spinner_ = std::make_unique<ros::AsyncSpinner>(4, &queue_);
   spinner_->start();
 }

@@ -7,13 +7,14 @@
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 #include <ros/spinner.h>
+#include <ros/subscriber.h>
 
 #include "simulator/simulation_thread.hpp"
 
 namespace vibe::sim {
 
-/// The services of the simulator. Each answers when the work is done. They have threads of their own, because a call
-/// may wait for steps that need inputs.
+/// The services of the simulator, and the commands of CRTK to its state. Each service answers when the work is done.
+/// They have threads of their own, because a call may wait for steps that need inputs.
 class Services {
  public:
   Services(const ros::NodeHandle& handle, SimulationThread& thread);
@@ -23,6 +24,7 @@ class Services {
   ros::NodeHandle handle_;
   ros::CallbackQueue queue_;
   std::vector<ros::ServiceServer> servers_;
+  std::vector<ros::Subscriber> commands_;
   std::unique_ptr<ros::AsyncSpinner> spinner_;
 
   template <typename Service, typename Work>

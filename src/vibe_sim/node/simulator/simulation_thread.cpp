@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <random>
 
 #include <ros/console.h>
 
@@ -26,6 +27,14 @@ constexpr double kLagReportPeriodMax = 60;         // [s]
 constexpr std::chrono::milliseconds kIdle(40);
 constexpr std::chrono::microseconds kSamplePoll(200);
 
+// In the order of starts: milliseconds since 1970, and 20 random bits, since two simulators may start in the same
+// instant.
+std::uint64_t drawSession() {
+  constexpr int kRandomBits = 20;
+  const auto milliseconds = static_cast<std::uint64_t>(node::wallTime() / 1'000'000);
+  return (milliseconds << kRandomBits) | (std::random_device()() & ((1U << kRandomBits) - 1));
+}
+
 std::int64_t startOrigin(const Parameters& parameters) {
   return parameters.time_source == TimeSource::Sim ? kEpoch : node::wallTime();
 }
@@ -41,6 +50,7 @@ SimulationThread::SimulationThread(const Parameters& parameters, const SceneMode
       pace_(simulation_, parameters.time_source),
       last_step_(stepsIn(parameters.duration, made.model->scene.step_period)) {
   status_.paused = parameters.start_paused;
+  simulation_.setSession(drawSession());
 }
 
 SimulationThread::~SimulationThread() {
@@ -247,6 +257,7 @@ void SimulationThread::reportEverySecond() {
   publishers_.solverStatistics(statistics_.windowMessage(simulation_));
   std::printf("%s%s\n", statistics_.progressLine(simulation_).c_str(), status_.paused ? "  (paused)" : "");
   std::fflush(stdout);
+  last_longest_step_ = simulation_.timer().cpu.window.max();
   statistics_.startWindow(simulation_);
 }
 
@@ -263,14 +274,15 @@ void SimulationThread::reportLag(double lag) {
   const bool goes_on = since < 2 * lag_report_period_;
   lag_report_period_ = goes_on ? std::min(2 * lag_report_period_, kLagReportPeriodMax) : kLagReportPeriod;
   last_lag_report_ = now;
-  const double step = statistics_.total.wall.all.quantile(0.5), period = simulation_.time().period();
-  const char* remedy = step < period ? "stop other programs, or use fewer particles if single steps are long"
-                                     : "use fewer particles or substeps";
-  char sentence[320];
-  std::snprintf(sentence, sizeof sentence,
-                "The simulation is %.2f s behind the wall clock and gives that time up: the median step takes %.1f ms "
-                "and simulates %.1f ms; %s.",
-                lag, 1e3 * step, 1e3 * period, remedy);
+  const DurationRecord& cpu = simulation_.timer().cpu;
+  const double longest = std::max(cpu.window.max(), last_longest_step_), period = simulation_.time().period();
+  const double usual = cpu.all.quantile(0.5);
+  char sentence[400];
+  std::snprintf(
+      sentence, sizeof sentence,
+      "The simulation is %.2f s behind the wall clock and gives that time up: a step simulates %.1f ms and takes "
+      "%.1f ms of processor time in the median, lately %.1f ms at most; %s.",
+      lag, 1e3 * period, 1e3 * usual, 1e3 * longest, lagRemedy(usual, longest, period));
   ROS_WARN_STREAM(sentence);
   publishers_.warn(sentence);
 }

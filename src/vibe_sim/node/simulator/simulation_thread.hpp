@@ -115,6 +115,7 @@ class SimulationThread {
   double last_clock_ = 0;                     // steady time [s]
   double last_lag_report_ = -1e9;             // steady time [s]
   double lag_report_period_ = 0;              // until the next [s]
+  double last_longest_step_ = 0;              // processor time, in the window before this one [s]
   std::map<std::string, double> complaints_;  // about a topic, steady time of the last [s]
   std::uint32_t steps_asked_ = 0;             // of a running takeSteps()
   std::uint32_t steps_left_ = 0;

@@ -10,8 +10,8 @@ import rostest
 from geometry_msgs.msg import PoseStamped
 from node_test_support import OVERSTITCH_JOINTS, PERIOD, SCOPE_JOINTS, joints
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Float64MultiArray
-from vibe_msgs.msg import OperatingState, StepInput
+from std_msgs.msg import Float64MultiArray, Header
+from vibe_msgs.msg import OperatingState, StateCommand, StepInput
 from vibe_msgs.srv import Reset, Step
 from vibe_testing.recorder import Recorder
 from vibe_testing.wait import wait_until
@@ -46,11 +46,15 @@ class CrtkTest(unittest.TestCase):
         cls.jacobian = Recorder("scope/jacobian", Float64MultiArray)
         cls.wall = Recorder("wall/measured_cp", PoseStamped)
         cls.applied = Recorder("applied_input", StepInput)
-        cls.recorders = [cls.scope, cls.overstitch, cls.pose, cls.jacobian, cls.wall, cls.applied]
+        cls.setpoint = Recorder("scope/setpoint_cp", PoseStamped)
+        cls.recorders = [cls.setpoint, cls.scope, cls.overstitch, cls.pose, cls.jacobian, cls.wall, cls.applied]
         names = ["scope/measured_js", "scope/servo_jp", "scope/move_jp"]
         names += ["overstitch/measured_js", "overstitch/servo_jp", "overstitch/move_jp"]
         cls.to = {name: rospy.Publisher(name, JointState, queue_size=10) for name in names}
-        cls.to["scope/servo_cp"] = rospy.Publisher("scope/servo_cp", PoseStamped, queue_size=10)
+        for name in ("scope/servo_cp", "scope/move_cp"):
+            cls.to[name] = rospy.Publisher(name, PoseStamped, queue_size=10)
+        for name in ("scope/state_command", "overstitch/state_command"):
+            cls.to[name] = rospy.Publisher(name, StateCommand, queue_size=10)
         rospy.wait_for_service("step", 20)
         cls.step_service = rospy.ServiceProxy("step", Step)
         cls.reset = rospy.ServiceProxy("reset", Reset)
@@ -93,7 +97,8 @@ class CrtkTest(unittest.TestCase):
         target.header.frame_id = "world"
         target.pose.position.x = -0.04
         target.pose.orientation.w = 1
-        ways = {name: lambda name=name: self.send(name, [0.06, 0.1, 0, 0]) for name in self.to if "scope/" in name}
+        ways = ("scope/measured_js", "scope/servo_jp", "scope/move_jp")
+        ways = {name: lambda name=name: self.send(name, [0.06, 0.1, 0, 0]) for name in ways}
         ways["scope/servo_cp"] = lambda: (self.to["scope/servo_cp"].publish(target), rospy.rostime.wallsleep(0.15))
         self.assertEqual(len(ways), 4)
         for name, drive in ways.items():
@@ -130,6 +135,51 @@ class CrtkTest(unittest.TestCase):
         change = abs(numpy.diff(speed)).max()
         self.assertLess(change, 0.3 * speed.max(), "a jump of the speed")
         self.assertAlmostEqual(self.scope.messages[-1].position[0], 0.04, places=4)
+
+    def test_a_move_to_where_the_scope_is_becomes_busy_and_ends(self):
+        self.send("scope/servo_jp", [0.03, 0.1, 0, 0])
+        self.step(60)
+        self.state.clear()
+        self.send("scope/move_jp", [0.03, 0.1, 0, 0])
+        self.step(1)
+        self.assertTrue(self.state.waits_for(lambda m: m.is_busy))
+        self.step(1)
+        self.assertTrue(wait_until(lambda: not self.state.messages[-1].is_busy))
+        stamps = [m.header.stamp for m in self.state.messages]
+        self.assertEqual(stamps, sorted(set(stamps)))
+        self.assertAlmostEqual(self.applied.messages[-1].joints[0], 0.03, places=9)
+
+    def test_a_move_of_the_tip_ends_where_it_was_asked_to(self):
+        self.send("scope/servo_jp", [0.03, 0, 0.2, 0])
+        self.step(60)
+        goal = self.setpoint.messages[-1]
+        numpy.testing.assert_allclose(place(goal), place(self.pose.messages[-1]), atol=1e-4)
+        self.send("scope/servo_jp", [0.01, 0, 0, 0])
+        self.step(60)
+        goal.header = Header()  # CRTK clients give no frame
+        self.to["scope/move_cp"].publish(goal)
+        rospy.rostime.wallsleep(0.15)
+        self.step(1)
+        self.assertTrue(self.state.waits_for(lambda m: m.is_busy))
+        self.step(120)
+        self.assertTrue(wait_until(lambda: not self.state.messages[-1].is_busy))
+        numpy.testing.assert_allclose(place(self.setpoint.messages[-1]), place(goal), atol=1e-3)
+
+    def test_the_state_is_commanded(self):
+        command = self.to["overstitch/state_command"]
+        self.state.clear()
+        for word in ("home", "no_such_command", "resume"):
+            command.publish(StateCommand(string=word))
+        self.assertTrue(self.state.waits_for(lambda m: m.state == "ENABLED"))
+        command.publish(StateCommand(string="pause"))
+        self.assertTrue(self.state.waits_for(lambda m: m.state == "PAUSED"))
+        command.publish(StateCommand(string="enable"))
+        self.assertTrue(wait_until(lambda: self.state.messages[-1].state == "ENABLED"))
+        command.publish(StateCommand(string="pause"))
+        self.assertTrue(wait_until(lambda: len(self.state.messages) == 4))
+        self.assertEqual([m.state for m in self.state.messages], ["ENABLED", "PAUSED"] * 2)
+        stamps = self.state.stamps()
+        self.assertEqual(stamps, sorted(set(stamps)), "a client takes a state only if its stamp is later")
 
     def test_another_command_ends_a_move(self):
         self.send("scope/move_jp", [0.05, 0, 0, 0])

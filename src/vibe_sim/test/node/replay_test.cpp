@@ -303,7 +303,7 @@ TEST_F(ReplayTest, ALaterRunThatCannotBeRepeatedIsNotPassedOver) {
   const Recording recording(file);
   EXPECT_EQ(recording.runs().size(), 1U);
   EXPECT_EQ(recording.stepsLeftOut(), 0U);
-  expectMentions(recording.lost(), "30 steps of run 2");
+  expectMentions(recording.lost(), "30 steps could be repeated, first step 0 of run 2");
   copyBag(whole(), filled, isKept, [](auto& input) { input.run += input.run == 2; });
   expectMentions(Recording(filled).lost(), "run 3");
 }

@@ -20,9 +20,12 @@ struct PadAxis {
   int minimum = -32768;
   int maximum = 32767;
   int value = 0;
+  bool is_known = true;  ///< false: of a recording, before the first event of this axis; it rests
 
-  /// From -1 at the minimum to 1 at the maximum; values beyond are limited. 0 for an axis without a range.
+  /// From -1 at the minimum to 1 at the maximum; values beyond are limited. 0 for an axis without a range, or unknown.
   double deflection() const;
+  /// From 0 at the minimum, where a trigger rests, to 1; 0 if it is unknown.
+  double pressure() const;
 };
 
 /// A button. A button that was down when the pad was found counts as released until it is pressed again.

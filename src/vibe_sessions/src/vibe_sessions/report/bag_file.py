@@ -112,6 +112,8 @@ class BagFile:
         file.close()
         if not begin:
             problem = "is empty, so nothing was recorded; delete it and record the session again"
+        elif MAGIC.startswith(begin):
+            problem = "holds only the first {} bytes of a bag; copy it again".format(len(begin))
         elif begin.startswith(b"#ROS"):
             problem = "is a bag of another format than 2.0; convert it with `rosbag fix` or `rosbag reindex`"
         else:

@@ -69,7 +69,7 @@ def dropped_of(recording):
         "gaps": int(len(gaps)),
         "restarts": int(restarts.sum()),
         "first_step": int(steps[0]),
-        "steps_without_hash": len(steps) - recording.hashed_steps if recording.inputs_have_hashes else None,
+        "steps_without_hash": len(steps) - sum(recording.hashes) if recording.inputs_have_hashes else None,
         "lost_inputs": sum(recording.lost.values()),
         "lost_inputs_by_topic": dict(sorted(recording.lost.items())),
         "frames": recording.frames[0],
@@ -102,12 +102,17 @@ def thinned_of(recording):
 
 def warnings_of(recording):
     """Sentences: what is wrong with the recording, then what the simulator said, each once with its number of times."""
-    found = [recording.cut_reason] if recording.cut_reason else []
+    found = [sentence for sentence in (recording.remark, recording.cut_reason) if sentence]
     dropped = dropped_of(recording)
     if dropped["missing_steps"]:
         found.append(
-            "{missing_steps} steps are missing in {gaps} gaps of applied_input: the session cannot be "
-            "replayed.".format(**dropped)
+            "{missing_steps} steps are missing in {gaps} gaps of applied_input: the session can be replayed up to the "
+            "first gap, and again from the snapshot after each.".format(**dropped)
+        )
+    if recording.doubled:
+        found.append(
+            "{} steps are in the recording twice and count once, as in bags that were merged; messages of other topics may be "
+            "there twice, too.".format(recording.doubled)
         )
     if dropped["restarts"]:
         found.append(
@@ -116,7 +121,10 @@ def warnings_of(recording):
             )
         )
     if dropped["first_step"] > 0:
-        found.append("The recording begins at step {first_step}: it began late, or from a snapshot.".format(**dropped))
+        found.append(
+            "The recording begins at step {first_step}: the recorder may have begun late, the file may be a part of another, "
+            "or the session began from a snapshot.".format(**dropped)
+        )
     if recording.skill is None:
         found.append("There is no procedure/skill_metrics: the measures are not known.")
     said = {}

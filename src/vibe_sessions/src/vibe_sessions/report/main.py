@@ -56,7 +56,8 @@ def tasks_of(arguments, paths, folder):
     pages = ["index.html"] if single else page_names(names)
     return [
         Task(path, name, group, arguments.namespace,
-             "" if arguments.no_pages else os.path.join(folder, page), "" if single else "index.html")
+             "" if arguments.no_pages else os.path.join(folder, page), "" if single else "index.html",
+             arguments.session)
         for path, name, group, page in zip(paths, names, groups, pages)
     ]  # fmt: skip
 

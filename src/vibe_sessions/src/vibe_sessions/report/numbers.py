@@ -71,6 +71,8 @@ def session_of(recording):
         "recording": "all" if recording.has_all("tissue/particles") else "compact",
         "bytes": recording.size,
         "cut": bool(recording.cut_reason),
+        "namespace": recording.namespace or "/",
+        "identity": "{:016x}".format(recording.identity) if recording.identity else None,
     }
     for name in INFO_FIELDS:
         value = getattr(info, name, None) or None

@@ -36,7 +36,10 @@ def add_options(made):
                       "the recordings whose path fits the pattern, may be repeated")  # fmt: skip
     made.add_argument("--no-pages", action="store_true", help="no page per session, which is faster")
     made.add_argument("--jobs", type=count, default=0, metavar="N", help="worker processes (default: one per core)")
-    made.add_argument("--namespace", metavar="NS", help="of the session, for recordings of several simulators")
+    made.add_argument("--session", metavar="S", help="which session of a recording of several: its number in the list "
+                      "of scripts/replay --list, or the beginning of its identity (default: the first)")  # fmt: skip
+    made.add_argument("--namespace", metavar="NS", help="the first session in this namespace, for recordings of several "
+                      "simulators")  # fmt: skip
 
 
 def parser():

@@ -8,7 +8,8 @@ import numpy
 
 from .bag_file import BagError, BagFile
 from .message_types import StepReader, after_header, offset_of, parse, stamp_of
-from .topics import INPUTS, choose_namespace, find_topics
+from .sessions import SessionTracker, choose_session, identity_of
+from .topics import INPUTS, find_topics, namespaces_of
 
 # topics of which only the last message counts
 NEWEST = ("procedure/skill_metrics", "trainee/progress", "session_info", "tissue/topology", "tissue/particles", "scene")
@@ -22,13 +23,16 @@ class Recording:
     namespace: str = ""
     cut_reason: str = ""
     size: int = 0
+    identity: int = 0  # of the session; 0: of a release without them
+    remark: str = ""  # that there are other sessions, as a sentence
     begin: int = 0  # stamp of the first step [ns]
     topics: list = field(default_factory=list)  # (name, type, messages)
     callers: dict = field(default_factory=dict)  # names of the nodes by input topic
     stamps: array = field(default_factory=lambda: array("q"))  # of applied_input [ns]
     steps: array = field(default_factory=lambda: array("Q"))
     runs: array = field(default_factory=lambda: array("L"))  # one more after each reset or load
-    hashed_steps: int = 0
+    doubled: int = 0  # steps that were recorded twice, which count once
+    hashes: array = field(default_factory=lambda: array("B"))  # 1 for steps that have one
     inputs_have_hashes: bool = False
     states: list = field(default_factory=list)  # (stamp, phase, pressure, volume, blood lost)
     events: list = field(default_factory=list)  # (stamp, kind, particle, value, text)
@@ -78,15 +82,26 @@ class Recording:
         return sum(messages for name, _, messages in self.topics if name == self.namespace + "/" + topic)
 
 
-def read_recording(path, namespace=None):
-    """Reads a bag. Raises BagError with one sentence if there is nothing to report on."""
+def read_recording(path, namespace=None, session=None):
+    """Reads one session of a bag, by default the first. Raises BagError with one sentence if there is nothing to report
+    on."""
     with BagFile(path) as bag:
-        return Reader(bag, choose_namespace(bag, namespace)).read()
+        sessions, chosen = choose_session(bag, namespace, session)
+        if not sessions:
+            return Reader(bag, namespaces_of(bag)[0]).read()
+        target = sessions[chosen]
+        in_namespace = [each for each in sessions if each.namespace == target.namespace]
+        return Reader(bag, target.namespace, target.identity, in_namespace.index(target), sessions, chosen).read()
 
 
 class Reader:
-    def __init__(self, bag, namespace):
+    def __init__(self, bag, namespace, identity=0, number=0, sessions=(), chosen=0):
+        """`identity` of the session, or, where it has none, its number in the namespace, from 0; `sessions`: all, if they
+        are known already, and the number of this one among them"""
         self._bag = bag
+        self._tracker = SessionTracker(namespace)
+        self._identity, self._number, self._sessions, self._chosen = identity, number, sessions, chosen
+        self._counts = {}  # of messages of the session by connection
         self._topics = find_topics(bag, namespace)
         self._last = {}  # data of the last message by connection
         self._sequence = {}  # last sequence number by connection
@@ -104,17 +119,41 @@ class Reader:
         self._check()
         handlers = self._handlers()
         for connection, received, data in self._bag.messages(handlers):
-            handlers[connection](connection, received, data)
+            if self._is_ours(connection, data):
+                handlers[connection](connection, received, data)
         self._finish()
         return recording
+
+    def _is_ours(self, connection, data):
+        """Whether a message belongs to the session; the first of the namespace if no identity is asked for."""
+        tracker, about = self._tracker, self._bag.connections[connection]
+        if connection in self._topics["applied_input"]:
+            _, step, run, _ = self._steps.read(data) if connection == self._first else StepReader(about).read(data)
+            tracker.step(identity_of(about, data), run, step)
+        elif connection in self._topics["session_info"] and identity_of(about, data):
+            tracker.identify(identity_of(about, data))
+        current = tracker.current
+        if current is None:
+            ours = self._number == 0  # what comes before the first identity, such as a latched scene
+        elif self._identity:
+            ours = current.identity == self._identity
+        else:
+            ours = current is tracker.sessions[min(self._number, len(tracker.sessions) - 1)]
+            ours &= len(tracker.sessions) > self._number
+        if ours:
+            self._counts[connection] = self._counts.get(connection, 0) + 1
+        elif connection in self._topics["tissue/topology"] and not self._counts.get(connection):
+            self._last[connection] = data  # latched; it may have come a moment before the first identity
+        return ours
 
     def _check(self):
         if not self._topics["applied_input"]:
             raise self._no_steps()
-        if not self._topics["scene"]:
+        if not self._topics["scene"] and not self._topics["session_info"]:
             raise BagError(
-                "{}: has no scene, so what was simulated is unknown; start the recorder before the simulator, or "
-                "record the topic scene, too".format(self._bag.path)
+                "{}: has no scene, so what was simulated is unknown: neither the topic scene nor session_info, which are "
+                "sent when a session begins; if it was filtered, keep them, and if it is a part of a split recording, "
+                "report on the first part".format(self._bag.path)
             )
 
     def _no_steps(self):
@@ -123,8 +162,8 @@ class Reader:
 
     def _handlers(self):
         """Functions by connection: each chunk is read once, since decompressing it takes longest."""
-        first = self._topics["applied_input"][0]
-        self._steps = StepReader(self._bag.connections[first])
+        self._first = self._topics["applied_input"][0]
+        self._steps = StepReader(self._bag.connections[self._first])
         self.recording.inputs_have_hashes = self._steps.has_hash
         table = {
             "applied_input": self._step,
@@ -144,6 +183,7 @@ class Reader:
         handlers = {}
         for short, handler in table.items():
             handlers.update({connection: handler for connection in self._topics[short]})
+        self._handled = set(handlers)
         return handlers
 
     def _step(self, _connection, _received, data):
@@ -151,7 +191,7 @@ class Reader:
         self.recording.stamps.append(stamp)
         self.recording.steps.append(step)
         self.recording.runs.append(run)
-        self.recording.hashed_steps += state_hash != 0
+        self.recording.hashes.append(state_hash != 0)
 
     def _state(self, connection, _received, data):
         state = self.recording.state = parse(self._bag.connections[connection], data)
@@ -229,6 +269,8 @@ class Reader:
         recording = self.recording
         if not recording.steps:
             raise self._no_steps()
+        self._tell_sessions()
+        self._sort_steps()
         recording.begin = recording.stamps[0]
         recording.skill = self._newest("procedure/skill_metrics")
         recording.sutures = self._newest("sutures")
@@ -238,11 +280,53 @@ class Reader:
         recording.particles = self._newest("tissue/particles")
         scene = self._newest("scene")
         recording.scene = scene.data if scene is not None else ""
+        if recording.info is not None and recording.info.scene:
+            recording.scene = recording.info.scene
         for topic in INPUTS:
             names = sorted({self._bag.connections[c].caller for c in self._topics[topic]} - {""})
             if names:
                 recording.callers[topic] = names
         recording.is_simulated_time = bool(self._topics["/clock"]) or recording.begin / 1e9 < FIRST_WALL_TIME
+
+    def _sort_steps(self):
+        """Steps that were received twice count once, as in bags that were merged; those of a release without runs stay."""
+        recording = self.recording
+        keys = list(zip(recording.runs, recording.steps))
+        if not all(recording.runs) or len(set(keys)) == len(keys):
+            return
+        first = {}
+        for place, key in enumerate(keys):
+            first.setdefault(key, place)
+        order = [first[key] for key in sorted(first)]
+        recording.doubled = len(keys) - len(order)
+        recording.stamps = array("q", (recording.stamps[k] for k in order))
+        recording.steps = array("Q", (recording.steps[k] for k in order))
+        recording.runs = array("L", (recording.runs[k] for k in order))
+        recording.hashes = array("B", (recording.hashes[k] for k in order))
+
+    def _tell_sessions(self):
+        tracker, recording = self._tracker, self.recording
+        if tracker.alternate:
+            raise BagError(
+                "{}: has messages of several sessions in '{}' in turns, so those without identity cannot be told apart; it may "
+                "have been merged, or copied in the order of simulated time; report on the recording as it was, or on one "
+                "session of it".format(recording.path, recording.namespace or "/")
+            )
+        ours = self._sessions[self._chosen] if self._sessions else tracker.sessions[self._number]
+        sessions = self._sessions or tracker.sessions
+        recording.identity = ours.identity
+        if len(sessions) == 1:
+            return
+        recording.remark = (
+            "The recording holds {} sessions; this is number {} ({}). --session and --namespace choose another.".format(
+                len(sessions), self._chosen + 1, ours.name()
+            )
+        )
+        totals = dict(((name, kind), 0) for name, kind, _ in recording.topics)
+        for key, connection in self._bag.connections.items():
+            counted = self._counts.get(key, 0) if key in self._handled else self._bag.count(key)
+            totals[(connection.topic, connection.datatype)] += counted
+        recording.topics = sorted((*name, count) for name, count in totals.items())
 
     def _newest(self, short):
         for connection in reversed(self._topics[short]):

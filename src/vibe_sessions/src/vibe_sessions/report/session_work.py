@@ -18,15 +18,16 @@ class Task:
     path: str
     name: str
     group: str
-    namespace: str  # None: the only one
+    namespace: str  # None: of the first session
     page: str  # path of the page to write; empty: none
     back: str  # name of the page of all sessions; empty: none
+    session: str = None  # number or identity; None: the first one
 
 
 def report_on(task):
     """(row, numbers as JSON, problem): the row and the numbers are None if there is a problem, which is one sentence."""
     try:
-        recording = read_recording(task.path, task.namespace)
+        recording = read_recording(task.path, task.namespace, task.session)
     except BagError as problem:
         return None, None, str(problem)
     numbers = numbers_of(recording)

@@ -1,7 +1,5 @@
 """Which connections of a bag belong to a session: by the end of the topic's name and the type of its messages."""
 
-from .bag_file import BagError
-
 STEP_INPUT = "vibe_msgs/StepInput"
 TYPES = {
     "applied_input": STEP_INPUT,
@@ -38,31 +36,17 @@ def namespaces_of(bag):
     """Prefixes of the topics applied_input, "" for /applied_input."""
     return sorted(
         {
-            connection.topic[: -len("/applied_input")]
+            without_slash(("/" + connection.topic)[: -len("/applied_input")])
             for connection in bag.connections.values()
             if connection.datatype == STEP_INPUT and ("/" + connection.topic).endswith("/applied_input")
         }
     )
 
 
-def choose_namespace(bag, asked):
-    """The namespace of the session. Raises BagError if the bag has none, or several and none was asked for."""
-    found = namespaces_of(bag)
-    if not found:
-        others = sorted(connection.topic for connection in bag.connections.values())
-        what = "only {}".format(", ".join(others[:3]) + (", ..." if len(others) > 3 else "")) if others else "no message"
-        raise BagError(
-            "{}: has no topic applied_input of this simulator, but {}; give a recording of scripts/run or "
-            "scripts/record".format(bag.path, what)
-        )
-    if asked is not None:
-        asked = asked.rstrip("/")
-        if asked not in found:
-            raise BagError("{}: has no session in '{}', but in {}".format(bag.path, asked, quoted(found)))
-        return asked
-    if len(found) > 1:
-        raise BagError("{}: has several sessions, in {}; choose one with --namespace".format(bag.path, quoted(found)))
-    return found[0]
+def without_slash(namespace):
+    """"/left" of "left", "/left" and "/left/"; "" of the root."""
+    namespace = namespace.strip("/")
+    return "/" + namespace if namespace else ""
 
 
 def quoted(namespaces):
