@@ -139,8 +139,10 @@ class SyntheticSession:
 
     def _statistics(self, window, seconds, stamp):
         stage = StageTime(name="solver", p50=3.0, p99=9.0, max=math.inf if self.broken_sensor else 20.0 + seconds)
+        energy = StageTime(name="solver_energy", p50=1.0, p99=3.0, max=5.0)
+        paths = StageTime(name="solver_paths", p50=1.5, p99=2.0, max=4.0)
         statistics = SolverStatistics(
-            window=window, stages=[stage], real_time_factor=1.5, missed_deadlines=2, particle_count=208, residual=1e-6,
+            window=window, stages=[stage, energy, paths], real_time_factor=1.5, missed_deadlines=2, particle_count=208, residual=1e-6,
             state_hash="0123456789abcdef",
         )  # fmt: skip
         self.put("solver_statistics", statistics, stamp)

@@ -127,6 +127,8 @@ class NumbersTest(unittest.TestCase):
         self.assertIs(solver["whole"], False)
         self.assertAlmostEqual(solver["step_p50"], 0.003)
         self.assertAlmostEqual(solver["real_time_factor"], 1.5)
+        self.assertEqual(list(solver["stages"]), ["energy", "paths"])
+        self.assertAlmostEqual(solver["stages"]["energy"]["time_p99"], 0.003)
         self.assertEqual(solver["missed_deadlines"], 8)
 
     def test_the_message_about_the_whole_is_not_counted_twice(self):

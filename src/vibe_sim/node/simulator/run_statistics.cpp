@@ -37,6 +37,7 @@ void RunStatistics::countStep(double period, const StepReport& report) {
     work->residual = std::max(work->residual, report.residual);
     work->unfinished += report.arrived ? 0 : 1;
   }
+  for (std::size_t k = 0; k < stages_.size(); ++k) stages_[k].add(report.stage_times[k]);
   ++steps;
   simulated_ += period;
   window_simulated_ += period;
@@ -52,6 +53,7 @@ void RunStatistics::startWindow(TimedSimulation& simulation) {
   all_missed_deadlines_ += missed_deadlines;
   missed_deadlines = 0;
   window_work_ = Work();
+  for (DurationRecord& stage : stages_) stage.window.clear();
   for (StepTimer* timer : {&simulation.timer(), &publish, &total}) {
     timer->cpu.window.clear();
     timer->wall.window.clear();
@@ -65,6 +67,9 @@ vibe_msgs::SolverStatistics RunStatistics::message(const TimedSimulation& simula
   const StepTimer& solver = simulation.timer();
   message.stages = {makeStageTime("solver", solver.cpu.*which), makeStageTime("solver_wall", solver.wall.*which),
                     makeStageTime("publish", publish.wall.*which), makeStageTime("total", total.wall.*which)};
+  for (std::size_t k = 0; k < stages_.size(); ++k)
+    message.stages.push_back(
+        makeStageTime("solver_" + std::string(toString(static_cast<StepStage>(k))), stages_[k].*which));
   message.steps = static_cast<std::uint64_t>(steps);
   message.state_hash = toHex(simulation.simulation().hash());
   const std::vector<double>& inverse_mass = simulation.model().inverse_mass;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 
@@ -52,6 +53,7 @@ class RunStatistics {
   double window_simulated_ = 0;             // [s]
   std::uint32_t all_missed_deadlines_ = 0;  // before the window
   Work window_work_, all_work_;
+  std::array<DurationRecord, kStepStages> stages_;  // of the solver
 
   vibe_msgs::SolverStatistics message(const TimedSimulation& simulation,
                                       DurationHistogram DurationRecord::*which) const;

@@ -15,7 +15,7 @@ def solver_of(recording):
     99th percentiles are means over the windows of a second."""
     windows = recording.windows
     if not windows:
-        return {"whole": None, "step_p50": None, "step_p99": None, "step_max": None}
+        return {"whole": None, "step_p50": None, "step_p99": None, "step_max": None, "stages": {}}
     seconds = [each.window for each in windows]
     # windows are of one second; that of the whole session is as long as all of them
     is_whole = len(windows) > 1 and seconds[-1] > (0.95 if len(windows) > 2 else 1.2) * sum(seconds[:-1])
@@ -23,6 +23,7 @@ def solver_of(recording):
     values = {"whole": is_whole}
     for stage, name in (("solver", "step"), ("total", "total")):
         values.update(stage_times(parts, stage, name))
+    values["stages"] = solver_stages(parts)
     length = sum(each.window for each in parts)
     values["real_time_factor"] = (
         sum(each.window * each.real_time_factor for each in parts) / length if length > 0 else None
@@ -45,6 +46,15 @@ def stage_times(windows, stage, name):
         name + "_p99": 1e-3 * float(numpy.mean([each.p99 for each in found])),
         name + "_max": 1e-3 * max(each.max for each in found),
     }
+
+
+def solver_stages(windows):
+    """What the CPU time of a step goes to, by the name of the stage: the times of stage_times() [s]. Empty for recordings
+    of releases that did not measure it."""
+    prefix = "solver_"
+    names = {each.name for window in windows for each in window.stages if each.name.startswith(prefix)} - {"solver_wall"}
+    found = {name[len(prefix) :]: stage_times(windows, name, "time") for name in sorted(names)}
+    return {name: times for name, times in found.items() if times["time_p50"] is not None}
 
 
 def latency_of(recording):

@@ -5,6 +5,17 @@ import statistics
 from .references import REFERENCES, verdict
 
 DASH = "–"
+# stages of a step as people read them (vibe_msgs/StepTiming)
+STAGES = {
+    "loads": "touching tool, grip, threads, gas",
+    "factor": "new factor and columns",
+    "energy": "energy and gradient",
+    "inverse": "directions",
+    "rows": "forces of contacts and threads",
+    "paths": "whether anything has gone through",
+    "walls": "walls that have come near",
+    "other": "all else",
+}
 # heading, key of the row, from SI to the unit shown, digits (None: text)
 INDEX_COLUMNS = (
     ("session", "name", 1, None),
@@ -170,6 +181,7 @@ def solver_rows(numbers):
         ("CPU time of a step, p50", shown(get("step_p50"), 1e3, 2), "ms"),
         ("CPU time of a step, p99", shown(get("step_p99"), 1e3, 2), "ms"),
         ("CPU time of a step, max", shown(get("step_max"), 1e3, 2), "ms"),
+        *stage_rows(solver["stages"]),
         ("wall time of a step with messages, p50", shown(get("total_p50"), 1e3, 2), "ms"),
         ("wall time of a step with messages, p99", shown(get("total_p99"), 1e3, 2), "ms"),
         ("wall time of a step with messages, max", shown(get("total_max"), 1e3, 2), "ms"),
@@ -178,6 +190,19 @@ def solver_rows(numbers):
         ("steps that ended at the limit of their work", shown(get("unfinished_steps")), ""),
         ("residual, max", shown(get("residual"), 1e6, 2), "µm"),
         ("particles", shown(get("particles")), ""),
+    ]
+
+
+def stage_rows(stages):
+    """The dearest stage first."""
+    dearest = sorted(stages, key=lambda name: -stages[name]["time_p50"])
+    return [
+        (
+            "of it " + STAGES.get(name, name) + ", p50, p99",
+            " ".join(shown(stages[name][key], 1e3, 2) for key in ("time_p50", "time_p99")),
+            "ms",
+        )
+        for name in dearest
     ]
 
 
