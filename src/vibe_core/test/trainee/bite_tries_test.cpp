@@ -145,20 +145,6 @@ TEST(SetInHand, AGivenUpBiteIsTakenBesideItsTargetOnlyWhereThePatternNeedsIt) {
   EXPECT_FALSE(set.placeInstead(*map).has_value()) << "no place makes it a C";
 }
 
-TEST(SutureSet, TriesACornerBesideItsTarget) {
-  Skill once;
-  once.attempts = 1, once.look_time = once.foresight = 0;
-  Onlooker at(once);  // nothing is simulated, so no bite is taken
-  int beside = 0;
-  at.me.say = [&](const std::string& what) { beside += what.find("beside its target") != std::string::npos ? 1 : 0; };
-  SutureSetGoal goal;
-  goal.centre = {0.5, 0.3};
-  goal.length = 13e-3;
-  EXPECT_EQ(perform(goal, at.me).reason, "only 0 bites could be taken");
-  EXPECT_GT(beside, 0);
-  EXPECT_LT(beside, 7);
-}
-
 /// Steps for a motion under a force [N]; -1: stopped.
 int stepsUnder(double force) {
   Onlooker at(Skill::expert(), [force](Observation& seen) { seen.force = {force, 0, 0}; });
