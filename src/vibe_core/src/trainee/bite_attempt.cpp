@@ -50,7 +50,10 @@ GoalResult BiteAttempt::make() {
 
 GoalResult BiteAttempt::grabAndStitch() {
   if (!comeNear()) return {false, "the way to the wall is blocked"};
-  if (!grab()) return {false, "the helix got no hold of the wall"};
+  if (!grab()) {
+    me_.tries.failed.push_back({plan_.turn, kBlocked});
+    return {false, "the helix got no hold of the wall"};
+  }
   const GoalResult result = drawAndClose();
   hand_.move(HelixAdvance, kHelixOut - 4e-3, 0.6);
   return result;
@@ -58,13 +61,6 @@ GoalResult BiteAttempt::grabAndStitch() {
 
 void BiteAttempt::settle() {
   hand_.wait(me_.skill().reaction_time + 0.1);
-}
-
-// Of the helix from the wall.
-double BiteAttempt::gap() const {
-  double min = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& p : me_.view().wall) min = std::min(min, (p - me_.view().helix).squaredNorm());
-  return std::sqrt(min);
 }
 
 // Moves the helix to its aim at a depth below the mucosa; what the last motion missed is added to the next.
@@ -100,7 +96,7 @@ bool BiteAttempt::grab() {
   if (std::isfinite(seen.cost)) plan_.held = seen.held, plan_.drawn = seen.drawn;
   for (const double more : {1, 1, 2, 2, 3, 4}) {  // the wall yields
     if (!approach(more * kHelixDepth, 0.3)) break;
-    if (gap() < kHelixReach && aside_ < kAside) break;
+    if (distanceOfWall(me_.view().helix, me_.model(), me_.view()) < kHelixReach && aside_ < kAside) break;
   }
   before_ = me_.view();
   hand_.press(HelixGrab);

@@ -28,7 +28,6 @@ class BiteAttempt {
  private:
   GoalResult grabAndStitch();
   void settle();
-  double gap() const;
   bool approach(double into, double min);
   bool comeNear();
   bool grab();

@@ -121,6 +121,13 @@ struct SetInHand {
   /// The set could be read as its pattern with the next bite at its target, but not, or hardly, with it at this place:
   /// earlier bites have missed as well.
   bool isSpoiledBy(const WallPoint& place, const AnatomicalMap& map) const;
+
+  /// Where to take the next bite if it cannot be taken at its target: empty if the set is read as its pattern without
+  /// it, or with none of the places beside the target; else that of these places with which it is read most clearly.
+  std::optional<WallPoint> placeInstead(const AnatomicalMap& map) const;
+
+ private:
+  double marginOf(const std::vector<WallPoint>& bites, const AnatomicalMap& map) const;
 };
 
 /// What the actions of a trainee share: hands, knowledge of the organ, random errors, and how to say what is going on.

@@ -11,6 +11,7 @@
 #include "procedure/needle.hpp"
 #include "trainee/ik_solution.hpp"
 #include "trainee/room.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe {
 
@@ -34,6 +35,13 @@ std::optional<NeedleView> lookAtNeedle(const Model& model, const Observation& se
   view.depth = deepest.distance + 0.5 * view.thickness;
   view.where = nearestIn(deepest.triangle, deepest.point, model.organ.surface.triangles, seen.wall);
   return view;
+}
+
+double distanceOfWall(const Eigen::Vector3d& place, const Model& model, const Observation& seen) {
+  double min = std::numeric_limits<double>::infinity();
+  for (const auto& [a, b, c] : model.organ.surface.triangles)
+    min = std::min(min, (closestPointOnTriangle(place, seen.wall[a], seen.wall[b], seen.wall[c]) - place).norm());
+  return min;
 }
 
 namespace {

@@ -20,6 +20,9 @@ struct NeedleView {
 /// Empty if nothing is near.
 std::optional<NeedleView> lookAtNeedle(const Model& model, const Observation& seen);
 
+/// How far the wall is from a place; on a coarse mesh that may be much nearer than its particles [m].
+double distanceOfWall(const Eigen::Vector3d& place, const Model& model, const Observation& seen);
+
 /// Distance at which the wall does not follow any more, far from folds; measured [m].
 constexpr double kFollowsFree = 0.14;
 

@@ -20,6 +20,7 @@ constexpr double kAsideMost = 0.5, kShortest = 0.5;
 // Margin with which a set is to be read: with 0.5 bites that miss by 4 mm take one more try in three sets, and 99 of
 // 100 sets are read as planned instead of 90; design choice [1]
 constexpr double kClear = 0.5;
+constexpr double kInstead = 10e-3;  // from a target at which no bite could be taken; design choice [m]
 
 /// Distance of the centres of neighbours in a row [m].
 double spacingAt(const SutureSetGoal& goal, const AnatomicalMap& map) {
@@ -75,17 +76,54 @@ std::vector<WallPoint> targetsOf(const SutureSetGoal& goal, Operator& me) {
   return best;
 }
 
+// -1: read as another pattern.
+double SetInHand::marginOf(const std::vector<WallPoint>& bites, const AnatomicalMap& map) const {
+  std::vector<Eigen::Vector3d> places;
+  for (const WallPoint& bite : bites) places.push_back(map.position(bite));
+  const TechniqueResult read = recogniseTechnique(places, TechniqueRule::Corrected);
+  return read.technique == pattern ? read.margin : -1;
+}
+
 bool SetInHand::isSpoiledBy(const WallPoint& place, const AnatomicalMap& map) const {
   if (next >= points.size()) return false;
-  std::vector<Eigen::Vector3d> bites;
-  for (const WallPoint& point : points) bites.push_back(map.position(point));
-  const auto marginWith = [&](const WallPoint& bite) {
-    bites[next] = map.position(bite);
-    const TechniqueResult read = recogniseTechnique(bites, TechniqueRule::Corrected);
-    return read.technique == pattern ? read.margin : -1;
-  };
-  return marginWith(points[next]) >= kClear && marginWith(place) < kClear;
+  std::vector<WallPoint> bites = points;
+  bites[next] = place;
+  return marginOf(points, map) >= kClear && marginOf(bites, map) < kClear;
 }
+
+std::optional<WallPoint> SetInHand::placeInstead(const AnatomicalMap& map) const {
+  std::vector<WallPoint> bites = points;
+  bites.erase(bites.begin() + static_cast<std::ptrdiff_t>(next));
+  if (marginOf(bites, map) >= kClear) return {};
+  bites = points;
+  std::optional<WallPoint> best;
+  double clearest = kClear;
+  for (const auto& [distal, anterior] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+    try {
+      bites[next] = map.walk(points[next], distal * kInstead, anterior * kInstead);
+    } catch (const Error&) {  // beyond the end of the organ
+      continue;
+    }
+    const double margin = marginOf(bites, map);
+    if (margin >= clearest) best = bites[next], clearest = margin;
+  }
+  return best;
+}
+
+namespace {
+
+/// A bite of the set in hand. Where it cannot be taken at its target and the set would not be read without it, such as
+/// at a corner, it is taken beside it.
+bool takeNext(const WallPoint& target, Operator& me) {
+  if (takeBite(target, me).reached) return true;
+  const std::optional<WallPoint> place = me.set.placeInstead(*me.seen_map);
+  if (!place) return false;
+  me.say("the pattern needs this bite: beside its target");
+  me.set.points[me.set.next] = *place;
+  return takeBite(*place, me).reached;
+}
+
+}  // namespace
 
 GoalResult perform(const SutureSetGoal& goal, Operator& me) {
   if (!me.view().needle_loaded) return {false, "there is no needle"};
@@ -94,7 +132,7 @@ GoalResult perform(const SutureSetGoal& goal, Operator& me) {
   for (std::size_t k = 0; k < targets.size(); ++k) {
     me.say("bite " + std::to_string(k + 1) + " of " + std::to_string(targets.size()));
     const auto point = me.set.points.begin() + static_cast<std::ptrdiff_t>(me.set.next);
-    if (takeBite(targets[k], me).reached)
+    if (takeNext(targets[k], me))
       *point = me.tries.needle, ++me.set.next;
     else
       me.set.points.erase(point);

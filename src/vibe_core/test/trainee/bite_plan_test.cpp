@@ -53,6 +53,21 @@ TEST(Rolled, TurnsTheTipAroundItsAxisWhereItIs) {
   EXPECT_GT(found, 0);
 }
 
+TEST(DistanceOfWall, IsOfTheWallNotOfItsParticles) {
+  Onlooker at;
+  const WallPoint place = at.me.seen_map->at(0.5, 0.3);
+  const auto& corners = smallStomach()->organ.surface.triangles[place.triangle];
+  const Eigen::Vector3d middle = (at.seen.wall[corners[0]] + at.seen.wall[corners[1]] + at.seen.wall[corners[2]]) / 3;
+  const Eigen::Vector3d normal = (at.seen.wall[corners[1]] - at.seen.wall[corners[0]])
+                                     .cross(at.seen.wall[corners[2]] - at.seen.wall[corners[0]])
+                                     .normalized();
+  const Eigen::Vector3d before = middle + 0.5e-3 * normal;
+  double particle = 1;
+  for (const Eigen::Vector3d& p : at.seen.wall) particle = std::min(particle, (p - before).norm());
+  EXPECT_NEAR(distanceOfWall(before, *smallStomach(), at.seen), 0.5e-3, 1e-6);
+  EXPECT_GT(particle, 1.5e-3);
+}
+
 TEST(ImagineNeedle, MoreDrawnMeansDeeper) {
   const Onlooker at;
   const WallPoint place = at.me.seen_map->at(0.5, 0.3);

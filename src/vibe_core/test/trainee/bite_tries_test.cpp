@@ -40,6 +40,15 @@ TEST(BiteTries, ASlipIsRememberedWhereItWas) {
   ASSERT_EQ(at.me.tries.failed.size(), 1U) << "nothing was learned from it, so the next try is another";
 }
 
+TEST(BiteTries, WhereTheHelixGotNoHoldTheDeviceComesAnotherWay) {
+  Onlooker at;  // nothing is simulated: there is nothing to hold
+  const WallPoint target = at.me.seen_map->at(0.5, 0.3);
+  EXPECT_EQ(BiteAttempt(target, 0, at.me).make().reason, "the helix got no hold of the wall");
+  ASSERT_EQ(at.me.tries.failed.size(), 1U);
+  const Eigen::Quaterniond failed = at.me.tries.failed[0].turn;
+  EXPECT_GT(planBite(target, at.me).turn.angularDistance(failed), 0.3);
+}
+
 TEST(BiteTries, TheHelixHoldsBesideTheThreadsOfEarlierSets) {
   Onlooker at;
   const WallPoint target = at.me.seen_map->at(0.5, 0.3);
@@ -115,6 +124,25 @@ TEST(SetInHand, ABiteThatMissesSpoilsThePatternOnlyWhereEarlierOnesHaveMissed) {
   set.pattern = Technique::C;
   EXPECT_FALSE(set.isSpoiledBy(beside, *map)) << "it was spoiled already";
   EXPECT_FALSE(SetInHand{}.isSpoiledBy(beside, *map)) << "a bite of its own";
+}
+
+// Bites 4 and 5 are the corners of a U of seven.
+TEST(SetInHand, AGivenUpBiteIsTakenBesideItsTargetOnlyWhereThePatternNeedsIt) {
+  Onlooker at;
+  SutureSetGoal goal;
+  goal.centre = {0.5, 0.3};
+  goal.length = 13e-3;
+  const std::shared_ptr<const AnatomicalMap> map = at.me.seen_map;
+  SetInHand set{Technique::U, targetsOf(goal, at.me), 4};
+  const std::optional<WallPoint> place = set.placeInstead(*map);
+  ASSERT_TRUE(place.has_value());
+  EXPECT_NEAR((map->position(*place) - map->position(set.points[4])).norm(), 10e-3, 2e-3);
+  EXPECT_FALSE(set.isSpoiledBy(*place, *map));
+  set.next = 1;
+  EXPECT_FALSE(set.placeInstead(*map).has_value()) << "one bite less on a leg is still a U";
+  set.next = 4;
+  set.pattern = Technique::C;
+  EXPECT_FALSE(set.placeInstead(*map).has_value()) << "no place makes it a C";
 }
 
 /// Steps for a motion under a force [N]; -1: stopped.
