@@ -18,15 +18,17 @@ class BuildWithCMake(build_ext):
     def run(self):
         if not os.path.isdir(os.path.join(HERE, "..", "vibe_core")):
             raise SystemExit("There is no folder vibe_core beside vibe_python; install from the whole repository")
-        build = os.path.abspath(os.environ.get("VIBE_PYTHON_BUILD", os.path.join(self.build_temp, "cmake")))
+        core = os.environ.get("VIBE_CORE_PREFIX", "")  # an installed core, instead of building one
+        build = os.path.abspath(os.path.join(self.build_temp, "cmake"))
         prefix = os.path.join(os.path.abspath(self.build_temp), "prefix")
         shutil.rmtree(prefix, ignore_errors=True)
+        if core:
+            shutil.copytree(core, prefix, symlinks=True)
         os.makedirs(build, exist_ok=True)
         self.cmake("-S", HERE, "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DBUILD_TESTING=OFF",
-                   "-DCMAKE_INSTALL_PREFIX=" + prefix, "-DCMAKE_INSTALL_LIBDIR=lib",
+                   "-DVIBE_CORE_PREFIX=" + core, "-DCMAKE_INSTALL_PREFIX=" + prefix, "-DCMAKE_INSTALL_LIBDIR=lib",
                    "-DPython_EXECUTABLE=" + sys.executable, "-DPYTHON_EXECUTABLE=" + sys.executable)
-        self.cmake("--build", build, "-j", os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count() or 1)),
-                   "--target", "vibe_python", "vibe_core", "vibe_mesh_reader", "vibe_headless", "vibe_technique")
+        self.cmake("--build", build, "-j", os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count() or 1)))
         self.cmake("--install", build)
         package = os.path.join(self.build_lib, "vibe") if not self.inplace else os.path.join(HERE, "python", "vibe")
         self.gather(prefix, package)

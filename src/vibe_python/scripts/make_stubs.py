@@ -51,6 +51,12 @@ def body(documentation, indent):
     return [indent + line if line else "" for line in ('"""' + text + '"""').split("\n")]
 
 
+def is_shown(name, member):
+    """What pybind11 makes of every class by itself is not."""
+    own = name in ("__init__", "__enter__", "__exit__") and not (member.__doc__ or "").startswith("Initialize self")
+    return callable(member) and (own or not name.startswith("_"))
+
+
 def class_stub(cls):
     base = cls.__bases__[0]
     inherits = "" if base.__name__ == "pybind11_object" else f"({base.__name__})"
@@ -59,7 +65,7 @@ def class_stub(cls):
         if isinstance(member, property):
             lines += ["    @property", f"    def {name}(self) -> {property_type(member)}:"]
             lines += body(member.__doc__, "        ")
-        elif callable(member) and (not name.startswith("_") or name in ("__init__", "__enter__", "__exit__")):
+        elif is_shown(name, member):
             lines += [f"    def {name}{signature(member, name)}:"] + body(member.__doc__, "        ")
     return lines
 

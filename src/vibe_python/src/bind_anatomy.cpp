@@ -39,29 +39,36 @@ WallPoint pointOf(const Anatomy& anatomy, int triangle, const py::handle& weight
 }  // namespace
 
 void bindAnatomy(py::module_& module) {
-  py::class_<Anatomy>(module, "Anatomy",
-                      "Anatomical coordinates of a stomach in the shape that it has when this is made: along its axis, 0 "
-                      "apex of the fundus to 1 duodenum, and around it, angle from the greater curvature [rad], positive "
-                      "to the front. A place of the wall is a triangle and the weights (3,) of its corners.")
+  py::class_<Anatomy>(
+      module, "Anatomy",
+      "Anatomical coordinates of a stomach in the shape that it has when this is made: along its axis, 0 "
+      "apex of the fundus to 1 duodenum, and around it, angle from the greater curvature [rad], positive "
+      "to the front. A place of the wall is a triangle and the weights (3,) of its corners.")
       .def(py::init(&anatomyOf), py::arg("simulation"), "Takes some 40 ms for 3,618 particles.")
-      .def("at", [](const Anatomy& a, double along, double around) { return asTuple(a.map.at(along, around)); },
-           py::arg("along"), py::arg("around"),
-           "The wall at a place: (triangle, weight (3,)). Raises vibe.Error in the openings of the organ.")
-      .def("along", [](const Anatomy& a, int t, const py::handle& w) { return a.map.along(pointOf(a, t, w)); },
-           py::arg("triangle"), py::arg("weight"), "Position along the axis [1].")
-      .def("around", [](const Anatomy& a, int t, const py::handle& w) { return a.map.around(pointOf(a, t, w)); },
-           py::arg("triangle"), py::arg("weight"), "Angle around the axis [rad].")
-      .def("position",
-           [](const Anatomy& a, int t, const py::handle& w) {
-             return py::array_t<double>(3, a.map.position(pointOf(a, t, w)).eval().data());
-           },
-           py::arg("triangle"), py::arg("weight"), "New array (3,) [m].")
-      .def("outward",
-           [](const Anatomy& a, int t, const py::handle& w) {
-             return py::array_t<double>(3, a.map.outward(pointOf(a, t, w)).eval().data());
-           },
-           py::arg("triangle"), py::arg("weight"), "New array (3,): unit vector out of the lumen.")
-      .def_property_readonly("axis_length", [](const Anatomy& a) { return a.map.axisLength(); }, "[m]");
+      .def(
+          "at", [](const Anatomy& a, double along, double around) { return asTuple(a.map.at(along, around)); },
+          py::arg("along"), py::arg("around"),
+          "The wall at a place: (triangle, weight (3,)). Raises vibe.Error in the openings of the organ.")
+      .def(
+          "along", [](const Anatomy& a, int t, const py::handle& w) { return a.map.along(pointOf(a, t, w)); },
+          py::arg("triangle"), py::arg("weight"), "Position along the axis [1].")
+      .def(
+          "around", [](const Anatomy& a, int t, const py::handle& w) { return a.map.around(pointOf(a, t, w)); },
+          py::arg("triangle"), py::arg("weight"), "Angle around the axis [rad].")
+      .def(
+          "position",
+          [](const Anatomy& a, int t, const py::handle& w) {
+            return py::array_t<double>(3, a.map.position(pointOf(a, t, w)).eval().data());
+          },
+          py::arg("triangle"), py::arg("weight"), "New array (3,) [m].")
+      .def(
+          "outward",
+          [](const Anatomy& a, int t, const py::handle& w) {
+            return py::array_t<double>(3, a.map.outward(pointOf(a, t, w)).eval().data());
+          },
+          py::arg("triangle"), py::arg("weight"), "New array (3,): unit vector out of the lumen.")
+      .def_property_readonly(
+          "axis_length", [](const Anatomy& a) { return a.map.axisLength(); }, "Length of the axis [m].");
 }
 
 }  // namespace vibe::python

@@ -55,8 +55,7 @@ void stepOne(Session& session, const StepInput& to, int steps) {
   StepInput from = to;
   from.joints = session.simulation.state().joints;
   session.events.clear();
-  for (int k = 1; k <= steps; ++k)
-    session.step(k == steps ? to : inputAt(from, to, static_cast<double>(k) / steps));
+  for (int k = 1; k <= steps; ++k) session.step(k == steps ? to : inputAt(from, to, static_cast<double>(k) / steps));
 }
 
 std::vector<std::vector<Event>> stepAll(const Handles& handles, const py::handle& joints, const py::handle& buttons,

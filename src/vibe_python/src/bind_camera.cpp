@@ -19,8 +19,8 @@ py::dict camera(SimulationHandle& handle, int width, int height, double field_of
   const Use use(handle);
   needTool(use.model());
   const std::vector<py::ssize_t> shape{height, width};
-  py::array_t<float> depth(shape), normal(normals ? std::vector<py::ssize_t>{height, width, 3}
-                                                  : std::vector<py::ssize_t>{0, 0, 3});
+  py::array_t<float> depth(shape),
+      normal(normals ? std::vector<py::ssize_t>{height, width, 3} : std::vector<py::ssize_t>{0, 0, 3});
   py::array_t<std::int32_t> triangle(shape);
   py::array_t<std::uint8_t> label(shape);
   const Organ& organ = use.model().organ;

@@ -92,10 +92,11 @@ py::dict recognise(const py::handle& bites, bool printed) {
 
 void bindProcedure(SimulationClass& simulation) {
   simulation
-      .def("threads", &threads,
-           "A dictionary per suture set: stage, technique, margin; bites (n, 3) [m], depth (n,) [m], time (n,) [s], "
-           "full_thickness: n booleans; length (n-1,) [m] and tension (n-1,) [N] between them; drawn [m], cinch_tension "
-           "[N], tear_outs.")
+      .def(
+          "threads", &threads,
+          "A dictionary per suture set: stage, technique, margin; bites (n, 3) [m], depth (n,) [m], time (n,) [s], "
+          "full_thickness: n booleans; length (n-1,) [m] and tension (n-1,) [N] between them; drawn [m], cinch_tension "
+          "[N], tear_outs.")
       .def("procedure", &procedure,
            "A dictionary: phase, grips, turns [1], arm_closed, needle_on_arm, needle_loaded, blood_lost [m^3], "
            "thread_used [m].")

@@ -22,8 +22,9 @@ void bindSnapshot(py::module_& module) {
   py::class_<SnapshotHandle>(module, "Snapshot",
                              "The state of a simulation at one time. Cheap to make and to restore; can be pickled.")
       .def(py::init(fromBytes), py::arg("bytes"), "Of the bytes of a snapshot; they are checked when it is restored.")
-      .def("to_bytes", [](const SnapshotHandle& s) { return py::bytes(s.encoded()); },
-           "The bytes, as Simulation.save() writes them to a file.")
+      .def(
+          "to_bytes", [](const SnapshotHandle& s) { return py::bytes(s.encoded()); },
+          "The bytes, as Simulation.save() writes them to a file.")
       .def(py::pickle([](const SnapshotHandle& s) { return py::bytes(s.encoded()); }, fromBytes));
 }
 

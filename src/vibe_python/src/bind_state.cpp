@@ -91,15 +91,17 @@ void bindArrays(SimulationClass& simulation) {
 
 void bindScalars(SimulationClass& simulation) {
   simulation
-      .def_property_readonly("pressure", [](SimulationHandle& s) { return Use(s).state().pressure; },
-                             "Of the gas, above ambient [Pa].")
-      .def_property_readonly("volume", [](SimulationHandle& s) { return Use(s).state().volume; }, "Of the lumen [m^3].")
-      .def_property_readonly("joints",
-                             [](SimulationHandle& s) {
-                               const Use use(s);
-                               return py::array_t<double>(kJointCount, use.state().joints.data());
-                             },
-                             "New array (7,): where the hand has the joints, in the order of vibe.JOINTS [m], [rad].");
+      .def_property_readonly(
+          "pressure", [](SimulationHandle& s) { return Use(s).state().pressure; }, "Of the gas, above ambient [Pa].")
+      .def_property_readonly(
+          "volume", [](SimulationHandle& s) { return Use(s).state().volume; }, "Of the lumen [m^3].")
+      .def_property_readonly(
+          "joints",
+          [](SimulationHandle& s) {
+            const Use use(s);
+            return py::array_t<double>(kJointCount, use.state().joints.data());
+          },
+          "New array (7,): where the hand has the joints, in the order of vibe.JOINTS [m], [rad].");
 }
 
 }  // namespace

@@ -101,17 +101,23 @@ void reset(SimulationHandle& handle, std::optional<std::uint64_t> seed) {
 
 void bindLife(SimulationClass& simulation) {
   simulation
-      .def(py::init(&make), py::arg("model"), py::arg("seed") = py::none(), py::arg("threads") = 1,
-           py::arg("metrics") = true,
-           "Begins at the initial state. seed: instead of the scene's; threads: inside a step, results do not depend on "
-           "them; metrics=False: measures() stays empty.")
+      .def(
+          py::init(&make), py::arg("model"), py::arg("seed") = py::none(), py::arg("threads") = 1,
+          py::arg("metrics") = true,
+          "Begins at the initial state. seed: instead of the scene's; threads: inside a step, results do not depend on "
+          "them; metrics=False: measures() stays empty.")
       .def("close", &SimulationHandle::close, "Ends it; views stay valid. Whatever uses it later raises vibe.Error.")
       .def("__enter__", [](const py::object& self) { return self; })
       .def("__exit__", [](SimulationHandle& s, const py::args&) { s.close(); })
       .def_property_readonly("closed", &SimulationHandle::closed, "Whether close() was called.")
-      .def("warm_up", [](SimulationHandle& s) { const Use use(s); use->simulation.warmUp(); },
-           py::call_guard<py::gil_scoped_release>(),
-           "Takes the time that the first step needs besides; changes no result.");
+      .def(
+          "warm_up",
+          [](SimulationHandle& s) {
+            const Use use(s);
+            use->simulation.warmUp();
+          },
+          py::call_guard<py::gil_scoped_release>(),
+          "Takes the time that the first step needs besides; changes no result.");
 }
 
 void bindSteps(SimulationClass& simulation) {
@@ -123,31 +129,44 @@ void bindSteps(SimulationClass& simulation) {
       .def("follow", &follow, py::arg("trainee"), py::arg("seconds") = py::none(),
            "Lets a Trainee or a Script give the input, until it has ended, or for simulated seconds. Returns what "
            "happened.")
-      .def_property_readonly("input", [](SimulationHandle& s) { return asKeywords(Use(s)->simulation.input()); },
-                             "The input in force, as keywords of step().")
-      .def_property_readonly("events", [](SimulationHandle& s) { return Use(s)->events; },
-                             "What happened in the last call of step(), run() or follow().")
-      .def_property_readonly("time", [](SimulationHandle& s) { return Use(s).state().time; }, "Simulated time [s].")
-      .def_property_readonly("steps", [](SimulationHandle& s) { return Use(s).state().step; },
-                             "Steps since the initial state, through snapshots.");
+      .def_property_readonly(
+          "input", [](SimulationHandle& s) { return asKeywords(Use(s)->simulation.input()); },
+          "The input in force, as keywords of step().")
+      .def_property_readonly(
+          "events", [](SimulationHandle& s) { return Use(s)->events; },
+          "What happened in the last call of step(), run() or follow().")
+      .def_property_readonly(
+          "time", [](SimulationHandle& s) { return Use(s).state().time; }, "Simulated time [s].")
+      .def_property_readonly(
+          "steps", [](SimulationHandle& s) { return Use(s).state().step; },
+          "Steps since the initial state, through snapshots.");
 }
 
 void bindSnapshots(SimulationClass& simulation) {
   simulation
       .def_property_readonly(
-          "model", [](SimulationHandle& s) { return ModelHandle{Use(s)->simulation.sharedModel(), ""}; }, "Its model.")
-      .def("hash", [](SimulationHandle& s) { return Use(s)->simulation.hash(); },
-           "64 bits of all of the state: equal hashes mean equal states, and equal futures.")
+          "model",
+          [](SimulationHandle& s) {
+            return ModelHandle{Use(s)->simulation.sharedModel(), ""};
+          },
+          "Its model.")
+      .def(
+          "hash", [](SimulationHandle& s) { return Use(s)->simulation.hash(); },
+          "64 bits of all of the state: equal hashes mean equal states, and equal futures.")
       .def("snapshot", &snapshot, "The present state, in memory.")
       .def("restore", &restore, py::arg("snapshot"),
            "Back to a state; views show it. Raises vibe.Error if it is of another model.")
       .def("reset", &reset, py::arg("seed") = py::none(), "Back to the initial state.")
-      .def("save", [](SimulationHandle& s, const std::string& file) { Use(s)->simulation.saveSnapshot(file); },
-           py::arg("file"), "Writes a snapshot.")
-      .def("load", [](SimulationHandle& s, const std::string& file) {
+      .def(
+          "save", [](SimulationHandle& s, const std::string& file) { Use(s)->simulation.saveSnapshot(file); },
+          py::arg("file"), "Writes a snapshot.")
+      .def(
+          "load",
+          [](SimulationHandle& s, const std::string& file) {
             const Use use(s);
             use->replaceState(loadSnapshot(use.model(), file));
-          }, py::arg("file"), "Back to the state of a snapshot that save() or a node has written.");
+          },
+          py::arg("file"), "Back to the state of a snapshot that save() or a node has written.");
 }
 
 }  // namespace

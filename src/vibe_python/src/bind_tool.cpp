@@ -76,37 +76,39 @@ py::object impedance(SimulationHandle& handle) {
 
 void bindTool(SimulationClass& simulation) {
   simulation
-      .def_property_readonly("tip_pose",
-                             [](SimulationHandle& s) {
-                               const Use use(s);
-                               return matrixOf(linkPose(use.model(), use.state(), use.model().tip_link).matrix());
-                             },
-                             "New array (4, 4): pose of the link scope_tip in world; its x axis is the view [m].")
-      .def("link_pose",
-           [](SimulationHandle& s, const std::string& name) {
-             const Use use(s);
-             needTool(use.model());
-             return matrixOf(linkPose(use.model(), use.state(), use.model().tool->linkIndex(name)).matrix());
-           },
-           py::arg("name"), "New array (4, 4): pose of a link of the URDF in world [m].")
-      .def_property_readonly("wrench",
-                             [](SimulationHandle& s) {
-                               return py::array_t<double>(6, wrenchOf(Use(s).state()).eval().data());
-                             },
-                             "New array (6,): force [N] and torque [N m] of the tissue on the tool, mean over the last "
-                             "step, about the origin of scope_tip and in its axes.")
-      .def_property_readonly("jacobian",
-                             [](SimulationHandle& s) {
-                               const Use use(s);
-                               needTool(use.model());
-                               return matrixOf(tipJacobian(use.model(), use.state()));
-                             },
-                             "New array (6, 4): linear and angular velocity of scope_tip in world per speed of the four "
-                             "joints of the scope.")
-      .def("contacts", &contacts,
-           "Forces of the tissue on the tool in the last step. A dictionary: point (n, 3) [m], normal (n, 3) out of the "
-           "tool, zero for the grip of the helix, force (n, 3), mean over the step [N], all in world; link, kind: lists "
-           "of n names. Empty with shape matching.")
+      .def_property_readonly(
+          "tip_pose",
+          [](SimulationHandle& s) {
+            const Use use(s);
+            return matrixOf(linkPose(use.model(), use.state(), use.model().tip_link).matrix());
+          },
+          "New array (4, 4): pose of the link scope_tip in world; its x axis is the view [m].")
+      .def(
+          "link_pose",
+          [](SimulationHandle& s, const std::string& name) {
+            const Use use(s);
+            needTool(use.model());
+            return matrixOf(linkPose(use.model(), use.state(), use.model().tool->linkIndex(name)).matrix());
+          },
+          py::arg("name"), "New array (4, 4): pose of a link of the URDF in world [m].")
+      .def_property_readonly(
+          "wrench", [](SimulationHandle& s) { return py::array_t<double>(6, wrenchOf(Use(s).state()).eval().data()); },
+          "New array (6,): force [N] and torque [N m] of the tissue on the tool, mean over the last "
+          "step, about the origin of scope_tip and in its axes.")
+      .def_property_readonly(
+          "jacobian",
+          [](SimulationHandle& s) {
+            const Use use(s);
+            needTool(use.model());
+            return matrixOf(tipJacobian(use.model(), use.state()));
+          },
+          "New array (6, 4): linear and angular velocity of scope_tip in world per speed of the four "
+          "joints of the scope.")
+      .def(
+          "contacts", &contacts,
+          "Forces of the tissue on the tool in the last step. A dictionary: point (n, 3) [m], normal (n, 3) out of the "
+          "tool, zero for the grip of the helix, force (n, 3), mean over the step [N], all in world; link, kind: lists "
+          "of n names. Empty with shape matching.")
       .def("look_ahead", &lookAheadOf,
            "Where the tip looks: None, or triangle, point (3,) [m], normal (3,), distance [m].")
       .def("impedance", &impedance,

@@ -107,10 +107,11 @@ void bindTrainee(py::module_& module) {
            py::arg("seed") = py::none(),
            "protocol: a file, package://PACKAGE/file, or the text of one; novice: skill instead of the protocol's, 0 "
            "expert to 1 novice; seed: of aim errors and tremor, instead of the protocol's.")
-      .def_property_readonly("done", [](const LookingTrainee& t) { return t.trainee().done(); },
-                             "Whether every goal has ended.")
-      .def_property_readonly("activity", [](const LookingTrainee& t) { return t.trainee().activity(); },
-                             "What it is doing: 'bite 3 of 7, second try'.")
+      .def_property_readonly(
+          "done", [](const LookingTrainee& t) { return t.trainee().done(); }, "Whether every goal has ended.")
+      .def_property_readonly(
+          "activity", [](const LookingTrainee& t) { return t.trainee().activity(); },
+          "What it is doing: 'bite 3 of 7, second try'.")
       .def_property_readonly("results", &results, "A dictionary per goal: goal, reached, reason.");
   py::class_<ScriptedTrainee, TraineeHandle, std::shared_ptr<ScriptedTrainee>>(
       module, "Script", "Motions of joints and buttons over time (docs/trainee_scripts.md).")
@@ -119,7 +120,8 @@ void bindTrainee(py::module_& module) {
                                                                    : TraineeScript::load(resolveAddress(file)));
            }),
            py::arg("file"), "A file, package://PACKAGE/file, or the text of one.")
-      .def_property_readonly("duration", [](const ScriptedTrainee& t) { return t.script().duration(); }, "[s]");
+      .def_property_readonly(
+          "duration", [](const ScriptedTrainee& t) { return t.script().duration(); }, "How long it takes [s].");
 }
 
 }  // namespace vibe::python

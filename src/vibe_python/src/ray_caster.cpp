@@ -9,7 +9,8 @@ namespace vibe::python {
 
 namespace {
 
-constexpr double kNear = 1e-6;  // what is nearer along the optical axis is not seen [m]
+constexpr double kNear = 1e-6;      // what is nearer along the optical axis is not seen [m]
+constexpr double kRounding = 1e-6;  // of the edge of a triangle in the picture [pixels]
 
 struct Lens {
   double focal;  // [pixels]
@@ -30,46 +31,53 @@ Window windowOf(const Eigen::Vector3d* const (&corner)[3], const Lens& lens, con
     low = low.min(pixel);
     high = high.max(pixel);
   }
-  const auto within = [](double place, int size) {
-    return static_cast<int>(std::clamp(place, 0.0, static_cast<double>(size)));
+  // pixel k is seen through its middle, k + 0.5
+  const auto first = [](double edge, int size) {
+    return static_cast<int>(std::clamp(std::ceil(edge - 0.5 - kRounding), 0.0, static_cast<double>(size)));
   };
-  return {within(std::floor(low.x() + lens.centre_x), image.width),
-          within(std::ceil(high.x() + lens.centre_x) + 1, image.width),
-          within(std::floor(low.y() + lens.centre_y), image.height),
-          within(std::ceil(high.y() + lens.centre_y) + 1, image.height)};
+  const auto last = [](double edge, int size) {
+    return static_cast<int>(std::clamp(std::floor(edge - 0.5 + kRounding) + 1, 0.0, static_cast<double>(size)));
+  };
+  return {first(low.x() + lens.centre_x, image.width), last(high.x() + lens.centre_x, image.width),
+          first(low.y() + lens.centre_y, image.height), last(high.y() + lens.centre_y, image.height)};
 }
 
-/// The rays (u, v, 1) / focal against one triangle: signs of volumes, linear in u and v (Moeller and Trumbore 1997 with
-/// the camera as origin).
+/// The rays (x, y, 1) of a row of the picture against one triangle: signs of volumes, linear in x (Moeller and Trumbore
+/// 1997 with the camera as origin).
 class TriangleCast {
  public:
-  TriangleCast(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c)
-      : side_{b.cross(c), c.cross(a), a.cross(b)}, normal_((b - a).cross(c - a)), height_(normal_.dot(a)) {}
-
-  // @return depth along the optical axis; 0: missed
-  double depth(const Eigen::Vector3d& ray) const {
-    const double p = ray.dot(side_[0]), q = ray.dot(side_[1]), r = ray.dot(side_[2]);
-    if (!((p >= 0 && q >= 0 && r >= 0) || (p <= 0 && q <= 0 && r <= 0))) return 0;
-    const double slope = ray.dot(normal_);
-    return slope == 0 ? 0 : height_ / slope;
+  TriangleCast(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+    const Eigen::Vector3d normal = (b - a).cross(c - a);
+    rows_ << b.cross(c).transpose(), c.cross(a).transpose(), a.cross(b).transpose(), normal.transpose();
+    height_ = normal.dot(a);
   }
-  const Eigen::Vector3d& normal() const { return normal_; }
+
+  void beginRow(double y) { row_ = rows_.col(1) * y + rows_.col(2); }
+  // @return depth along the optical axis; 0: missed
+  double depth(double x) const {
+    const Eigen::Vector4d value = rows_.col(0) * x + row_;
+    const bool in = value[0] >= 0 && value[1] >= 0 && value[2] >= 0,
+               out = value[0] <= 0 && value[1] <= 0 && value[2] <= 0;
+    return (in || out) && value[3] != 0 ? height_ / value[3] : 0;
+  }
 
  private:
-  Eigen::Vector3d side_[3], normal_;
+  Eigen::Matrix<double, 4, 3> rows_;
+  Eigen::Vector4d row_;
   double height_;
 };
 
-void cast(const TriangleCast& triangle, int number, const Window& window, const Lens& lens, CastImage& image) {
-  for (int v = window.top; v < window.bottom; ++v)
+void cast(TriangleCast triangle, int number, const Window& window, const Lens& lens, CastImage& image) {
+  for (int v = window.top; v < window.bottom; ++v) {
+    triangle.beginRow((v + 0.5 - lens.centre_y) / lens.focal);
     for (int u = window.left; u < window.right; ++u) {
-      const Eigen::Vector3d ray((u + 0.5 - lens.centre_x) / lens.focal, (v + 0.5 - lens.centre_y) / lens.focal, 1);
-      const double depth = triangle.depth(ray);
+      const double depth = triangle.depth((u + 0.5 - lens.centre_x) / lens.focal);
       const int pixel = v * image.width + u;
       if (!(depth > kNear) || image.depth[pixel] <= static_cast<float>(depth)) continue;
       image.depth[pixel] = static_cast<float>(depth);
       image.triangle[pixel] = number;
     }
+  }
 }
 
 void findNormals(const SurfaceView& surface, const std::vector<Eigen::Vector3d>& place, CastImage& image) {

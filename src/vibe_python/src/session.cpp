@@ -52,7 +52,8 @@ void Session::step(const StepInput& input) {
 }
 
 void Session::replaceState(const State& state) {
-  // the metrics begin anew with the state; the arrays stay where they are, since lists of one length are copied in place
+  // the metrics begin anew with the state; the arrays stay where they are, since lists of one length are copied in
+  // place
   State kept = std::move(simulation.editState());
   simulation.replaceState(state);
   kept = simulation.state();

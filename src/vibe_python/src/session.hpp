@@ -23,7 +23,8 @@ struct Session {
   void replaceState(const State& state);
 };
 
-/// The Python object: a session that can be closed, belongs to the process that made it, and serves one thread at a time.
+/// The Python object: a session that can be closed, belongs to the process that made it, and serves one thread at a
+/// time.
 class SimulationHandle {
  public:
   SimulationHandle(std::shared_ptr<const Model> model, const SimulationSettings& settings);

@@ -24,7 +24,7 @@ class Expert:
                 raise vibe.Error(f"There is no expert for the task {task.name}.")
             return
         along, around = task.place[0]
-        text = "skill: {like: expert, look_time: 0 s}\n" + task.protocol.format(along=along, around=around)
+        text = "name: expert\nskill: {like: expert, look_time: 0 s}\n" + task.protocol.format(along=along, around=around)
         self.trainee = vibe.Trainee(task.organ[0].model, text, seed=self.seed)
 
     def action(self, observation):
