@@ -1,15 +1,19 @@
 """Builds the module with plain CMake, together with the core and what its scenes name, into one folder that may be
 moved. Needs the Debian packages that docs/python.md lists; neither ROS nor a network."""
 
+import atexit
 import os
 import shutil
 import subprocess
 import sys
+import tempfile
 
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+SCRATCH = tempfile.mkdtemp(prefix="vibe_python_")  # nothing is left beside the sources
+atexit.register(shutil.rmtree, SCRATCH, ignore_errors=True)
 
 
 class BuildWithCMake(build_ext):
@@ -61,6 +65,7 @@ setup(
     package_dir={"": "python"},
     package_data={"vibe": ["py.typed", "*.pyi"]},
     ext_modules=[Extension("vibe._core", sources=[])],
+    options={"build": {"build_base": SCRATCH}, "egg_info": {"egg_base": SCRATCH}},
     cmdclass={"build_ext": BuildWithCMake},
     zip_safe=False,
 )

@@ -107,6 +107,7 @@ void castRays(const SurfaceView& surface, const Eigen::Isometry3d& camera, doubl
     const Eigen::Vector3d* const corner[3] = {&place[t[0]], &place[t[1]], &place[t[2]]};
     if (corner[0]->z() <= kNear && corner[1]->z() <= kNear && corner[2]->z() <= kNear) continue;
     const Window window = windowOf(corner, lens, image);
+    if (window.left >= window.right || window.top >= window.bottom) continue;
     cast(TriangleCast(*corner[0], *corner[1], *corner[2]), static_cast<int>(i), window, lens, image);
   }
   for (int i = 0; i < pixels; ++i)
