@@ -29,6 +29,11 @@ class Worlds(unittest.TestCase):
     def setUpClass(cls):
         cls.model = vibe.load(**SMALL)
 
+    @staticmethod
+    def other():
+        """A simulation of another model."""
+        return vibe.Simulation(vibe.load(geometry={"kind": "sphere", "particles": 100}))
+
     def simulation(self, **settings):
         return vibe.Simulation(self.model, **settings)
 
@@ -44,11 +49,11 @@ class BitsTest(Worlds):
         program = headless()
         if program is None:
             self.skipTest("vibe_headless is not built")
+        model = vibe.load()
         for script, maker in (("demo/grabs.yaml", lambda m, f: vibe.Script(f)), ("first.yaml", vibe.Trainee)):
             file = "package://vibe_core/trainees/" + script
             said = subprocess.run([program, "--quiet", "--duration", "3", "--script", file], check=True,
                                   stdout=subprocess.PIPE, text=True).stdout
-            model = vibe.load()
             simulation = vibe.Simulation(model)
             simulation.follow(maker(model, file), seconds=3)
             self.assertEqual(said.strip(), f"state hash: {simulation.hash():016x}", script)
@@ -135,7 +140,7 @@ class SnapshotTest(Worlds):
 
     def test_of_another_model_is_refused(self):
         snapshot = self.simulation().snapshot()
-        other = vibe.Simulation(vibe.load(geometry={"particles": 301}))
+        other = self.other()
         hashed = other.hash()
         for wrong in (snapshot, vibe.Snapshot(b""), vibe.Snapshot(snapshot.to_bytes()[:-9])):
             with self.assertRaises(vibe.Error):
@@ -238,7 +243,7 @@ class RefusalTest(Worlds):
 
     def test_two_threads(self):
         simulation = self.simulation()
-        runner = threading.Thread(target=simulation.run, args=(3000,), kwargs={"insertion": 0.1, "insufflate": True})
+        runner = threading.Thread(target=simulation.run, args=(1000,), kwargs={"insertion": 0.1, "insufflate": True})
         runner.start()
         sentences = set()
         while runner.is_alive() and not sentences:
@@ -248,11 +253,11 @@ class RefusalTest(Worlds):
                 sentences.add(str(error))
         runner.join()
         self.assertIn("in use by another thread", sentences.pop())
-        self.assertEqual(simulation.steps, 3000)
+        self.assertEqual(simulation.steps, 1000)
 
     def test_a_trainee_of_another_model(self):
         trainee = vibe.Trainee(self.model, "name: short\ngoals:\n  - insufflate\n")
-        other = vibe.Simulation(vibe.load(geometry={"particles": 301}))
+        other = self.other()
         self.refused("another model", other.follow, trainee)
 
     def test_after_a_fork(self):
