@@ -8,6 +8,7 @@ packagesOf() {
     devices) echo vibe_firmware vibe_hardware ;;
     vision) echo vibe_vision ;;
     measurements) echo vibe_latency vibe_prototype vibe_benchmarks ;;
+    python) echo vibe_python ;;
     tests) echo vibe_testing vibe_system_tests ;;
     *) return 1 ;;
   esac
@@ -22,7 +23,7 @@ keysOf() {
   esac
 }
 
-parts=(session devices vision measurements firmware tests)
+parts=(session devices vision measurements python firmware tests)
 
 # checkPart PART: ends the script if there is no such part
 checkPart() {

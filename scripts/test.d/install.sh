@@ -53,6 +53,14 @@ hasMeshes() {
 }
 check 'the meshes of the URDF are installed' hasMeshes
 
+usesTheModule() {
+  inSpace /usr/bin/python3 -B -c 'import vibe, vibe.env
+s = vibe.Simulation(vibe.load("package://vibe_core/scenes/sphere.yaml"))
+s.run(5)
+assert s.steps == 5 and vibe.__file__.startswith("'"$space"'"), vibe.__file__'
+}
+check 'the Python module runs a scene' usesTheModule
+
 check 'rostests of others can use vibe_testing' inSpace /usr/bin/python3 -c \
   'import vibe_testing.program, vibe_testing.recorder, vibe_testing.diagnostics, vibe_testing.virtual_display'
 

@@ -1,0 +1,81 @@
+"""A simulator of endoscopic sleeve gastroplasty: a soft stomach under an endoscope with a suturing device.
+
+    import vibe
+
+    model = vibe.load()                                  # the default stomach, 3,618 particles
+    simulation = vibe.Simulation(model)
+    simulation.run(600, insertion=0.1, insufflate=True)  # ten seconds
+    print(simulation.volume, simulation.tip_pose)        # [m^3], [m]
+
+Units are SI, the frame is the world: x to the patient's front, y to the patient's left, z to the head. The same model
+and the same inputs give the same bits. What is wrong raises vibe.Error: one sentence with the place and the remedy.
+
+    load         a model from a scene file, with other values as keywords
+    Simulation   a running simulation: step, run, follow, snapshot, restore; arrays, tool, contacts, threads, measures
+    Trainee      pursues the goals of a protocol; Script: motions over time
+    Anatomy      places of the wall by anatomical coordinates
+    vibe.env     environments for learning, in the interface of Gymnasium
+
+docs/python.md of the repository is a tutorial.
+"""
+
+import json as _json
+import os as _os
+
+from ._core import (
+    BUTTONS,
+    JOINTS,
+    Anatomy,
+    Error,
+    Event,
+    InputSource,
+    Model,
+    Script,
+    Simulation,
+    Snapshot,
+    Trainee,
+    build_model as _build_model,
+    measure_units,
+    observe_all,
+    recognise_technique,
+    step_all,
+    wall_points,
+)
+
+__version__ = "0.1.0"
+__all__ = [
+    "BUTTONS", "JOINTS", "Anatomy", "Error", "Event", "InputSource", "Model", "Script", "Simulation", "Snapshot",
+    "Trainee", "load", "measure_units", "observe_all", "recognise_technique", "step_all", "wall_points",
+]
+
+DEFAULT_SCENE = "package://vibe_core/scenes/stomach.yaml"
+
+
+def _plain(value):
+    """What json does not know: numbers and arrays of numpy, and paths."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if hasattr(value, "__fspath__"):
+        return _os.fspath(value)
+    raise Error(f"An override is a {type(value).__name__}; give numbers, texts, lists and dictionaries.")
+
+
+def _overrides(sections):
+    try:
+        return _json.dumps(sections, default=_plain, allow_nan=False) if sections else ""
+    except ValueError:
+        raise Error("An override holds a number that is not finite; give numbers in SI units.") from None
+
+
+def load(scene=DEFAULT_SCENE, *, mesh=None, **sections):
+    """The model of a scene file, with other values for some of its keys.
+
+    scene     a file or package://PACKAGE/file (docs/scenes.md); default: the stomach of 3,618 particles
+    mesh      a surface file (OBJ, STL, PLY, glTF) as the organ instead of the scene's; Model.mesh_report says what was
+              guessed of it
+    sections  keys of the scene by section, in SI units or with a unit:
+              load(geometry={"particles": 1000}, gas={"regulated_pressure": "8 mmHg"}, seed=2)
+
+    Takes 0.2 to 1 s, tens of seconds for a mesh. Raises Error for an unknown key or a value outside of its range.
+    """
+    return _build_model(_os.fspath(scene), _overrides(sections), "" if mesh is None else _os.fspath(mesh))

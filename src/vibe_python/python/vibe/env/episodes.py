@@ -1,0 +1,224 @@
+"""Episodes side by side: what the single and the vector environment share, so that both have the same bits."""
+
+import functools
+
+import numpy as np
+
+import vibe
+
+from . import organs as _organs
+from .api import spaces
+
+INSUFFLATE = vibe.BUTTONS.index("insufflate")
+SUCCESS = 10.0  # reward of an episode that succeeds
+FORCE_FREE = 2.0  # force on the tool that costs nothing [N]; largest of the sleeve that docs/accuracy.md measures
+WALL_POINTS = 48  # places of the wall that an observation holds
+
+
+class Task:
+    """What an environment asks for. Subclasses say which actions there are, what is observed besides, what is rewarded
+    and when an episode ends; an instance holds the episodes of `count` slots as arrays with a row per slot."""
+
+    name = ""
+    seconds = 10.0  #: simulated time until an episode is truncated
+    rate = 20  #: actions per simulated second
+    speeds = np.array([0.05, 1.0, 1.0, 1.0])  #: of the joints at action 1 [m/s], [rad/s]
+    along, around = (0.3, 0.72), (-1.2, 1.2)  #: uniform distribution of the goal: axis [1], angle around it [rad]
+
+    def __init__(self, count=1, *, particles=1000, organs=_organs.TRAINING, action="joints", threads=1, camera=None):
+        if action not in ("joints", "tip"):
+            raise vibe.Error(f"'action' is '{action}'; use 'joints' or 'tip'.")
+        if action == "tip" and len(self.speeds) > 4:
+            raise vibe.Error(f"The task {self.name} moves more than the tip; use action='joints'.")
+        if not organs:
+            raise vibe.Error("'organs' is empty; give pairs (shape, scale), such as vibe.env.TRAINING.")
+        self.count, self.particles, self.organs = count, particles, tuple(organs)
+        self.mode, self.threads, self.camera = action, threads, camera
+        self.simulation = [None] * count
+        self.organ = [None] * count
+        self.random = [np.random.default_rng(k) for k in range(count)]
+        self.goal_triangle = np.zeros((count, 1), int)
+        self.goal_weight = np.full((count, 1, 3), 1 / 3)
+        self.wall_triangle = np.zeros((count, WALL_POINTS), int)
+        self.wall_weight = np.full((count, WALL_POINTS, 3), 1 / 3)
+        self.seen = None
+        self.time = np.zeros(count)
+        self.events = [[] for _ in range(count)]
+        self.best_force = np.zeros(count)
+        self.closed = False
+
+    # --- spaces
+
+    @functools.cached_property
+    def action_space(self):
+        size = 3 if self.mode == "tip" else len(self.speeds) + (len(vibe.BUTTONS) if self.buttons else 0)
+        return spaces.Box(-1.0, 1.0, (size,), np.float32)
+
+    buttons = False  #: whether the action ends with the six buttons, pressed above 0
+
+    @functools.cached_property
+    def observation_space(self):
+        def box(*shape, low=-np.inf, high=np.inf, dtype=np.float32):
+            return spaces.Box(low, high, shape, dtype)
+
+        parts = {
+            "joints": box(len(vibe.JOINTS)), "tip": box(3), "direction": box(3), "wrench": box(6), "goal": box(3),
+            "to_goal": box(3), "wall": box(WALL_POINTS, 3),
+        }
+        if self.camera:
+            height, width = self.camera[1], self.camera[0]
+            parts["depth"] = box(height, width, low=0.0)
+            parts["label"] = box(height, width, low=0, high=5, dtype=np.uint8)
+        parts.update({name: box(*shape) for name, shape in self.further.items()})
+        return spaces.Dict(parts)
+
+    further = {}  #: observations of the task: name to shape
+
+    # --- episodes
+
+    def begin(self, slot, random):
+        """A new episode in one slot: draws stomach, start and goal."""
+        self._check_open()
+        self.random[slot] = random
+        drawn = self.organs[random.integers(len(self.organs))]
+        organ = _organs.organ(*drawn, self.particles)
+        if self.organ[slot] is not organ:
+            if self.simulation[slot] is not None:
+                self.organ[slot].give(self.simulation[slot])
+            self.organ[slot], self.simulation[slot] = organ, organ.take()
+        self.simulation[slot].restore(organ.starts[random.integers(len(organ.starts))])
+        self._draw_goal(slot, organ, random)
+        triangles = len(organ.model.triangles)
+        self.wall_triangle[slot] = (np.arange(WALL_POINTS) * triangles) // WALL_POINTS
+        self.time[slot] = 0
+        self.best_force[slot] = 0
+        self.events[slot] = []
+        self.seen = None
+        self.begun(slot)
+
+    def _draw_goal(self, slot, organ, random):
+        joints = self.simulation[slot].joints
+        for _ in range(100):
+            place = random.uniform(*self.along), random.uniform(*self.around)
+            triangle, weight, position = organ.target(*place)
+            if self.reachable(organ.model, position, organ.anatomy.outward(triangle, weight), joints):
+                break
+        self.goal_triangle[slot, 0], self.goal_weight[slot, 0] = triangle, weight
+        self.place = getattr(self, "place", [None] * self.count)
+        self.place[slot] = place
+
+    def reachable(self, model, position, outward, joints):
+        """Whether the scope can bring its tip there, as far as its joints go."""
+        found = model.inverse_kinematics(position, outward, joints)
+        return np.linalg.norm(model.forward_kinematics(found)[:3, 3] - position) < 1e-3
+
+    def begun(self, slot):
+        """For subclasses: what begins with an episode."""
+
+    # --- steps
+
+    def advance(self, actions):
+        """One action in every slot. Returns rewards, terminated and truncated (count,)."""
+        self._check_open()
+        actions = np.asarray(actions, float)
+        expected = (self.count,) + self.action_space.shape
+        if actions.shape != expected:
+            raise vibe.Error(f"The action has the shape {actions.shape}; give one of the shape {expected}.")
+        if not np.isfinite(actions).all():
+            raise vibe.Error("The action holds a value that is not finite; give numbers from -1 to 1.")
+        if any(simulation is None for simulation in self.simulation):
+            raise vibe.Error("The environment has not begun; call reset() first.")
+        actions = np.clip(actions, -1, 1)
+        before = self.current()
+        joints = before["joints"].copy()
+        joints[:, : len(self.speeds)] += self._speed(actions) * (self.speeds / self.rate)
+        buttons = np.zeros((self.count, len(vibe.BUTTONS)))
+        if self.buttons:
+            buttons[:] = actions[:, len(self.speeds):] > 0
+        buttons[:, INSUFFLATE] = 1
+        self.events = vibe.step_all(self.simulation, joints, buttons, self._steps(), self.threads)
+        self.time += 1 / self.rate
+        self.seen = self.look()
+        force = np.linalg.norm(self.seen["wrench"][:, :3], axis=1)
+        self.best_force = np.maximum(self.best_force, force)
+        reward, success = self.judge(before, self.seen)
+        reward = reward - 0.01 - 0.02 * np.maximum(force - FORCE_FREE, 0) + SUCCESS * success
+        return reward, success, ~success & (self.time >= self.seconds - 1e-9)
+
+    def _steps(self):
+        return max(1, round(1 / (self.rate * self.organ[0].model.step_period)))
+
+    def _speed(self, actions):
+        """Joint speeds as shares of the greatest, from shares of them or from the tip's velocity in its own axes."""
+        if self.mode == "joints":
+            return actions[:, : len(self.speeds)]
+        shares = np.zeros((self.count, len(self.speeds)))
+        for slot, simulation in enumerate(self.simulation):
+            speed = simulation.tip_pose[:3, :3] @ (TIP_SPEED * actions[slot])
+            shares[slot] = tip_motion(simulation.jacobian, speed, self.speeds)
+        return shares
+
+    def judge(self, before, after):
+        """For subclasses: (reward, success) of a step, each (count,)."""
+        raise NotImplementedError
+
+    # --- what is seen
+
+    def look(self):
+        """Of every slot: joints, tip, direction, turn, wrench, goal; world, SI."""
+        found = vibe.observe_all(self.simulation)
+        pose = found["tip_pose"]
+        goal = vibe.wall_points(self.simulation, self.goal_triangle, self.goal_weight)[:, 0]
+        return {"joints": found["joints"], "tip": pose[:, :3, 3], "turn": pose[:, :3, :3],
+                "direction": pose[:, :3, 0], "wrench": found["wrench"], "goal": goal, "grips": found["grips"]}
+
+    def current(self):
+        """What look() says of the present; looked up once."""
+        self.seen = self.seen or self.look()
+        return self.seen
+
+    def observe(self):
+        """The observation of every slot, as float32."""
+        seen = self.current()
+        parts = {name: seen[name] for name in ("joints", "tip", "direction", "wrench", "goal")}
+        parts["to_goal"] = np.einsum("nij,ni->nj", seen["turn"], seen["goal"] - seen["tip"])
+        parts["wall"] = vibe.wall_points(self.simulation, self.wall_triangle, self.wall_weight)
+        parts.update(self.observe_further(seen))
+        parts = {name: np.asarray(value, np.float32) for name, value in parts.items()}
+        if self.camera:
+            pictures = [simulation.camera(*self.camera) for simulation in self.simulation]
+            parts["depth"] = np.nan_to_num(np.stack([p["depth"] for p in pictures]), nan=0.0)
+            parts["label"] = np.stack([p["label"] for p in pictures])
+        return parts
+
+    def observe_further(self, seen):
+        """For subclasses: the arrays of `further`."""
+        return {}
+
+    def measures(self, slot):
+        """What `info` says of a slot."""
+        return {"organ": self.organ[slot].name, "time": float(self.time[slot]),
+                "max_force": float(self.best_force[slot]), "events": [event.kind for event in self.events[slot]]}
+
+    def close(self):
+        for organ, simulation in zip(self.organ, self.simulation):
+            if simulation is not None:
+                organ.give(simulation)
+        self.simulation = [None] * self.count
+        self.organ = [None] * self.count
+        self.closed = True
+
+    def _check_open(self):
+        if self.closed:
+            raise vibe.Error("The environment is closed; make another one.")
+
+
+TIP_SPEED = 0.04  # of the tip at action 1 [m/s]
+
+
+def tip_motion(jacobian, speed, limits, damping=2e-3):
+    """Shares (4,) of the joint speeds that move the tip with a speed (3,) [m/s]: damped least squares in units of the
+    limits, scaled down together where one would exceed its limit (Wampler 1986)."""
+    scaled = jacobian[:3] * limits
+    shares = scaled.T @ np.linalg.solve(scaled @ scaled.T + damping**2 * np.eye(3), speed)
+    return shares / max(1.0, np.abs(shares).max())

@@ -1,0 +1,78 @@
+"""Stomachs that episodes begin in: models, insufflated, with the scope at some places. Prepared when first asked for,
+then kept for the process; all environments share them."""
+
+import functools
+import threading
+
+import numpy as np
+
+import vibe
+
+SHAPES = ("sthenic", "j", "steer_horn")
+SCALES = (0.92, 1.0, 1.08)
+#: (shape, scale) of the stomachs that episodes draw from by default, and of those kept for evaluation
+TRAINING = tuple((shape, scale) for shape in SHAPES for scale in SCALES)
+HELD_OUT = (("sthenic", 0.96), ("sthenic", 1.04), ("j", 0.96), ("j", 1.04), ("steer_horn", 1.04))
+
+STARTS = 4  # places of the scope per stomach
+_SETTLING = 3.0  # simulated time from the entry to the place [s]
+_INSUFFLATION = 60.0  # at most [s]
+
+
+class Organ:
+    """One stomach: its model, the states that episodes begin with, and simulations that are free at present."""
+
+    def __init__(self, shape, scale, particles):
+        self.name = f"{shape} {scale:g}"
+        self.model = vibe.load(geometry={"particles": particles, "shape": shape, "scale": scale}, render_surface=False)
+        self._free = []
+        self._lock = threading.Lock()
+        simulation = self.take()
+        self._insufflate(simulation)
+        self.starts = [self._place(simulation, k) for k in range(STARTS)]
+        simulation.restore(self.starts[0])
+        self.anatomy = vibe.Anatomy(simulation)
+        self.give(simulation)
+
+    def take(self):
+        """A simulation of this model, for one user."""
+        with self._lock:
+            if self._free:
+                return self._free.pop()
+        return vibe.Simulation(self.model, metrics=False)
+
+    def give(self, simulation):
+        with self._lock:
+            self._free.append(simulation)
+
+    def _insufflate(self, simulation):
+        for _ in range(int(_INSUFFLATION / 0.5)):
+            events = simulation.run(round(0.5 / self.model.step_period), insufflate=True)
+            if any(event.kind == "pressure reached" for event in events):
+                break
+        self._insufflated = simulation.snapshot()
+
+    def _place(self, simulation, number):
+        """The scope between a third and a half of the way in, turned and bent a little."""
+        random = np.random.default_rng([20, number])
+        simulation.restore(self._insufflated)
+        joints = simulation.joints
+        joints[0] = random.uniform(0.08, 0.13)
+        joints[1:4] = random.uniform([-1.0, -0.2, -0.3], [1.0, 0.6, 0.3])
+        steps = round(_SETTLING / self.model.step_period)
+        buttons = np.zeros((1, len(vibe.BUTTONS)))
+        buttons[0, vibe.BUTTONS.index("insufflate")] = 1
+        vibe.step_all([simulation], joints[None], buttons, steps, 1)
+        vibe.step_all([simulation], joints[None], buttons, steps // 3, 1)
+        return simulation.snapshot()
+
+    def target(self, along, around):
+        """A place of the inside of the wall: triangle, weights (3,), and its position in the first start [m]."""
+        triangle, weight = self.anatomy.at(along, around)
+        inside = self.anatomy.position(triangle, weight)
+        return triangle, weight, inside - self.model.particle_radius * self.anatomy.outward(triangle, weight)
+
+
+@functools.lru_cache(maxsize=None)
+def organ(shape, scale, particles):
+    return Organ(shape, scale, particles)

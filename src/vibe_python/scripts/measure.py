@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""Measures what the module and the environments take, as the rows of the table in docs/python.md. CPU times of the
+process unless wall time is named; a machine with other work on it makes them longer."""
+
+import os
+import resource
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+import vibe
+from vibe.env import Environment, VectorEnvironment, organs
+
+ORGAN = [("sthenic", 1.0)]
+
+
+def median(call, count):
+    times = []
+    for _ in range(count):
+        begin = time.process_time()
+        call()
+        times.append(time.process_time() - begin)
+    return 1e3 * float(np.median(times))
+
+
+def first_step():
+    program = ("import time; t = time.monotonic(); import vibe; a = time.monotonic(); s = vibe.Simulation(vibe.load()); "
+               "s.step(); print(a - t, time.monotonic() - t, time.process_time())")
+    said = subprocess.run([sys.executable, "-c", program], stdout=subprocess.PIPE, check=True, text=True).stdout.split()
+    return [float(word) for word in said]
+
+
+def overhead():
+    """Of step() from Python against run(), where the loop is in C++, on tissue at rest: the cheapest step."""
+    simulation = vibe.Simulation(vibe.load(geometry={"kind": "sphere", "particles": 100}), metrics=False)
+    simulation.run(600)
+    best = {}
+    for _ in range(9):
+        for name, call in (("python", lambda: [simulation.step() for _ in range(2000)]),
+                           ("c++", lambda: simulation.run(2000))):
+            best[name] = min(best.get(name, np.inf), median(call, 1) / 2000)
+    return 1e3 * (best["python"] - best["c++"])
+
+
+def environment_steps(scale):
+    environment = Environment("Reach", organs=ORGAN)
+    environment.reset(seed=1)
+    random = np.random.default_rng(1)
+    spent = 0.0
+    for k in range(300):
+        if environment._ended:
+            environment.reset(seed=k)
+        action = scale * random.uniform(-1, 1, 4)
+        begin = time.process_time()
+        environment.step(action)
+        spent += time.process_time() - begin
+    return 300 / spent
+
+
+def scaling():
+    rates = {}
+    for threads in (1, 2):
+        environments = VectorEnvironment("Reach", 16, threads=threads, organs=ORGAN)
+        environments.reset(seed=1)
+        random = np.random.default_rng(1)
+        actions = [0.3 * random.uniform(-1, 1, (16, 4)) for _ in range(25)]
+        begin = time.monotonic()
+        for action in actions:
+            environments.step(action)
+        rates[threads] = 16 * len(actions) / (time.monotonic() - begin)
+        environments.close()
+    return rates
+
+
+def memory(particles):
+    """Resident memory per further simulation that has run [MB]."""
+    model = vibe.load(geometry={"particles": particles}, render_surface=False)
+    kept = []
+
+    def one():
+        simulation = vibe.Simulation(model, metrics=False)
+        simulation.run(40, insertion=0.1, insufflate=True)
+        kept.append(simulation)
+
+    one()
+    page = resource.getpagesize()
+    resident = lambda: int(open("/proc/self/statm").read().split()[1]) * page
+    before = resident()
+    for _ in range(8):
+        one()
+    return (resident() - before) / 8 / 1e6
+
+
+def main():
+    imported, stepped, cpu = first_step()
+    print(f"| `import vibe`; and the first step of the default stomach | {imported:.2f} s; {stepped:.2f} s of wall time, "
+          f"{cpu:.2f} s of CPU |")
+    print(f"| `step()` from Python more than a step in C++ | {overhead():.1f} us |")
+    organ = organs.organ("sthenic", 1.0, 1000)
+    simulation = organ.take()
+    simulation.restore(organ.starts[0])
+    print(f"| `restore()` of a snapshot, 1,000 particles | {median(lambda: simulation.restore(organ.starts[1]), 50):.2f} ms |")
+
+    def reset_and_step():
+        simulation.run(5, insertion=0.12)
+        simulation.restore(organ.starts[1])
+        reset_and_step.spent.append(median(simulation.step, 1))
+
+    reset_and_step.spent = []
+    for _ in range(20):
+        reset_and_step()
+    print(f"| the first step after it, which makes a factor anew | {np.median(reset_and_step.spent):.1f} ms |")
+    full = vibe.Simulation(vibe.load())
+    full.run(30, insertion=0.08, insufflate=True)
+    print(f"| depth and labels, 128 x 128, 3,618 particles | {median(lambda: full.camera(128, 128), 30):.2f} ms |")
+    print(f"| `Reach`, 1,000 particles, steps per second of CPU time: slow motions; all of the speed | "
+          f"{environment_steps(0.2):.0f}; {environment_steps(1.0):.0f} |")
+    rates = scaling()
+    print(f"| 16 episodes of `Reach` side by side, steps per second of wall time: one thread; two | {rates[1]:.0f}; "
+          f"{rates[2]:.0f} |")
+    print(f"| memory per further simulation, 1,000; 3,618 particles | {memory(1000):.0f} MB; {memory(3618):.0f} MB |")
+    print(f"load {os.getloadavg()[0]:.1f}, {len(os.sched_getaffinity(0))} cores", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()

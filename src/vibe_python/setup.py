@@ -1,0 +1,71 @@
+"""Builds the module with plain CMake, together with the core and what its scenes name, into one folder that may be
+moved. Needs the Debian packages that docs/python.md lists; neither ROS nor a network."""
+
+import atexit
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from setuptools import Extension, setup
+from setuptools.command.build_ext import build_ext
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SCRATCH = tempfile.mkdtemp(prefix="vibe_python_")  # nothing is left beside the sources
+atexit.register(shutil.rmtree, SCRATCH, ignore_errors=True)
+
+
+class BuildWithCMake(build_ext):
+    """The whole of the package is made by `cmake --install`."""
+
+    def run(self):
+        if not os.path.isdir(os.path.join(HERE, "..", "vibe_core")):
+            raise SystemExit("There is no folder vibe_core beside vibe_python; install from the whole repository")
+        core = os.environ.get("VIBE_CORE_PREFIX", "")  # an installed core, instead of building one
+        build = os.path.abspath(os.path.join(self.build_temp, "cmake"))
+        prefix = os.path.join(os.path.abspath(self.build_temp), "prefix")
+        shutil.rmtree(prefix, ignore_errors=True)
+        if core:
+            shutil.copytree(core, prefix, symlinks=True)
+        os.makedirs(build, exist_ok=True)
+        self.cmake("-S", HERE, "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DBUILD_TESTING=OFF",
+                   "-DVIBE_CORE_PREFIX=" + core, "-DCMAKE_INSTALL_PREFIX=" + prefix, "-DCMAKE_INSTALL_LIBDIR=lib",
+                   "-DPython_EXECUTABLE=" + sys.executable, "-DPYTHON_EXECUTABLE=" + sys.executable)
+        self.cmake("--build", build, "-j", os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count() or 1)))
+        self.cmake("--install", build)
+        package = os.path.join(self.build_lib, "vibe") if not self.inplace else os.path.join(HERE, "python", "vibe")
+        self.gather(prefix, package)
+
+    @staticmethod
+    def cmake(*words):
+        subprocess.run(["cmake", *words], check=True)
+
+    @staticmethod
+    def gather(prefix, package):
+        """Without what only programs in C++ need."""
+        for unneeded in ("include", "lib/cmake", "bin/vibe_headless", "bin/vibe_technique"):
+            path = os.path.join(prefix, unneeded)
+            if os.path.isdir(path):
+                shutil.rmtree(path)
+            elif os.path.exists(path):
+                os.remove(path)
+        shutil.copytree(prefix, package, dirs_exist_ok=True)
+
+
+setup(
+    name="vibe-esg",
+    version="0.1.0",
+    description="A simulator of endoscopic sleeve gastroplasty as a Python module",
+    license="BSD-3-Clause",
+    python_requires=">=3.9",
+    install_requires=["numpy"],
+    extras_require={"gymnasium": ["gymnasium"], "demonstrations": ["h5py"]},
+    packages=["vibe", "vibe.env"],
+    package_dir={"": "python"},
+    package_data={"vibe": ["py.typed", "*.pyi"]},
+    ext_modules=[Extension("vibe._core", sources=[])],
+    options={"build": {"build_base": SCRATCH}, "egg_info": {"egg_base": SCRATCH}},
+    cmdclass={"build_ext": BuildWithCMake},
+    zip_safe=False,
+)

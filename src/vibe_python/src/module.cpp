@@ -1,0 +1,54 @@
+#include <pybind11/pybind11.h>
+
+#include <string>
+
+#include "bindings.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/input/step_input.hpp"
+
+namespace vibe::python {
+
+namespace {
+
+namespace py = pybind11;
+
+template <class Names>
+py::tuple tupleOf(const Names& names) {
+  py::tuple tuple(names.size());
+  for (std::size_t k = 0; k < names.size(); ++k) tuple[k] = py::str(names[k]);
+  return tuple;
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_core, module) {
+  module.doc() = "The simulator library, as C++ has it; use it through the package vibe.";
+  py::register_exception<Error>(module, "Error", PyExc_RuntimeError);
+  module.attr("Error").attr("__doc__") =
+      "What the library raises: one sentence that names the error, its place and the remedy.";
+  module.attr("Error").attr("__module__") = "vibe";
+  module.attr("JOINTS") = tupleOf(kJointNames);
+  module.attr("BUTTONS") = tupleOf(kButtonNames);
+  bindModel(module);
+  bindEvents(module);
+  bindSnapshot(module);
+  SimulationClass simulation(module, "Simulation",
+                             "A running simulation: a model and everything that changes.\n\n"
+                             "Units are SI, the frame is the world: x to the patient's front, y to the left, z to the "
+                             "head. Model, state and inputs determine all that follows to the bit, whatever the number "
+                             "of threads. One thread at a time may use it; long calls let other Python threads run. "
+                             "Arrays named `view` show the present state for as long as they exist, without a copy, "
+                             "and cannot be written; all others are new arrays.");
+  bindTrainee(module);
+  bindStepping(simulation);
+  bindState(simulation);
+  bindTool(simulation);
+  bindProcedure(simulation);
+  bindCamera(simulation);
+  bindAnatomy(module);
+  bindTechnique(module);
+  bindBatch(module);
+  observeTouches();
+}
+
+}  // namespace vibe::python

@@ -1,0 +1,118 @@
+#include "ray_caster.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace vibe::python {
+
+namespace {
+
+constexpr double kNear = 1e-6;      // what is nearer along the optical axis is not seen [m]
+constexpr double kRounding = 1e-6;  // of the edge of a triangle in the picture [pixels]
+
+struct Lens {
+  double focal;  // [pixels]
+  double centre_x, centre_y;
+};
+
+/// The pixels that a triangle may cover.
+struct Window {
+  int left = 0, right = 0, top = 0, bottom = 0;  // the last ones do not belong to it
+};
+
+// A corner behind the camera may be anywhere in the picture.
+Window windowOf(const Eigen::Vector3d* const (&corner)[3], const Lens& lens, const CastImage& image) {
+  Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const Eigen::Vector3d* p : corner) {
+    if (!(p->z() > kNear)) return {0, image.width, 0, image.height};
+    const Eigen::Array2d pixel = lens.focal * p->head<2>().array() / p->z();
+    low = low.min(pixel);
+    high = high.max(pixel);
+  }
+  // pixel k is seen through its middle, k + 0.5
+  const auto first = [](double edge, int size) {
+    return static_cast<int>(std::clamp(std::ceil(edge - 0.5 - kRounding), 0.0, static_cast<double>(size)));
+  };
+  const auto last = [](double edge, int size) {
+    return static_cast<int>(std::clamp(std::floor(edge - 0.5 + kRounding) + 1, 0.0, static_cast<double>(size)));
+  };
+  return {first(low.x() + lens.centre_x, image.width), last(high.x() + lens.centre_x, image.width),
+          first(low.y() + lens.centre_y, image.height), last(high.y() + lens.centre_y, image.height)};
+}
+
+/// The rays (x, y, 1) of a row of the picture against one triangle: signs of volumes, linear in x (Moeller and Trumbore
+/// 1997 with the camera as origin).
+class TriangleCast {
+ public:
+  TriangleCast(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+    const Eigen::Vector3d normal = (b - a).cross(c - a);
+    rows_ << b.cross(c).transpose(), c.cross(a).transpose(), a.cross(b).transpose(), normal.transpose();
+    height_ = normal.dot(a);
+  }
+
+  void beginRow(double y) { row_ = rows_.col(1) * y + rows_.col(2); }
+  // @return depth along the optical axis; 0: missed
+  double depth(double x) const {
+    const Eigen::Vector4d value = rows_.col(0) * x + row_;
+    const bool in = value[0] >= 0 && value[1] >= 0 && value[2] >= 0,
+               out = value[0] <= 0 && value[1] <= 0 && value[2] <= 0;
+    return (in || out) && value[3] != 0 ? height_ / value[3] : 0;
+  }
+
+ private:
+  Eigen::Matrix<double, 4, 3> rows_;
+  Eigen::Vector4d row_;
+  double height_;
+};
+
+void cast(TriangleCast triangle, int number, const Window& window, const Lens& lens, CastImage& image) {
+  for (int v = window.top; v < window.bottom; ++v) {
+    triangle.beginRow((v + 0.5 - lens.centre_y) / lens.focal);
+    for (int u = window.left; u < window.right; ++u) {
+      const double depth = triangle.depth((u + 0.5 - lens.centre_x) / lens.focal);
+      const int pixel = v * image.width + u;
+      if (!(depth > kNear) || image.depth[pixel] <= static_cast<float>(depth)) continue;
+      image.depth[pixel] = static_cast<float>(depth);
+      image.triangle[pixel] = number;
+    }
+  }
+}
+
+void findNormals(const SurfaceView& surface, const std::vector<Eigen::Vector3d>& place, CastImage& image) {
+  for (int i = 0; i < image.width * image.height; ++i) {
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    if (image.triangle[i] >= 0) {
+      const auto& t = surface.triangles[static_cast<std::size_t>(image.triangle[i])];
+      normal = (place[t[1]] - place[t[0]]).cross(place[t[2]] - place[t[0]]).normalized();
+      if (normal.dot(place[t[0]]) > 0) normal = -normal;
+    }
+    for (int k = 0; k < 3; ++k) image.normal[3 * i + k] = static_cast<float>(normal[k]);
+  }
+}
+
+}  // namespace
+
+void castRays(const SurfaceView& surface, const Eigen::Isometry3d& camera, double field_of_view, CastImage& image) {
+  const Lens lens{image.width / (2 * std::tan(field_of_view / 2)), image.width / 2.0, image.height / 2.0};
+  const Eigen::Isometry3d to_camera = camera.inverse();
+  std::vector<Eigen::Vector3d> place(surface.x.size());
+  for (std::size_t i = 0; i < place.size(); ++i) place[i] = to_camera * surface.position(static_cast<int>(i));
+  const int pixels = image.width * image.height;
+  std::fill_n(image.depth, pixels, std::numeric_limits<float>::infinity());
+  std::fill_n(image.triangle, pixels, -1);
+  for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+    const auto& t = surface.triangles[i];
+    const Eigen::Vector3d* const corner[3] = {&place[t[0]], &place[t[1]], &place[t[2]]};
+    if (corner[0]->z() <= kNear && corner[1]->z() <= kNear && corner[2]->z() <= kNear) continue;
+    const Window window = windowOf(corner, lens, image);
+    if (window.left >= window.right || window.top >= window.bottom) continue;
+    cast(TriangleCast(*corner[0], *corner[1], *corner[2]), static_cast<int>(i), window, lens, image);
+  }
+  for (int i = 0; i < pixels; ++i)
+    if (image.triangle[i] < 0) image.depth[i] = std::numeric_limits<float>::quiet_NaN();
+  if (image.normal != nullptr) findNormals(surface, place, image);
+}
+
+}  // namespace vibe::python

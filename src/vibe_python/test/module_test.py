@@ -1,0 +1,300 @@
+#!/usr/bin/env python3
+"""The module vibe: the bits of the programs in C++, arrays, snapshots, forces, pictures, and what is refused."""
+import gc
+import os
+import pickle
+import subprocess
+import sys
+import threading
+import unittest
+
+import numpy as np
+
+import vibe
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SMALL = {"geometry": {"particles": 300}, "render_surface": False}
+
+
+def headless():
+    for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(":"):
+        program = os.path.join(prefix, "lib/vibe_core/vibe_headless")
+        if os.access(program, os.X_OK):
+            return program
+    return None
+
+
+class Worlds(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.model = vibe.load(**SMALL)
+
+    @staticmethod
+    def other():
+        """A simulation of another model."""
+        return vibe.Simulation(vibe.load(geometry={"kind": "sphere", "particles": 100}))
+
+    def simulation(self, **settings):
+        return vibe.Simulation(self.model, **settings)
+
+    def pressed(self):
+        """The tip is driven into the wall."""
+        simulation = self.simulation()
+        simulation.run(200, insertion=0.3, tip_up_down=0.6, insufflate=True)
+        return simulation
+
+
+class BitsTest(Worlds):
+    def test_hash_is_that_of_the_program(self):
+        program = headless()
+        if program is None:
+            self.skipTest("vibe_headless is not built")
+        model = vibe.load()
+        for script, maker in (("demo/grabs.yaml", lambda m, f: vibe.Script(f)), ("first.yaml", vibe.Trainee)):
+            file = "package://vibe_core/trainees/" + script
+            said = subprocess.run([program, "--quiet", "--duration", "3", "--script", file], check=True,
+                                  stdout=subprocess.PIPE, text=True).stdout
+            simulation = vibe.Simulation(model)
+            simulation.follow(maker(model, file), seconds=3)
+            self.assertEqual(said.strip(), f"state hash: {simulation.hash():016x}", script)
+            simulation.step()
+            self.assertNotEqual(said.strip(), f"state hash: {simulation.hash():016x}")
+
+    def test_calls_differ_in_nothing(self):
+        one, many = self.simulation(), self.simulation(threads=2)
+        for _ in range(20):
+            one.step(insertion=0.05, insufflate=True)
+        many.run(20, insertion=0.05, insufflate=True)
+        self.assertEqual(one.hash(), many.hash())
+        self.assertEqual(one.steps, 20)
+
+    def test_inputs_stay_in_force(self):
+        simulation = self.simulation()
+        simulation.step(insertion=0.02, helix_grab=True)
+        simulation.step(rotation=0.1)
+        self.assertEqual(simulation.input["insertion"], 0.02)
+        self.assertTrue(simulation.input["helix_grab"])
+
+
+class ArraysTest(Worlds):
+    def test_views_follow_and_outlive(self):
+        simulation = self.simulation()
+        x, heat, triangles = simulation.x, simulation.heat, self.model.triangles
+        before = x.copy()
+        simulation.run(10, insufflate=True)
+        self.assertFalse(np.array_equal(before, x))
+        for view, column in ((x, 0), (simulation.y, 1), (simulation.z, 2)):
+            np.testing.assert_array_equal(view, simulation.positions[:, column])
+        np.testing.assert_array_equal(simulation.vz, simulation.velocities[:, 2])
+        last = x.copy()
+        simulation.close()
+        del simulation
+        gc.collect()
+        np.testing.assert_array_equal(last, x)
+        self.assertEqual((heat.shape, heat.dtype), ((300,), np.float32))
+        self.assertEqual(triangles.max(), 299)
+
+    def test_views_cannot_be_written(self):
+        for view in (self.simulation().x, self.model.triangles, self.model.region, self.model.mass):
+            with self.assertRaises(ValueError):
+                view[0] = 0
+            with self.assertRaises(ValueError):
+                view.flags.writeable = True
+
+    def test_views_show_what_is_restored(self):
+        simulation = self.simulation()
+        x, start = simulation.x, simulation.snapshot()
+        first = x.copy()
+        simulation.run(10, insufflate=True)
+        simulation.restore(start)
+        np.testing.assert_array_equal(first, x)
+        simulation.run(10, insufflate=True)
+        simulation.reset()
+        np.testing.assert_array_equal(first, x)
+        simulation.step()
+        np.testing.assert_array_equal(simulation.positions[:, 0], x)
+
+    def test_normals_point_out_of_the_lumen(self):
+        normals, positions = self.simulation().normals, self.model.rest_positions
+        np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-12)
+        corner = positions[self.model.triangles]
+        volume = np.einsum("ij,ij->", corner[:, 0], np.cross(corner[:, 1], corner[:, 2])) / 6
+        self.assertGreater(volume, 0)
+        self.assertGreater(np.mean(np.einsum("ij,ij->i", normals, positions - positions.mean(0)) > 0), 0.8)
+
+
+class SnapshotTest(Worlds):
+    def test_futures_are_equal(self):
+        simulation = self.pressed()
+        copies = [simulation.snapshot()]
+        copies.append(pickle.loads(pickle.dumps(copies[0])))
+        copies.append(vibe.Snapshot(copies[0].to_bytes()))
+        simulation.run(5)
+        hashed = simulation.hash()
+        for copy in copies:
+            other = self.simulation()
+            other.restore(copy)
+            self.assertNotEqual(other.hash(), hashed)
+            other.run(5, **{k: v for k, v in simulation.input.items() if k != "pull"})
+            self.assertEqual(other.hash(), hashed)
+
+    def test_of_another_model_is_refused(self):
+        snapshot = self.simulation().snapshot()
+        other = self.other()
+        hashed = other.hash()
+        for wrong in (snapshot, vibe.Snapshot(b""), vibe.Snapshot(snapshot.to_bytes()[:-9])):
+            with self.assertRaises(vibe.Error):
+                other.restore(wrong)
+        self.assertEqual(other.hash(), hashed)
+
+
+class ToolTest(Worlds):
+    def test_contacts_make_up_the_wrench(self):
+        simulation = self.pressed()
+        contacts = simulation.contacts()
+        self.assertGreater(len(contacts["link"]), 0)
+        force = simulation.tip_pose[:3, :3] @ simulation.wrench[:3]
+        self.assertGreater(np.linalg.norm(force), 0.01)
+        np.testing.assert_allclose(contacts["force"].sum(0), force, atol=1e-9)
+        self.assertTrue(np.all(np.einsum("ij,ij->i", contacts["force"], contacts["normal"]) <= 1e-12))
+        self.assertEqual(contacts["point"].shape, contacts["force"].shape)
+
+    def test_kinematics_go_both_ways(self):
+        joints = np.array([0.1, 0.3, 0.4, -0.2, 0, 0, 0])
+        pose = self.model.forward_kinematics(joints)
+        found = self.model.inverse_kinematics(pose[:3, 3], pose[:3, 0], np.array([0.08, 0, 0, 0, 0, 0, 0]))
+        np.testing.assert_allclose(self.model.forward_kinematics(found)[:3, 3], pose[:3, 3], atol=1e-4)
+
+    def test_pictures_are_those_of_every_ray_against_every_triangle(self):
+        simulation = self.simulation()
+        simulation.run(60, insertion=0.08)
+        size, angle = 24, 1.7
+        picture = simulation.camera(size, size, angle, normals=True)
+        pose = simulation.link_pose("scope_camera_optical")
+        corner = (simulation.positions - pose[:3, 3]) @ pose[:3, :3]
+        a, b, c = np.swapaxes(corner[self.model.triangles], 0, 1)
+        focal = size / (2 * np.tan(angle / 2))
+        for v, u in [(0, 0), (3, 17), (12, 12), (23, 5), (20, 20)]:
+            ray = np.array([(u + 0.5 - size / 2) / focal, (v + 0.5 - size / 2) / focal, 1])
+            h = np.cross(ray, c - a)
+            det = np.einsum("ij,ij->i", b - a, h)
+            q = np.cross(-a, b - a)
+            s, t = np.einsum("ij,ij->i", -a, h) / det, q @ ray / det
+            depth = np.einsum("ij,ij->i", c - a, q) / det
+            depth[(s < 0) | (t < 0) | (s + t > 1) | (depth <= 0)] = np.inf
+            self.assertAlmostEqual(picture["depth"][v, u], depth.min(), delta=1e-7)
+            self.assertEqual(picture["triangle"][v, u], depth.argmin())
+            self.assertLess(picture["normal"][v, u] @ (ray * depth.min()), 0)
+        self.assertTrue(set(np.unique(picture["label"])) <= set(range(6)))
+
+
+class ProcedureTest(Worlds):
+    def test_measures_have_units(self):
+        simulation = self.pressed()
+        measures, units = simulation.measures(), vibe.measure_units()
+        self.assertEqual(set(measures), set(units))
+        self.assertGreater(measures["max_force"], 0)
+        self.assertEqual(units["max_force"], "N")
+
+    def test_techniques_are_recognised(self):
+        u = np.array([[0, 2, 0], [0, 1, 0], [0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0], [2, 2, 0.0]])
+        self.assertEqual(vibe.recognise_technique(u)["technique"], "u")
+        self.assertEqual(vibe.recognise_technique(u[[0, 3, 6, 1, 4]])["technique"] == "u", False)
+
+    def test_places_go_both_ways(self):
+        anatomy = vibe.Anatomy(self.simulation())
+        triangle, weight = anatomy.at(0.5, 0.2)
+        self.assertAlmostEqual(anatomy.along(triangle, weight), 0.5, delta=0.02)
+        self.assertAlmostEqual(anatomy.around(triangle, weight), 0.2, delta=0.1)
+
+
+class RefusalTest(Worlds):
+    def refused(self, sentence, call, *arguments, **keywords):
+        with self.assertRaisesRegex(vibe.Error, sentence):
+            call(*arguments, **keywords)
+
+    def test_input(self):
+        simulation = self.simulation()
+        hashed = simulation.hash()
+        self.refused("no input 'insert'", simulation.step, insert=0.1)
+        self.refused(r"shape \(2,\).*\(7,\)", simulation.step, joints=[1, 2])
+        self.refused("'insertion' is not finite", simulation.step, insertion=float("nan"))
+        self.refused("'joints' holds a value that is not finite", simulation.step, joints=[np.inf] * 7)
+        self.refused("'joints' is not an array of numbers", simulation.step, joints=["a"] * 7)
+        self.refused("'insertion' is not a number", simulation.step, insertion="deep")
+        self.refused("is a button", simulation.step, insufflate=2)
+        self.refused("'pull' is not a pair", simulation.step, pull=(1, 2, 3))
+        self.refused("'steps' is negative", simulation.run, -1)
+        self.assertEqual(simulation.hash(), hashed)
+
+    def test_scenes(self):
+        self.refused("did you mean 'particles'", vibe.load, geometry={"particle": 300})
+        self.refused("out of range", vibe.load, geometry={"particles": 3})
+        self.refused("not finite", vibe.load, tissue={"density": float("nan")})
+        self.refused("cannot be opened", vibe.load, "/nowhere.yaml")
+        self.refused("give numbers, texts", vibe.load, geometry={"particles": object()})
+
+    def test_closed(self):
+        simulation = self.simulation()
+        simulation.close()
+        simulation.close()
+        for call in (simulation.step, simulation.hash, simulation.snapshot, lambda: simulation.x):
+            self.refused("is closed", call)
+
+    def test_two_threads(self):
+        simulation = self.simulation()
+        runner = threading.Thread(target=simulation.run, args=(1000,), kwargs={"insertion": 0.1, "insufflate": True})
+        runner.start()
+        sentences = set()
+        while runner.is_alive() and not sentences:
+            try:
+                simulation.hash()
+            except vibe.Error as error:
+                sentences.add(str(error))
+        runner.join()
+        self.assertIn("in use by another thread", sentences.pop())
+        self.assertEqual(simulation.steps, 1000)
+
+    def test_a_trainee_of_another_model(self):
+        trainee = vibe.Trainee(self.model, "name: short\ngoals:\n  - insufflate\n")
+        other = self.other()
+        self.refused("another model", other.follow, trainee)
+
+    def test_after_a_fork(self):
+        simulation = self.simulation()
+        simulation.run(5, insufflate=True)
+        child = os.fork()
+        if child == 0:
+            status = 1
+            try:
+                simulation.step()
+            except vibe.Error as error:
+                own = vibe.Simulation(self.model)
+                own.run(5, insufflate=True)
+                status = 0 if "another process" in str(error) else 2
+                del own
+            del simulation
+            gc.collect()
+            os._exit(status)
+        self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 0)
+        simulation.step()
+
+
+class StubsTest(unittest.TestCase):
+    def test_stubs_are_those_of_the_module(self):
+        made = subprocess.run(
+            [sys.executable, "-B", os.path.join(HERE, "../scripts/make_stubs.py"), "--check",
+             os.path.join(HERE, "../python/vibe/_core.pyi")], stderr=subprocess.PIPE, text=True)
+        self.assertEqual(made.stderr, "")
+
+    def test_everything_is_documented(self):
+        for name in vibe.__all__:
+            thing = getattr(vibe, name)
+            members = vars(thing).items() if isinstance(thing, type) else ()
+            for label, member in [("", thing)] + [(k, v) for k, v in members if not k.startswith("_")]:
+                if not isinstance(member, tuple):
+                    self.assertGreater(len(member.__doc__ or ""), 3, f"{name} {label}")
+
+
+if __name__ == "__main__":
+    unittest.main()
