@@ -1,6 +1,7 @@
 #include "builder/mesh_import.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -10,6 +11,7 @@
 #include "common/elementary.hpp"
 #include "common/turn.hpp"
 #include "geometry/surface_check.hpp"
+#include "scene/size_estimate.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/mesh_file.hpp"
 
@@ -37,18 +39,25 @@ std::string number(double value) {
   return text;
 }
 
-/// The remedy for a wrong or missing unit: the usual one that gives the most likely size.
+/// The remedy for a wrong or missing unit: the one that gives the most likely size.
 std::string unitAdvice(double size) {
-  double best = 0.0;
-  for (const double unit : {1.0, 0.01, 0.001, 0.0254}) {
-    if (!plausible(size * unit)) continue;
-    if (best == 0.0 ||
-        std::abs(math::log(size * unit / kTypicalOrgan)) < std::abs(math::log(size * best / kTypicalOrgan)))
-      best = unit;
-  }
-  if (best == 0.0) return "no usual unit makes that an organ of 0.05 to 1 m, so give geometry.target_volume";
-  return "give geometry.unit in metres per unit of the file, probably " + number(best) + " (" + number(size * best) +
-         " m)";
+  const auto unlikeliness = [&](const LengthUnit& unit) {
+    return std::abs(math::log(size * unit.metres / kTypicalOrgan));
+  };
+  const auto& units = lengthUnits();
+  const auto best = std::min_element(units.begin(), units.end(), [&](const LengthUnit& a, const LengthUnit& b) {
+    return unlikeliness(a) < unlikeliness(b);
+  });
+  if (!plausible(size * best->metres))
+    return "no usual unit makes that an organ of 0.05 to 1 m, so give geometry.target_volume";
+  return "give geometry.unit, perhaps '1 " + best->name + "', with which it is " + number(size * best->metres) +
+         " m large";
+}
+
+/// Those that are stated: in the scene, else in the file.
+std::array<double, 3> rotationOfFile(const GeometryScene& geometry) {
+  const std::optional<PatientAxes> axes = statedAxes(geometry.file);
+  return axes && geometry.rotation_rpy == std::array<double, 3>{0, 0, 0} ? rotationOf(*axes) : geometry.rotation_rpy;
 }
 
 /// Metres per unit of the file.
@@ -96,7 +105,7 @@ ImportedMesh importMesh(const GeometryScene& geometry) {
   orientOutwards(result.surface);
 
   const Eigen::Matrix3d map =
-      geometry.scale * findScale(geometry, result.surface) * rotationFromRpy(geometry.rotation_rpy);
+      geometry.scale * findScale(geometry, result.surface) * rotationFromRpy(rotationOfFile(geometry));
   for (auto& v : result.surface.vertices) v = map * v;
   result.landmarks.oesophagus = map * *geometry.oesophagus;
   result.landmarks.fundus = map * *geometry.fundus;

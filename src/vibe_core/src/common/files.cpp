@@ -156,17 +156,4 @@ std::vector<fs::path> ownPrefixes() {
   return prefixes;
 }
 
-fs::path findOwnProgram(const std::string& name) {
-  std::vector<fs::path> candidates;
-  for (const fs::path& folder : ownFolders()) {
-    candidates.push_back(folder / name);
-    candidates.push_back(folder / "vibe_core" / name);
-  }
-  for (const fs::path& prefix : ownPrefixes()) candidates.push_back(prefix / "bin" / name);
-  std::error_code none;
-  for (const fs::path& candidate : candidates)
-    if (fs::is_regular_file(candidate, none)) return candidate;
-  return {};
-}
-
 }  // namespace vibe

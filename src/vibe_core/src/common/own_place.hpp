@@ -13,9 +13,4 @@ std::vector<std::filesystem::path> ownFolders();
 /// because programs are in PREFIX/bin or PREFIX/lib/NAME and libraries in PREFIX/lib or PREFIX/lib/ARCHITECTURE.
 std::vector<std::filesystem::path> ownPrefixes();
 
-/// Path of a program of this library, e.g. "vibe_mesh_reader". Searches beside the running program, beside the library,
-/// in the folder vibe_core beside the library, and in PREFIX/bin.
-/// @returns an empty path if it is not found
-std::filesystem::path findOwnProgram(const std::string& name);
-
 }  // namespace vibe

@@ -78,6 +78,7 @@ class Reading {
 
   Landmarks landmarks() const;
   std::vector<Mark> marks() const;
+  double length() const { return axis_.length(); }
 
  private:
   // where the lumen is wide: not on a stump of the oesophagus
@@ -224,6 +225,7 @@ LandmarkEstimate estimateLandmarks(const SurfaceMesh& surface) {
   const Reading reading(surface, width);
   LandmarkEstimate estimate;
   estimate.landmarks = reading.landmarks();
+  estimate.length = reading.length();
   estimate.confidence = 1;
   std::vector<Mark> marks = reading.marks();
   marks.push_back(steadiness(surface, width, estimate));

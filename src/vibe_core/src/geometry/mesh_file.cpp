@@ -5,132 +5,102 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <sstream>
+#include <new>
 #include <string>
+#include <string_view>
 
 #include <Eigen/Geometry>
 
-#include "geometry/assimp_reader.hpp"
+#include "common/foreign_content.hpp"
+#include "geometry/mesh_readers.hpp"
 #include "geometry/surface_check.hpp"
+#include "geometry/text_lines.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
 
-/// Checks the header of a mesh file against the file size before the file is read in full. On some damaged headers the
-/// reader of the import library does not terminate, or requests all memory.
-/// @param type lower-case extension with its dot; files of a type without header are accepted
-/// @throws Error naming the file, the place and the remedy.
-void checkMeshHeader(const std::string& path, const std::string& type);
-
 namespace {
 
-constexpr std::size_t kLongestHeader = 1 << 16;  // bytes
+namespace fs = std::filesystem;
 
-[[noreturn]] void reject(const std::string& path, const std::string& what) {
-  throw Error("geometry.file: " + path + " is damaged: " + what + "; export it again");
-}
+constexpr double kWeldTolerance = 1e-6;              // relative to the size of the surface
+constexpr std::uintmax_t kLargestFile = 1U << 30;    // bytes
+constexpr std::size_t kLongestBeginning = 1U << 14;  // bytes in which comments are looked for
 
-std::string beginning(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string text(kLongestHeader, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return text;
-}
-
-std::uint32_t number(const std::string& bytes, std::size_t place) {
-  std::uint32_t value = 0;
-  std::memcpy(&value, bytes.data() + place, sizeof value);  // little endian, like the supported processors
-  return value;
-}
-
-bool isPlyType(const std::string& word) {
-  static const std::array<const char*, 16> known{"char",  "uchar",  "short",   "ushort", "int",   "uint",
-                                                 "float", "double", "int8",    "uint8",  "int16", "uint16",
-                                                 "int32", "uint32", "float32", "float64"};
-  return std::find(known.begin(), known.end(), word) != known.end();
-}
-
-bool isPlyLine(const std::string& line, std::uintmax_t size) {
-  std::istringstream words(line);
-  std::string key, a, b, c, d;
-  words >> key;
-  if (key == "comment" || key == "obj_info") return true;
-  words >> a >> b;
-  if (key == "format") return (a == "ascii" || a == "binary_little_endian" || a == "binary_big_endian") && b == "1.0";
-  if (key == "element") {
-    const bool digits = !b.empty() && b.size() < 12 && b.find_first_not_of("0123456789") == std::string::npos;
-    return digits && std::stoull(b) <= size;  // every element takes at least a byte
-  }
-  if (key != "property") return false;
-  if (a != "list") return isPlyType(a) && !b.empty();
-  words >> c >> d;
-  return isPlyType(b) && isPlyType(c) && !d.empty();
-}
-
-void checkPly(const std::string& path, const std::string& text, std::uintmax_t size) {
-  std::istringstream in(text);
-  std::string line;
-  for (int number_of_line = 1; std::getline(in, line); ++number_of_line) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (number_of_line == 1 ? line == "ply" : isPlyLine(line, size)) continue;
-    if (line == "end_header" && number_of_line > 1) return;
-    reject(path, "line " + std::to_string(number_of_line) + " of its header is not understood");
-  }
-  reject(path, "its header does not end");
-}
-
-void checkGlb(const std::string& path, const std::string& text, std::uintmax_t size) {
-  if (text.size() < 20 || text.compare(0, 4, "glTF") != 0) reject(path, "it does not begin like a GLB file");
-  if (number(text, 8) != size) {
-    reject(path, "it states " + std::to_string(number(text, 8)) + " bytes but has " + std::to_string(size));
-  }
-  if (number(text, 12) > size - 20) reject(path, "its first part is longer than the file");
-}
-
-void checkStl(const std::string& path, const std::string& text, std::uintmax_t size) {
-  const std::uintmax_t stated = text.size() >= 84 ? 84 + 50 * static_cast<std::uintmax_t>(number(text, 80)) : 0;
-  if (stated == size || text.compare(0, 5, "solid") == 0) return;
-  reject(path, stated == 0 ? "it is too short"
-                           : "its triangles would take " + std::to_string(stated) + " bytes but it has " +
-                                 std::to_string(size));
-}
-
-}  // namespace
-
-void checkMeshHeader(const std::string& path, const std::string& type) {
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) reject(path, "its size cannot be found");
-  const std::string text = beginning(path);
-  if (type == ".ply") checkPly(path, text, size);
-  if (type == ".glb") checkGlb(path, text, size);
-  if (type == ".stl") checkStl(path, text, size);
-}
-
-namespace {
-
-constexpr double kWeldTolerance = 1e-6;  // relative to the size of the surface
-
-void checkFile(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
-    throw Error("geometry.file: " + path + " does not exist; give the path of a mesh file");
-  }
-  if (!std::filesystem::is_regular_file(path, ignored) || !std::ifstream(path).good()) {
-    throw Error("geometry.file: " + path + " cannot be read; check that it is a file and its permissions");
-  }
-  std::string type = std::filesystem::path(path).extension().string();
+std::string typeOf(const std::string& path) {
+  std::string type = fs::path(path).extension().string();
   std::transform(type.begin(), type.end(), type.begin(), [](unsigned char c) { return std::tolower(c); });
-  static const std::array<const char*, 5> known{".obj", ".stl", ".ply", ".gltf", ".glb"};
-  if (std::find(known.begin(), known.end(), type) == known.end()) {
-    throw Error("geometry.file: " + path + " is not of a type that can be read; convert it to OBJ, STL, PLY or glTF");
+  return type;
+}
+
+/// The content of a file.
+/// @throws Error, as a clause, if it cannot be read or is something else in its place
+std::string readContent(const fs::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(path, error);
+  std::ifstream in(path, std::ios::binary);
+  if (error || !in) throw Error("cannot be read; check that it is a file and its permissions");
+  if (size > kLargestFile) throw Error("is larger than 1 GiB; reduce the surface");
+  std::string content(size, '\0');
+  in.read(content.data(), static_cast<std::streamsize>(size));
+  content.resize(static_cast<std::size_t>(in.gcount()));
+  const std::string foreign = foreignContent(content);
+  if (!foreign.empty()) throw Error(foreign);
+  return content;
+}
+
+/// A file that a glTF names, from its folder and below only: a file from elsewhere may name any other of this machine.
+std::string readBeside(const std::string& path, const std::string& name) {
+  const fs::path folder = fs::weakly_canonical(path).parent_path(), file = fs::weakly_canonical(folder / name);
+  if (std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first != folder.end())
+    throw Error("it names " + shown(name) + ", which is not in its folder; put it there, or export as GLB");
+  std::error_code ignored;
+  if (!fs::exists(file, ignored))
+    throw Error("it names " + shown(name) + ", which does not exist; put it beside this file, or export as GLB");
+  try {
+    return readContent(file);
+  } catch (const Error& e) {
+    throw Error("the file " + shown(name) + ", which it names, " + e.what());
   }
-  checkMeshHeader(path, type);
+}
+
+/// A file whose beginning is that of another format than its name says.
+void checkType(const std::string& type, const std::string& content) {
+  const auto begins = [&](std::string_view beginning) { return content.compare(0, beginning.size(), beginning) == 0; };
+  const char* other = begins("ply\n") || begins("ply\r") ? ".ply" : begins("glTF") ? ".glb" : nullptr;
+  if (other == nullptr || type == other || (type == ".gltf" && begins("glTF"))) return;
+  throw Error(std::string("begins like a file of the type ") + other + "; give it a name that ends so");
+}
+
+SurfaceMesh readByType(const std::string& path, const std::string& type) {
+  const std::string content = readContent(path);
+  checkType(type, content);
+  if (type == ".obj") return readObj(content);
+  if (type == ".stl") return readStl(content);
+  if (type == ".ply") return readPly(content);
+  return readGltf(content, [&path](const std::string& name) { return readBeside(path, name); });
+}
+
+/// The triangles of a file, as they are there.
+SurfaceMesh readRaw(const std::string& path) {
+  const auto fail = [&path](const std::string& what) { throw Error("geometry.file: " + path + " " + what); };
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) fail("does not exist; give the path of a mesh file");
+  if (!fs::is_regular_file(path, ignored)) fail("cannot be read, it is not a file; give the path of a mesh file");
+  static const std::array<const char*, 5> known{".obj", ".stl", ".ply", ".gltf", ".glb"};
+  const std::string type = typeOf(path);
+  if (std::find(known.begin(), known.end(), type) == known.end())
+    fail("is not of a type that can be read; convert it to OBJ, STL, PLY or glTF");
+  try {
+    return readByType(path, type);
+  } catch (const Error& e) {
+    throw Error("geometry.file: " + path + ": " + e.what());
+  } catch (const std::bad_alloc&) {
+    throw Error("geometry.file: " + path + ": needs more memory than there is; reduce the surface");
+  }
 }
 
 using Cell = std::array<std::int64_t, 3>;
@@ -199,20 +169,40 @@ SurfaceMesh weld(const SurfaceMesh& mesh, double tolerance) {
 }
 
 SurfaceMesh readMeshFile(const std::string& path) {
-  checkFile(path);
-  const SurfaceMesh raw = readWithAssimp(path);
+  const SurfaceMesh raw = readRaw(path);
   checkNumbers(raw, path);
+  const SurfaceMesh used = dropUnused(raw);
   Eigen::AlignedBox3d box;
-  for (const auto& v : raw.vertices) box.extend(v);
-  SurfaceMesh mesh = weld(raw, kWeldTolerance * box.sizes().maxCoeff());
-  checkNumbers(mesh, path);
+  for (const auto& v : used.vertices) box.extend(v);
+  SurfaceMesh mesh = weld(used, kWeldTolerance * box.sizes().maxCoeff());
+  if (mesh.triangles.empty()) throw Error(path + " has only triangles without area; check that it is the right file");
   return mesh;
 }
 
 bool statesMetres(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".glb" || extension == ".gltf";
+  const std::string type = typeOf(path);
+  return type == ".glb" || type == ".gltf";
+}
+
+std::array<double, 3> rotationOf(PatientAxes axes) {
+  return {0, 0, axes == PatientAxes::Ras ? -M_PI / 2 : M_PI / 2};
+}
+
+std::optional<PatientAxes> statedAxes(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string content(kLongestBeginning, '\0');
+  in.read(content.data(), static_cast<std::streamsize>(content.size()));
+  content.resize(static_cast<std::size_t>(in.gcount()));
+  const std::string type = typeOf(path);
+  const std::string_view comment = type == ".obj" ? "#" : type == ".ply" ? "comment" : "";
+  TextLines lines(type == ".stl" ? std::string_view(content).substr(0, 80) : std::string_view(content));
+  while (!statesMetres(path) && lines.next()) {
+    if (lines.line().substr(0, comment.size()) != comment) continue;
+    if (lines.line().find("SPACE=RAS") != std::string_view::npos) return PatientAxes::Ras;
+    if (lines.line().find("SPACE=LPS") != std::string_view::npos) return PatientAxes::Lps;
+    if (type == ".stl") break;  // only in the name of the solid or the header
+  }
+  return std::nullopt;
 }
 
 }  // namespace vibe

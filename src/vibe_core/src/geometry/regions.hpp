@@ -38,6 +38,7 @@ struct LandmarkEstimate {
   /// can look like another one.
   double confidence = 0;
   std::string doubt;               ///< what lowers it most: "it does not bend as a stomach does"
+  double length = 0;               ///< of the axis [m]
   std::array<double, 4> spread{};  ///< largest distance between views: oesophagus, fundus, incisura, pylorus [m]
 };
 

@@ -121,7 +121,8 @@ void checkHoles(const SurfaceMesh& mesh, const std::vector<Side>& sides, const s
   loops.erase(std::unique(loops.begin(), loops.end()), loops.end());
   throw Error(name + " is not closed: it has " + counted(static_cast<int>(loops.size()), "hole", "holes") + " with " +
               counted(static_cast<int>(open.size()), "open edge", "open edges") + ", the first at " +
-              place(mesh.vertices[loops.front()]) + "; fill the holes in the modelling program");
+              place(mesh.vertices[loops.front()]) +
+              "; fill the holes, or merge the vertices along seams, in the modelling program");
 }
 
 void checkOrientation(const SurfaceMesh& mesh, const std::vector<Side>& sides, const std::string& name) {
@@ -221,22 +222,26 @@ void checkCrossings(const SurfaceMesh& mesh, const std::string& name) {
 }  // namespace
 
 void checkNumbers(const SurfaceMesh& mesh, const std::string& name) {
-  if (mesh.triangles.empty()) throw Error(name + " has no triangles; export the surface as a triangle mesh");
+  if (mesh.triangles.empty())
+    throw Error(name + " has no faces, only points or lines, or nothing; export the surface with its faces");
   const int vertices = static_cast<int>(mesh.vertices.size());
   for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
     for (const int v : mesh.triangles[k]) {
       if (v >= 0 && v < vertices) continue;
       throw Error(name + " has a triangle (number " + std::to_string(k) + ") with vertex " + std::to_string(v) +
-                  ", but only " + std::to_string(vertices) + " vertices; export the file again");
+                  ", but only " + std::to_string(vertices) + " vertices; write the file anew");
     }
   }
   const auto finite = [](const Eigen::Vector3d& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() < kFarthest; };
-  const auto bad = std::find_if_not(mesh.vertices.begin(), mesh.vertices.end(), finite);
-  if (bad == mesh.vertices.end()) return;
-  const auto good = std::count_if(mesh.vertices.begin(), mesh.vertices.end(), finite);
-  throw Error(name + " has " + counted(vertices - static_cast<int>(good), "vertex", "vertices") +
+  std::vector<bool> bad(mesh.vertices.size(), false);
+  for (const auto& t : mesh.triangles)
+    for (const int v : t) bad[v] = !finite(mesh.vertices[v]);
+  const auto first = std::find(bad.begin(), bad.end(), true);
+  if (first == bad.end()) return;
+  const auto count = static_cast<int>(std::count(bad.begin(), bad.end(), true));
+  throw Error(name + " has " + counted(count, "vertex", "vertices") +
               " whose position is not a finite number below 1e100, the first is number " +
-              std::to_string(bad - mesh.vertices.begin()) + "; export the file again");
+              std::to_string(first - bad.begin()) + " (counted from 0); correct the positions, or write the file anew");
 }
 
 void checkSurface(const SurfaceMesh& mesh, const std::string& name) {

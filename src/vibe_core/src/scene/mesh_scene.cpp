@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <numeric>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -13,6 +14,7 @@
 #include "geometry/remesh.hpp"
 #include "geometry/surface_check.hpp"
 #include "scene/scene_keys.hpp"
+#include "scene/size_estimate.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/mesh_file.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
@@ -81,7 +83,10 @@ std::string sidecarOf(const std::string& mesh_file) {
 
 bool applyMeshOverride(Scene& scene, const std::string& mesh_file) {
   if (!existsAsFile(mesh_file)) {
-    throw Error(mesh_file + ": there is no such surface file; give the path of an OBJ, STL, PLY or glTF file");
+    std::error_code ignored;
+    const bool exists = std::filesystem::exists(mesh_file, ignored);
+    throw Error(mesh_file + (exists ? ": is not a file" : ": there is no such surface file") +
+                "; give the path of an OBJ, STL, PLY or glTF file");
   }
   Scene changed = scene;
   changed.geometry.kind = GeometryScene::Kind::Mesh;
@@ -98,28 +103,25 @@ bool applyMeshOverride(Scene& scene, const std::string& mesh_file) {
 
 namespace {
 
-constexpr double kTypicalSize = 0.25;  // largest side of a stomach's bounding box [m]
-constexpr int kGuessVertices = 1500;   // fine enough for landmarks to a few millimetres
+constexpr int kGuessVertices = 1500;  // fine enough for landmarks to a few millimetres
 
-double likeliestUnit(const SurfaceMesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const auto& v : mesh.vertices) box.extend(v);
-  double best = 1;
-  const auto unlikeliness = [&](double unit) {
-    return std::abs(math::log(box.sizes().maxCoeff() * unit / kTypicalSize));
-  };
-  for (const double unit : {0.01, 0.001, 0.0254})
-    if (unlikeliness(unit) < unlikeliness(best)) best = unit;
-  return best;
+struct Guess {
+  SizeEstimate size;  // of confidence 1 if the unit is stated
+  LandmarkEstimate landmarks;
+};
+
+std::string doubtsAbout(const Guess& guess, const std::string& mesh_file) {
+  std::string doubts;
+  if (guess.size.confidence < kSureLandmarks)
+    doubts += "\nThe unit of " + mesh_file + " is doubtful: taken as " + guess.size.unit.name + ", " +
+              guess.size.doubt + "; state unit or target_volume in " + sidecarOf(mesh_file) + ".";
+  if (guess.landmarks.confidence < kSureLandmarks)
+    doubts += "\nThe landmarks of " + mesh_file + " are doubtful: " + guess.landmarks.doubt +
+              "; state them, or its axes as rotation_rpy, in " + sidecarOf(mesh_file) + ".";
+  return doubts;
 }
 
-std::string doubtAbout(const LandmarkEstimate& estimate, const std::string& mesh_file) {
-  if (estimate.confidence >= kSureLandmarks) return "";
-  return "\nThe landmarks of " + mesh_file + " are doubtful: " + estimate.doubt +
-         "; state them, or its axes as rotation_rpy, in " + sidecarOf(mesh_file) + ".";
-}
-
-std::string describe(const GeometryScene& g, const LandmarkEstimate& estimate, const std::string& mesh_file) {
+std::string describe(const GeometryScene& g, const Guess& guess, const std::string& mesh_file) {
   const auto point = [](const Eigen::Vector3d& p) {
     char text[96];
     std::snprintf(text, sizeof text, "[%.4g, %.4g, %.4g]", p.x(), p.y(), p.z());
@@ -128,36 +130,44 @@ std::string describe(const GeometryScene& g, const LandmarkEstimate& estimate, c
   char head[160];
   std::snprintf(head, sizeof head, "unit: %g\nrotation_rpy: [%.6f, %.6f, %.6f]\nlandmarks:\n", g.unit,
                 g.rotation_rpy[0], g.rotation_rpy[1], g.rotation_rpy[2]);
-  const auto& moved = estimate.spread;
+  const auto& moved = guess.landmarks.spread;
   char sureness[200];
   std::snprintf(sureness, sizeof sureness,
                 "\n# confidence %.2f of 1; axes tilted by 20 degrees move them by up to %.0f, %.0f, %.0f and %.0f mm",
-                estimate.confidence, 1e3 * moved[0], 1e3 * moved[1], 1e3 * moved[2], 1e3 * moved[3]);
+                *g.landmark_confidence, 1e3 * moved[0], 1e3 * moved[1], 1e3 * moved[2], 1e3 * moved[3]);
   return "Unit, axes and landmarks of " + mesh_file + " are guesses; look at the regions, and state them in " +
          sidecarOf(mesh_file) + ":\n" + head + "  oesophagus: " + point(*g.oesophagus) +
          "\n  fundus: " + point(*g.fundus) + "\n  incisura: " + point(*g.incisura) +
-         "\n  pylorus: " + point(*g.pylorus) + sureness + doubtAbout(estimate, mesh_file);
+         "\n  pylorus: " + point(*g.pylorus) + sureness + doubtsAbout(guess, mesh_file);
 }
 
-LandmarkEstimate guess(GeometryScene& geometry) {
+/// Those that the format or the file states, else those of medical images.
+std::array<double, 3> guessedRotation(const std::string& mesh_file) {
+  if (statesMetres(mesh_file)) return {M_PI / 2, 0, M_PI / 2};
+  return rotationOf(statedAxes(mesh_file).value_or(PatientAxes::Lps));
+}
+
+Guess guess(GeometryScene& geometry, double thickness) {
   SurfaceMesh surface = readMeshFile(geometry.file);
   checkSurface(surface, geometry.file);
   orientOutwards(surface);
-  if (geometry.unit == 0) geometry.unit = likeliestUnit(surface);
-  if (geometry.rotation_rpy == std::array<double, 3>{0, 0, 0})
-    geometry.rotation_rpy = statesMetres(geometry.file) ? std::array<double, 3>{M_PI / 2, 0, M_PI / 2}
-                                                        : std::array<double, 3>{0, 0, M_PI / 2};
+  Guess result{{{}, 1, ""}, {}};
+  const bool unit_is_stated = geometry.unit != 0;
+  if (!unit_is_stated) result.size = estimateUnit(surface, thickness);
+  if (!unit_is_stated) geometry.unit = result.size.unit.metres;
+  if (geometry.rotation_rpy == std::array<double, 3>{0, 0, 0}) geometry.rotation_rpy = guessedRotation(geometry.file);
   const Eigen::Matrix3d map = geometry.unit * rotationFromRpy(geometry.rotation_rpy);
   for (auto& v : surface.vertices) v = map * v;
-  const LandmarkEstimate estimate = estimateLandmarks(remeshSurface(surface, kGuessVertices, nullptr, {}));
-  const Landmarks& found = estimate.landmarks;
+  result.landmarks = estimateLandmarks(remeshSurface(surface, kGuessVertices, nullptr, {}));
+  if (!unit_is_stated) addLengthMark(result.landmarks.length, result.size);
+  const Landmarks& found = result.landmarks.landmarks;
   const Eigen::Matrix3d back = map.inverse();
   geometry.oesophagus = back * found.oesophagus;
   geometry.fundus = back * found.fundus;
   geometry.incisura = back * found.incisura;
   geometry.pylorus = back * found.pylorus;
-  geometry.landmark_confidence = estimate.confidence;
-  return estimate;
+  geometry.landmark_confidence = std::min(result.size.confidence, result.landmarks.confidence);
+  return result;
 }
 
 }  // namespace
@@ -172,9 +182,11 @@ std::string useMesh(Scene& scene, const std::string& mesh_file) {
   GeometryScene changed = g;
   changed.kind = GeometryScene::Kind::Mesh;
   changed.file = mesh_file;
-  const LandmarkEstimate estimate = guess(changed);
+  const auto& walls = scene.tissue.thickness;
+  const double thickness = std::accumulate(walls.begin(), walls.end(), 0.0) / static_cast<double>(walls.size());
+  const Guess guessed = guess(changed, thickness);
   scene.geometry = changed;
-  return describe(changed, estimate, mesh_file);
+  return describe(changed, guessed, mesh_file);
 }
 
 std::string landmarkRemark(const Scene& scene) {

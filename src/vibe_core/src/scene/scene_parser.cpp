@@ -85,7 +85,10 @@ class SceneReader {
       } else {
         resolve(file);
       }
-      if (depth_ >= kMaxBases) source_.fail(field, "leads back to itself; name a scene that does not start from this");
+      if (depth_ >= kMaxBases)
+        source_.fail(field, "starts from a scene that starts from another, and so on more than " +
+                                std::to_string(kMaxBases) +
+                                " times, perhaps in a circle; name one that starts from fewer");
       checkFile(field, file);
       scene_ = load(file, depth_ + 1);
       has_base_ = true;
@@ -212,7 +215,9 @@ class SceneReader {
   void checkFile(const YamlField& field, const std::string& path) const {
     std::error_code ignored;
     if (std::filesystem::is_regular_file(path, ignored)) return;
-    source_.fail(field, "there is no file '" + path + "'; give a path relative to the scene file");
+    const bool exists = std::filesystem::exists(path, ignored);
+    source_.fail(field, (exists ? "'" + path + "' is not a file" : "there is no file '" + path + "'") +
+                            "; give the path of a file, relative to the scene file");
   }
 };
 

@@ -39,7 +39,8 @@ constexpr Symbol kSymbols[] = {
     {"cm", 1e-2, kLength},
     {"mm", 1e-3, kLength},
     {"um", 1e-6, kLength},
-    {"µm", 1e-6, kLength},
+    {"µm", 1e-6, kLength},  // micro sign
+    {"μm", 1e-6, kLength},  // Greek letter, which Unicode prefers
     {"in", 25.4e-3, kLength},
     {"L", 1e-3, kVolume},
     {"l", 1e-3, kVolume},
@@ -216,6 +217,13 @@ std::optional<Unit> parseUnit(const std::string& written) {
     sign = text[end] == '/' ? -1 : 1;
     begin = end + 1;
   }
+}
+
+std::vector<std::pair<std::string, double>> knownLengths() {
+  std::vector<std::pair<std::string, double>> lengths;
+  for (const Symbol& symbol : kSymbols)
+    if (symbol.dimension == kLength) lengths.emplace_back(symbol.name, symbol.factor);
+  return lengths;
 }
 
 Quantity parseNumber(const std::string& text) {

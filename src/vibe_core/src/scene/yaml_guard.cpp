@@ -3,6 +3,7 @@
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
+#include <iterator>
 #include <sstream>
 
 #include "vibe_core/common/error.hpp"
@@ -46,20 +47,27 @@ class DepthWatch : public YAML::EventHandler {
 };
 
 /// True if there was a document.
-bool readDocument(YAML::Parser& parser, DepthWatch& watch, const std::string& place) {
+bool readDocument(YAML::Parser& parser, DepthWatch& watch, const std::string& place,
+                  const std::map<int, std::string>& odd_characters) {
   try {
     return parser.HandleNextDocument(watch);
   } catch (const YAML::Exception& error) {
-    const std::string line = std::to_string(error.mark.is_null() ? 1 : error.mark.line + 1);
+    const int number = error.mark.is_null() ? 1 : error.mark.line + 1;
+    const std::string line = std::to_string(number);
+    const auto after = odd_characters.upper_bound(number);
+    const std::string odd = after == odd_characters.begin()
+                                ? ""
+                                : "; line " + std::to_string(std::prev(after)->first) + ", " + std::prev(after)->second;
     const std::string column = std::to_string(error.mark.is_null() ? 1 : error.mark.column + 1);
     throw Error(place + ":" + line + ": is not valid YAML at column " + column + " (" + printable(error.msg, 100) +
-                "); check indentation, colons, quotes and brackets there");
+                "); check indentation, colons, quotes and brackets there" + odd);
   }
 }
 
 }  // namespace
 
-void checkYaml(const std::string& text, const std::string& place, const YamlLimits& limits) {
+void checkYaml(const std::string& text, const std::string& place, const YamlLimits& limits,
+               const std::map<int, std::string>& odd_characters) {
   if (text.size() > limits.bytes) {
     throw Error(place + ":1: is larger than " + std::to_string(limits.bytes) + " bytes; is this the right file?");
   }
@@ -69,11 +77,11 @@ void checkYaml(const std::string& text, const std::string& place, const YamlLimi
   std::istringstream stream(text);
   YAML::Parser parser(stream);
   DepthWatch watch(place, limits.depth);
-  if (!readDocument(parser, watch, place) || watch.isEmpty()) {
+  if (!readDocument(parser, watch, place, odd_characters) || watch.isEmpty()) {
     throw Error(place + ":1: contains nothing; write 'key: value' lines");
   }
   DepthWatch second(place, limits.depth);
-  if (readDocument(parser, second, place)) {
+  if (readDocument(parser, second, place, odd_characters)) {
     throw Error(place + ":1: contains more than one YAML document; remove the line '---' and what follows");
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "vibe_core/scene/yaml_source.hpp"
@@ -18,7 +19,9 @@ inline std::string printable(const std::string& text, std::size_t max_bytes) {
 
 /// Parses the text once without building anything. Rejects text that is too large, nested too deeply for a recursive
 /// parser, not YAML, or not exactly one document.
+/// @param odd_characters  of the text, see oddCharacters(); an error names that of its line or of the last line before
 /// @throws Error with place:line
-void checkYaml(const std::string& text, const std::string& place, const YamlLimits& limits);
+void checkYaml(const std::string& text, const std::string& place, const YamlLimits& limits,
+               const std::map<int, std::string>& odd_characters);
 
 }  // namespace vibe

@@ -8,6 +8,8 @@
 #include <set>
 #include <sstream>
 
+#include "common/foreign_content.hpp"
+#include "scene/odd_characters.hpp"
 #include "scene/yaml_guard.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/unit.hpp"
@@ -55,16 +57,22 @@ YamlSource YamlSource::load(const std::string& file, const YamlLimits& limits) {
     throw Error(file + ": cannot be read; give the path of a readable YAML file, not of a folder or device");
   }
   text.resize(static_cast<std::size_t>(stream.gcount()));
+  const std::string foreign = text.empty() ? "" : foreignContent(text);
+  if (!foreign.empty()) throw Error(file + ": " + foreign);
   return parse(text, file, limits);
 }
 
 YamlSource YamlSource::parse(const std::string& text, const std::string& place, const YamlLimits& limits) {
-  checkYaml(text, place, limits);
   YamlSource source;
+  source.odd_characters_ = oddCharacters(text);
+  checkYaml(text, place, limits, source.odd_characters_);
   source.place_ = place;
   source.root_ = YAML::Load(text);
   if (!source.root_.IsMap()) {
-    throw Error(place + ":1: is " + kindName(source.root_) + " at the top; write 'key: value' lines");
+    const auto odd = source.odd_characters_.begin();
+    throw Error(
+        place + ":1: is " + kindName(source.root_) + " at the top; write 'key: value' lines" +
+        (odd == source.odd_characters_.end() ? "" : ": line " + std::to_string(odd->first) + ", " + odd->second));
   }
   return source;
 }
@@ -75,7 +83,9 @@ YamlField YamlSource::root() const {
 
 void YamlSource::fail(const YamlField& field, const std::string& what_and_remedy) const {
   const std::string path = field.path.empty() ? "" : " " + printable(field.path, kShown) + ":";
-  throw Error(place_ + ":" + std::to_string(field.line) + ":" + path + " " + what_and_remedy);
+  const auto odd = odd_characters_.find(field.line);
+  throw Error(place_ + ":" + std::to_string(field.line) + ":" + path + " " + what_and_remedy +
+              (odd == odd_characters_.end() ? "" : "; " + odd->second));
 }
 
 std::vector<YamlField> YamlSource::map(const YamlField& field) const {

@@ -98,10 +98,5 @@ TEST(OwnPlace, isThatOfTheProgramAndOfTheLibrary) {
     EXPECT_NE(std::find(prefixes.begin(), prefixes.end(), prefix), prefixes.end()) << prefix;
 }
 
-TEST(OwnPlace, leadsToTheProgramsOfThisLibrary) {
-  EXPECT_TRUE(fs::is_regular_file(findOwnProgram("vibe_mesh_reader")));
-  EXPECT_EQ(findOwnProgram("no_such_program"), "");
-}
-
 }  // namespace
 }  // namespace vibe::package_path_test

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <random>
 #include <string>
@@ -113,6 +115,27 @@ TEST(MeshImport, rotationIsAboutFixedAxesInTheOrderRollPitchYaw) {
   EXPECT_LT((importMesh(geometry).landmarks.fundus - Eigen::Vector3d(1.1, 0.3, -0.2)).norm(), 1e-12);
 }
 
+TEST(MeshImport, takesTheAxesThatSlicerStates) {
+  const TemporaryFolder folder;
+  const std::string obj = test::toObj(makeEgg()), stl = test::toStl(makeEgg()), ply = test::toPly(makeEgg());
+  const auto named = [&](const std::string& space) {
+    std::string header = stl, comment = ply;
+    header.replace(0, 27, "3D Slicer output. SPACE=" + space);
+    comment.insert(comment.find("element"), "comment 3D Slicer output. SPACE=" + space + "\n");
+    return std::array<std::string, 3>{folder.write("a.obj", "# 3D Slicer output. SPACE=" + space + "\n" + obj),
+                                      folder.write("a.stl", header), folder.write("a.ply", comment)};
+  };
+  for (const std::string& file : named("LPS"))
+    EXPECT_LT((importMesh(eggScene(file)).landmarks.fundus - Eigen::Vector3d(0.2, 0.3, 1.1)).norm(), 1e-12) << file;
+  for (const std::string& file : named("RAS")) {
+    EXPECT_LT((importMesh(eggScene(file)).landmarks.fundus - Eigen::Vector3d(-0.2, -0.3, 1.1)).norm(), 1e-12) << file;
+    GeometryScene geometry = eggScene(file);
+    geometry.rotation_rpy = {0, 0, M_PI};  // stated axes take precedence
+    EXPECT_LT((importMesh(geometry).landmarks.fundus - Eigen::Vector3d(-0.3, 0.2, 1.1)).norm(), 1e-12) << file;
+  }
+  EXPECT_FALSE(statedAxes(folder.write("plain.obj", obj + "# SPACE=none\no SPACE=RAS\n")));
+}
+
 TEST(MeshImport, targetVolumeSetsTheSizeWhateverTheUnit) {
   const TemporaryFolder folder;
   GeometryScene geometry = eggScene(folder.write("mesh.stl", test::toStl(makeEgg())));
@@ -136,10 +159,10 @@ TEST(MeshImport, asksForTheUnitAndNamesTheLikelyOne) {
   GeometryScene geometry = eggScene(folder.write("mesh.obj", test::toObj(makeEgg())));
   geometry.unit = 0;
   expectRejected(geometry, "geometry.unit is missing");
-  expectRejected(geometry, "probably 0.001");
+  expectRejected(geometry, "perhaps '1 mm', with which it is 0.2 m large");
   geometry.file = folder.write("mesh.glb", test::toGlb(makeEgg()));
   expectRejected(geometry, "is 200 units large");
-  expectRejected(geometry, "probably 0.001");
+  expectRejected(geometry, "perhaps '1 mm'");
   geometry.unit = 1000;
   expectRejected(geometry, "no organ of 0.05 to 1 m");
   geometry.unit = -1;
@@ -169,9 +192,32 @@ TEST(MeshImport, saysWhatIsWrongWithTheFile) {
   expectRejected(eggScene(folder.path() + "/none.obj"), "does not exist");
   expectRejected(eggScene(folder.path()), "cannot be read");
   expectRejected(eggScene(folder.write("mesh.txt", "hello")), "not of a type");
-  expectRejected(eggScene(folder.write("empty.obj", "")), "cannot be read");
-  expectRejected(eggScene(folder.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")), "");
+  expectRejected(eggScene(folder.write("empty.obj", "")), "is empty");
+  expectRejected(eggScene(folder.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")), "has no faces");
+  expectRejected(eggScene(folder.write("named.obj", test::toPly(makeEgg()))), "begins like a file of the type .ply");
   expectRejected(eggScene(folder.write("ring.obj", test::toObj(makeTorus(50, 20, 20, 10)))), "1 handle");
+}
+
+/// A tetrahedron as glTF whose numbers are in another file.
+std::string toGltf(const std::string& uri) {
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"buffers":[{"byteLength":72,"uri":")" +
+         uri +
+         R"("}],"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],)"
+         R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},)"
+         R"({"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}]})";
+}
+
+TEST(MeshImport, readsWhatAGltfNamesInItsFolderOnly) {
+  const TemporaryFolder folder;
+  std::string numbers;
+  for (const int x : {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}) test::append(numbers, static_cast<float>(x));
+  for (const int v : {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2}) test::append(numbers, static_cast<std::uint16_t>(v));
+  folder.write("numbers.bin", numbers);
+  EXPECT_EQ(readMeshFile(folder.write("tetra.gltf", toGltf("numbers.bin"))).triangles.size(), 4U);
+  std::filesystem::create_directory(folder.path() + "/below");
+  expectRejected(eggScene(folder.write("below/tetra.gltf", toGltf("../numbers.bin"))), "which is not in its folder");
+  expectRejected(eggScene(folder.write("below/tetra.gltf", toGltf("/etc/hostname"))), "which is not in its folder");
 }
 
 TEST(MeshImport, buildsAnOrganWithLabels) {

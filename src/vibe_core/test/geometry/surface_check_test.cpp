@@ -56,7 +56,7 @@ TEST(SurfaceCheck, turnsAnInsideOutSurface) {
 }
 
 TEST(SurfaceCheck, refusesNoTriangles) {
-  expectRejected(SurfaceMesh{}, "no triangles");
+  expectRejected(SurfaceMesh{}, "no faces");
 }
 
 TEST(SurfaceCheck, refusesNumbersThatAreNone) {

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <iomanip>
 
+#include "scene/size_estimate.hpp"
 #include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/common/error.hpp"
 
@@ -23,10 +25,12 @@ class MeshGuess : public ::testing::Test {
  protected:
   std::string file = ::testing::TempDir() + "mesh_guess_test.obj";
   ~MeshGuess() override { std::remove(file.c_str()); }
-  // in millimetres, x to the left, y to the back, z up
-  void write(const SurfaceMesh& mesh) {
+  // x to the left, y to the back, z up
+  void write(const SurfaceMesh& mesh, double per_metre = 1e3) {
     std::ofstream out(file);
-    for (const auto& v : mesh.vertices) out << "v " << 1e3 * v.y() << ' ' << -1e3 * v.x() << ' ' << 1e3 * v.z() << '\n';
+    out << std::setprecision(9);
+    for (const auto& v : mesh.vertices)
+      out << "v " << per_metre * v.y() << ' ' << -per_metre * v.x() << ' ' << per_metre * v.z() << '\n';
     for (const auto& t : mesh.triangles) out << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << '\n';
   }
 };
@@ -48,6 +52,63 @@ TEST_F(MeshGuess, BringsAStomachHomeFromAnotherFrame) {
   EXPECT_NEAR(enclosedVolume(imported.surface), enclosedVolume(original.surface), 0.01 * 0.9e-3);
   EXPECT_LT((imported.landmarks.fundus - original.landmarks.fundus).norm(), 0.03);
   EXPECT_LT((imported.landmarks.pylorus - original.landmarks.pylorus).norm(), 0.03);
+}
+
+TEST_F(MeshGuess, TriesEveryUnitThatASidecarKnows) {
+  const SurfaceMesh surface = stomach().surface;
+  for (const LengthUnit& unit : lengthUnits()) {
+    write(surface, 1 / unit.metres);
+    Scene scene;
+    const std::string remark = useMesh(scene, file);
+    EXPECT_NEAR(scene.geometry.unit / unit.metres, 1, 1e-12) << unit.name;
+    EXPECT_EQ(remark.find("doubtful"), std::string::npos) << remark;
+  }
+  EXPECT_GE(lengthUnits().size(), 6U);
+}
+
+TEST_F(MeshGuess, DoubtsASizeThatNoStomachHas) {
+  // 45,000 voxels: 45 L in centimetres, 45 mL in millimetres, 0.7 m3 in inches
+  SurfaceMesh surface = stomach().surface;
+  const double factor = std::cbrt(45.0e-6 / enclosedVolume(surface));
+  for (auto& v : surface.vertices) v *= factor;
+  write(surface);
+  Scene scene;
+  const std::string remark = useMesh(scene, file);
+  EXPECT_NE(
+      remark.find("The unit of " + file + " is doubtful: taken as mm, it holds 45 mL, and stomachs hold 0.1 to 3 L"),
+      std::string::npos)
+      << remark;
+  EXPECT_LT(scene.geometry.landmark_confidence.value_or(1), 0.6);
+  // who states the unit is not doubted
+  scene = Scene();
+  scene.geometry.unit = 1e-3;
+  EXPECT_EQ(useMesh(scene, file).find("The unit"), std::string::npos);
+}
+
+TEST(SizeEstimate, MarksVolumeWallAndLength) {
+  const SurfaceMesh surface = stomach().surface;
+  const auto scaled = [&](double litres) {
+    SurfaceMesh mesh = surface;
+    for (auto& v : mesh.vertices) v *= std::cbrt(litres * 1e-3 / enclosedVolume(surface));
+    return mesh;
+  };
+  for (const double litres : {0.3, 0.6, 0.9, 1.5, 2.0})
+    EXPECT_EQ(estimateUnit(scaled(litres), 2.3e-3).confidence, 1) << litres;
+  for (const double litres : {0.02, 0.05, 4.5, 5.9})
+    EXPECT_LT(estimateUnit(scaled(litres), 2.3e-3).confidence, 0.6) << litres;
+  EXPECT_EQ(estimateUnit(scaled(0.2), 2.3e-3).confidence, 1);
+  // 0.15 L in centimetres are 2.5 L in inches
+  SurfaceMesh sleeve = scaled(0.15);
+  for (auto& v : sleeve.vertices) v *= 100;
+  EXPECT_NE(estimateUnit(sleeve, 2.3e-3).doubt.find("as well"), std::string::npos);
+  EXPECT_NE(estimateUnit(scaled(0.9), 30e-3).doubt.find("its wall, as thick as in the scene, weighs"),
+            std::string::npos);
+  SizeEstimate estimate{{"m", 1}, 1, ""};
+  addLengthMark(0.3, estimate);
+  EXPECT_EQ(estimate.confidence, 1);
+  addLengthMark(0.8, estimate);
+  EXPECT_LT(estimate.confidence, 0.6);
+  EXPECT_EQ(estimate.doubt, "its axis is 800 mm long, and that of stomachs 120 to 500 mm");
 }
 
 TEST_F(MeshGuess, StatedLandmarksAreNotGuessed) {

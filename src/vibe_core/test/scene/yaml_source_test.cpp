@@ -5,6 +5,7 @@
 #include <string>
 
 #include "vibe_testing/expect_error.hpp"
+#include "vibe_testing/temporary_folder.hpp"
 
 namespace vibe::yaml_source_test {
 namespace {
@@ -31,6 +32,43 @@ TEST(YamlSource, RefusesWhatIsNoDocument) {
   EXPECT_ERROR(parsed(std::string("a: 1\0b", 6)), "NUL bytes");
   EXPECT_ERROR(YamlSource::load("/nowhere/x.yaml", YamlLimits{}), "/nowhere/x.yaml: cannot be opened");
   EXPECT_ERROR(YamlSource::load("/", YamlLimits{}), "/: cannot be read");
+}
+
+TEST(YamlSource, NamesCharactersThatAreNotWhatTheyLookLike) {
+  const auto map = [](const std::string& text) {
+    const YamlSource source = parsed(text);
+    for (const YamlField& field : source.map(source.root())) source.quantity(field, "m", 0, 1);
+  };
+  // a no-break space after the colon, before the unit and as indentation
+  EXPECT_ERROR(parsed("unit:\u00a01"),
+               "f.yaml:1: is a single value at the top; write 'key: value' lines: line 1, column 6 "
+               "has a no-break space (U+00A0) in the place of ' '");
+  EXPECT_ERROR(map("a: 1 mm\nb: 1\u00a0mm\n"), "f.yaml:2: b: '1\u00a0mm' has the unknown unit");
+  EXPECT_ERROR(map("a: 1 mm\nb: 1\u00a0mm\n"), "; column 5 has a no-break space (U+00A0) in the place of ' '");
+  EXPECT_ERROR(map("a: 1\n\u00a0b: 2\nc\n"), "; column 1 has a no-break space");
+  EXPECT_ERROR(parsed("a: 1\nb:\u00a0[1\n\nc: 2\n"), "; line 2, column 3 has a no-break space");
+  // a Cyrillic letter, a minus sign, a full-width colon, a typographic quotation mark, a tab
+  EXPECT_ERROR(map("b: 1 \u0441m\n"), "; column 6 has a letter of another alphabet (U+0441) in the place of 'c'");
+  EXPECT_ERROR(map("b: \u22121 m\n"), "; column 4 has a minus sign (U+2212) in the place of '-'");
+  EXPECT_ERROR(parsed("a\uff1a 1\n"), "column 2 has a full-width character (U+FF1A) in the place of ':'");
+  EXPECT_ERROR(map("b: \u201c1 m\u201d\n"), "column 4 has a typographic quotation mark");
+  EXPECT_ERROR(parsed("a: 1\n\tb: 2\n"), "line 2, column 1 has a tab");
+  // controls: in a comment or a text they are no fault, and another line is not blamed
+  EXPECT_EQ(errorOf([&] { map("a: 1 mm  # one\u00a0millimetre\nb: 2 cm\n"); }), "no error");
+  EXPECT_EQ(errorOf([&] { map("b: 1 \u03bcm\n"); }), "no error");
+  EXPECT_EQ(errorOf([&] { map("# \u0441m\nb: 1 xm\n"); }).find("alphabet"), std::string::npos);
+}
+
+TEST(YamlSource, SaysWhatIsThereInThePlaceOfAFile) {
+  const test::TemporaryFolder folder;
+  const auto load = [&](const std::string& content) {
+    YamlSource::load(folder.write("f.yaml", content), YamlLimits{});
+  };
+  EXPECT_ERROR(load("version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 1\n"), "is a Git LFS pointer");
+  EXPECT_ERROR(load("<!doctype HTML>\n<html></html>\n"), "is a web page (HTML)");
+  EXPECT_ERROR(load(std::string("\xff\xfe") + std::string("a\0", 2)), "is text in UTF-16");
+  EXPECT_ERROR(load(""), "contains nothing");
+  EXPECT_EQ(errorOf([&] { load("version: 1\n"); }), "no error");
 }
 
 TEST(YamlSource, RefusesTooMuch) {

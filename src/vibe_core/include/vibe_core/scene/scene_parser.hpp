@@ -29,13 +29,15 @@ bool applyMeshOverride(Scene& scene, const std::string& mesh_file);
 
 /// Uses a surface file about which nothing else is known: applyMeshOverride() if the sidecar or the scene states
 /// landmarks; otherwise unit, axes and landmarks are guessed and reported.
-///   unit       metre, centimetre, millimetre or inch, whichever gives the most likely size of an organ
-///   axes       glTF: y up, z to the front (Khronos 2021, section 3.4); others: x left, y back, z up (DICOM)
+///   unit       of all that scenes know, that which makes the surface most like a stomach by volume and mass of its
+///   wall axes       glTF: y up, z to the front (Khronos 2021, section 3.4); others: as 3D Slicer states them in the
+///   file,
+///              else x left, y back, z up (DICOM)
 ///   landmarks  from the shape; geometry.landmark_confidence says how sure they are, from 0 (nothing like a stomach) to
 ///              1 (like a stomach in every respect, and the same places are found when the axes are tilted by 20
-///              degrees)
-/// @return the guesses and how sure they are, as the text of a sidecar file that states them, and one sentence more if
-///         they are not to be relied on; empty if nothing was guessed
+///              degrees); a guessed unit with which the volume, the wall or the length are not a stomach's lowers it
+/// @return the guesses and how sure they are, as the text of a sidecar file that states them, and one sentence more for
+///         the unit and for the landmarks if they are not to be relied on; empty if nothing was guessed
 /// @throws Error like applyMeshOverride() and importMesh(), and for a surface that is nothing like a stomach
 std::string useMesh(Scene& scene, const std::string& mesh_file);
 

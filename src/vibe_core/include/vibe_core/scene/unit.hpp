@@ -2,6 +2,8 @@
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace vibe {
 
@@ -28,6 +30,9 @@ struct Unit {
 /// Reads a unit such as "mm", "mmHg", "L/min", "g/cm^3", "1/s", "N*s/m", "N m^2" or "%". Empty for an unknown one.
 /// Conversion factors: BIPM, The International System of Units, 9th edition 2019; mmHg as 133.322387415 Pa.
 std::optional<Unit> parseUnit(const std::string& text);
+
+/// Symbols of lengths with their metres, as parseUnit() knows them; some mean the same.
+std::vector<std::pair<std::string, double>> knownLengths();
 
 /// A value in SI, or what is wrong with the text (the end of a sentence for an error message, with a remedy).
 struct Quantity {

@@ -2,6 +2,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,8 @@ struct YamlField {
 /// "file:line: key: what is wrong; remedy". Anchors, aliases and merge keys (<<) work.
 class YamlSource {
  public:
-  /// @throws Error if the file is missing, unreadable, too large or as parse()
+  /// @throws Error if the file is missing, unreadable, something else in its place (a Git LFS pointer, a web page), too
+  ///         large or as parse()
   static YamlSource load(const std::string& file, const YamlLimits& limits);
   /// @param place  what to call the text in errors, e.g. the file name
   /// @throws Error for text that is not exactly one YAML document with a map at the top, or beyond the limits
@@ -38,6 +40,7 @@ class YamlSource {
   const std::string& place() const { return place_; }
   YamlField root() const;
 
+  /// Names a character of the line, too, that is not what it looks like.
   [[noreturn]] void fail(const YamlField& field, const std::string& what_and_remedy) const;
 
   /// Fields of a map in the order of the file, merge keys resolved; a null value is an empty map.
@@ -61,6 +64,7 @@ class YamlSource {
  private:
   std::string place_;
   YAML::Node root_;
+  std::map<int, std::string> odd_characters_;  // by line
 
   std::string scalar(const YamlField& field, const std::string& expected) const;
   void collect(const YamlField& field, int& merges, std::vector<YamlField>& fields) const;
