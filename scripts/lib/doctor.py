@@ -267,14 +267,19 @@ def files(report, paths):
 
 def main():
     parser = argparse.ArgumentParser(
-        prog="scripts/doctor", usage="scripts/doctor [FILE...]", add_help=False,
-        description="Prints one text about this machine, the workspace and the last session, with checks and remedies, to "
-        "paste into a report of trouble; read it before you do: it contains paths and your user name. FILEs are looked at, "
-        "too: recordings, scenes, surfaces, recorded gamepads. Ends with 0 if no trouble was found, else 1.",
+        prog="scripts/doctor", usage=argparse.SUPPRESS, add_help=False, allow_abbrev=False,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Usage: scripts/doctor [FILE...]\n"
+        "Prints one text about this machine, the workspace and the last session, with checks and remedies, to paste into\n"
+        "a report of trouble. Read it before you do: it contains paths and your user name. FILEs are looked at, too:\n"
+        "recordings, scenes, surfaces, recorded gamepads. Ends with status 0 if no trouble was found, else 1.",
     )  # fmt: skip
     parser.add_argument("files", nargs="*", metavar="FILE")
     parser.add_argument("--help", action="help", help="print this text and end")
-    words = parser.parse_args()
+    words, unknown = parser.parse_known_args()
+    if unknown:
+        print("doctor: unknown option '{}' (scripts/doctor --help lists what there is)".format(unknown[0]), file=sys.stderr)
+        return 2
     report = Report()
     print("scripts/doctor, {}".format(time.strftime("%Y-%m-%d %H:%M:%S")))
     for section in (system, packages, workspace, permissions, network, devices, display):
