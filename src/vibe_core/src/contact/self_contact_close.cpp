@@ -82,7 +82,7 @@ constexpr double kEqual = 1 - 1e-9;  // ratio of two squared distances that are 
 
 // The same place has other roundings as the foot in another triangle.
 bool isBefore(const ClosePoints& a, const ClosePoints& b) {
-  return std::tie(a.split, a.node, a.weight) < std::tie(b.split, b.node, b.weight);
+  return std::tie(a.split, a.node, a.late, a.weight) < std::tie(b.split, b.node, b.late, b.weight);
 }
 
 bool isSame(const ClosePoints& a, const ClosePoints& b) {
@@ -126,20 +126,42 @@ void SelfContactClose::listEdges() {
 }
 
 const std::vector<ClosePoints>& SelfContactClose::find(const std::vector<Facing>& facing,
-                                                       const std::array<std::vector<double>, 3>& at, double distance) {
+                                                       const std::vector<Meeting>& meetings,
+                                                       const std::array<std::vector<double>, 3>& at, double distance,
+                                                       double least) {
   at_ = &at;
-  distance_ = distance;
   places_.clear();
-  if (facing.empty()) return places_;
-  listFacing(facing);
-  for (std::vector<int>* marks : {&triangle_mark_, &vertex_mark_, &edge_mark_})
-    std::fill(marks->begin(), marks->end(), kNone);
-  for (std::size_t t = 0; t < triangles_.size(); ++t) findAt(static_cast<int>(t));
+  distance_ = distance;
+  if (!facing.empty()) findFacing(facing);
+  const std::size_t facing_places = places_.size();
+  distance_ = least;
+  findMeetings(meetings);
+  for (std::size_t k = facing_places; k < places_.size(); ++k) places_[k].late = true;
   std::sort(places_.begin(), places_.end(), isBefore);
   places_.erase(std::unique(places_.begin(), places_.end(), isSame), places_.end());
   places_.erase(std::remove_if(places_.begin(), places_.end(), [this](const ClosePoints& p) { return !isNearest(p); }),
                 places_.end());
   return places_;
+}
+
+void SelfContactClose::findFacing(const std::vector<Facing>& facing) {
+  listFacing(facing);
+  for (std::vector<int>* marks : {&triangle_mark_, &vertex_mark_, &edge_mark_})
+    std::fill(marks->begin(), marks->end(), kNone);
+  for (std::size_t t = 0; t < triangles_.size(); ++t) findAt(static_cast<int>(t));
+}
+
+// The marks keep each triangle from looking at a vertex or an edge of others twice; pairs come in no order.
+void SelfContactClose::findMeetings(const std::vector<Meeting>& meetings) {
+  for (const auto& [one, other] : meetings)
+    for (const auto& [triangle, opposite] : {Meeting{one, other}, Meeting{other, one}}) {
+      setBox(triangle);
+      if (isFar(opposite)) break;
+      for (const int v : triangles_[opposite]) vertex_mark_[v] = kNone;
+      for (const int e : edge_of_[opposite]) edge_mark_[e] = kNone;
+      addVertices(triangle, opposite);
+      addEdges(triangle, opposite);
+    }
 }
 
 void SelfContactClose::listFacing(const std::vector<Facing>& facing) {
@@ -161,13 +183,18 @@ void SelfContactClose::findAt(int triangle) {
   const auto& n = triangles_[triangle];
   const bool faces = std::any_of(n.begin(), n.end(), [&](int v) { return of_vertex_[v] < of_vertex_[v + 1]; });
   if (!faces && of_triangle_[triangle] == of_triangle_[triangle + 1]) return;
-  const Eigen::Vector3d a = at(n[0]), b = at(n[1]), c = at(n[2]);
-  low_ = a.cwiseMin(b).cwiseMin(c).array() - distance_;
-  high_ = a.cwiseMax(b).cwiseMax(c).array() + distance_;
+  setBox(triangle);
   for (int i = of_triangle_[triangle]; i < of_triangle_[triangle + 1]; ++i)
     rings_.visit(facing_vertex_[i], [&](int other) { meet(triangle, other); });
   for (const int v : n)
     for (int i = of_vertex_[v]; i < of_vertex_[v + 1]; ++i) meet(triangle, facing_triangle_[i]);
+}
+
+void SelfContactClose::setBox(int triangle) {
+  const auto& n = triangles_[triangle];
+  const Eigen::Vector3d a = at(n[0]), b = at(n[1]), c = at(n[2]);
+  low_ = a.cwiseMin(b).cwiseMin(c).array() - distance_;
+  high_ = a.cwiseMax(b).cwiseMax(c).array() + distance_;
 }
 
 void SelfContactClose::meet(int triangle, int other) {

@@ -53,13 +53,13 @@ TEST(SelfContactClose, FindsEachPlaceOnce) {
     for (std::size_t k = 0; k < 3; ++k) at[k].push_back(p[static_cast<Eigen::Index>(k)]);
   SelfContactClose close(rest.triangles, rings, walls);
   const std::vector<SelfContactClose::Facing> all = {{0, 2}, {0, 3}, {1, 2}, {1, 3}};  // each ridge with both roofs
-  ASSERT_EQ(close.find(all, at, 1e-3).size(), 1U);
-  const ClosePoints place = close.find(all, at, 1e-3)[0];
+  ASSERT_EQ(close.find(all, {}, at, 1e-3, 1e-4).size(), 1U);
+  const ClosePoints place = close.find(all, {}, at, 1e-3, 1e-4)[0];
   EXPECT_EQ(place.node, (std::array<int, 4>{0, 1, 4, 5}));
   EXPECT_NEAR(place.away.norm(), 0.5e-3, 1e-12);
   EXPECT_NEAR(place.share, 1, 1e-12);
   for (const double weight : place.weight) EXPECT_NEAR(std::abs(weight), 0.5, 1e-12);
-  EXPECT_TRUE(close.find(all, at, 0.4e-3).empty());
+  EXPECT_TRUE(close.find(all, {}, at, 0.4e-3, 1e-4).empty());
 }
 
 using Places = std::set<std::pair<int, std::array<int, 4>>>;  // by split and nodes
@@ -96,6 +96,63 @@ Places placesByTrial(const SurfaceMesh& mesh, const std::array<std::vector<doubl
   return places;
 }
 
+// Triangles of one wall, which face nothing else, and triangles whose normals do not oppose.
+TEST(SelfContactClose, WhereTrianglesMeetEachPlaceIsFoundAsByTrial) {
+  constexpr double kLeast = 1e-3;
+  const SurfaceMesh mesh = sphere(0.01, 4);
+  const VertexTriangles rings(mesh.triangles, mesh.vertices.size());
+  const SurfaceWalls walls(mesh, 1);  // all of it is one wall
+  SelfContactClose close(mesh.triangles, rings, walls);
+  std::vector<SelfContactClose::Meeting> all;
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
+    for (int u = 0; u < t; ++u) all.push_back({u, t});
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> uniform(-4e-3, 4e-3);
+  std::array<std::vector<double>, 3> at;
+  for (const Eigen::Vector3d& p : mesh.vertices)
+    for (Eigen::Index k = 0; k < 3; ++k) at[static_cast<std::size_t>(k)].push_back(p[k] + uniform(random));
+  const std::vector<ClosePoints>& places = close.find({}, all, at, 2 * kLeast, kLeast);
+  EXPECT_TRUE(std::all_of(places.begin(), places.end(), [](const ClosePoints& p) { return p.late && p.in_wall; }));
+  Places found = placesOf(places);
+  for (auto place = found.begin(); place != found.end();)
+    place = place->first == 1 && place->second[3] < 0 ? found.erase(place) : std::next(place);
+  EXPECT_GT(found.size(), 30U);
+  EXPECT_EQ(found, placesByTrial(mesh, at, kLeast));
+  EXPECT_TRUE(close.find({}, {}, at, 2 * kLeast, kLeast).empty());
+}
+
+/// A strip of two triangles on each side of a crease, folded flat upon itself.
+SurfaceMesh foldedStrip() {
+  constexpr double kEdge = 10e-3;
+  SurfaceMesh mesh;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) mesh.vertices.emplace_back(i * kEdge, j * kEdge, 0);
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j) {
+      const int v = 3 * i + j;
+      mesh.triangles.push_back({v, v + 3, v + 4});
+      mesh.triangles.push_back({v, v + 4, v + 1});
+    }
+  return mesh;
+}
+
+// All of it is one wall, within two edges: without a force the step would pass through itself and be stopped, time and
+// again.
+TEST(SelfContactClose, AFoldOfOneWallThatMeetsItselfPushesApart) {
+  ContactWorld world(foldedStrip());
+  const auto force = [&](double gap) {
+    for (std::size_t j = 0; j < 3; ++j)
+      world.set(6 + j, Eigen::Vector3d(1.5e-3, (static_cast<double>(j) + 0.3) * 9e-3, gap));
+    world.detect(0.5e-3);
+    world.evaluate();
+    return world.totalForce(6, 9).z();
+  };
+  const double least = 0.05 * kWallThickness;
+  EXPECT_GT(force(0.4 * least), 0.05);
+  EXPECT_LT(force(0.8 * least), force(0.4 * least)) << "it grows as the fold closes";
+  EXPECT_EQ(force(1.05 * least), 0) << "and begins at the minimum distance";
+}
+
 // Of the feet on edges and vertices only those that are local minima count; the others must be all there.
 TEST(SelfContactClose, FindsWhatTrialFindsInACrumpledBall) {
   constexpr double kDistance = 2e-3;
@@ -111,7 +168,7 @@ TEST(SelfContactClose, FindsWhatTrialFindsInACrumpledBall) {
   std::array<std::vector<double>, 3> at;
   for (const Eigen::Vector3d& p : mesh.vertices)
     for (Eigen::Index k = 0; k < 3; ++k) at[static_cast<std::size_t>(k)].push_back(p[k] + uniform(random));
-  Places found = placesOf(close.find(all, at, kDistance));
+  Places found = placesOf(close.find(all, {}, at, kDistance, 0.1 * kDistance));
   const Places expected = placesByTrial(mesh, at, kDistance);
   for (auto place = found.begin(); place != found.end();)
     place = place->first == 1 && place->second[3] < 0 ? found.erase(place) : std::next(place);
