@@ -173,7 +173,7 @@ void SelfContact::addClosePair(const ClosePoints& close) {
   pair.away = close.away;
   const double apart_at_rest = close.in_wall ? kFolded : 1 / (1 + kContactOnset);
   pair.thickness = std::min(kCore * thickness, apart_at_rest * at_rest.norm());
-  if (close.late) pair.thickness = std::min(pair.thickness, kFloor * min_thickness_);
+  if (close.late) pair.thickness = std::min(pair.thickness, kFloor * min_thickness_ / (1 + kContactOnset));
   pair.straight_below = kFloor / kCore;
   pair.stiffness = 0.5 * close.share * area / kSoftness * stiffness_ * pair.thickness;
   finish(pair);

@@ -1,6 +1,8 @@
 #include "contact/self_contact_close.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <queue>
@@ -153,15 +155,25 @@ void SelfContactClose::findFacing(const std::vector<Facing>& facing) {
 
 // The marks keep each triangle from looking at a vertex or an edge of others twice; pairs come in no order.
 void SelfContactClose::findMeetings(const std::vector<Meeting>& meetings) {
-  for (const auto& [one, other] : meetings)
+  for (const auto& [one, other] : meetings) {
+    setBox(one);
+    if (isFar(other) || !areFolded(one, other)) continue;
     for (const auto& [triangle, opposite] : {Meeting{one, other}, Meeting{other, one}}) {
-      setBox(triangle);
-      if (isFar(opposite)) break;
       for (const int v : triangles_[opposite]) vertex_mark_[v] = kNone;
       for (const int e : edge_of_[opposite]) edge_mark_[e] = kNone;
       addVertices(triangle, opposite);
       addEdges(triangle, opposite);
     }
+  }
+}
+
+// What the search leaves out must not depend on its history: it finds all pairs whose normals differ that much.
+bool SelfContactClose::areFolded(int one, int other) const {
+  const auto normal = [this](const std::array<int, 3>& n) {
+    return Eigen::Vector3d((at(n[1]) - at(n[0])).cross(at(n[2]) - at(n[0])));
+  };
+  const Eigen::Vector3d a = normal(triangles_[one]), b = normal(triangles_[other]);
+  return a.dot(b) < kFoldedCosine * std::sqrt(a.squaredNorm() * b.squaredNorm());
 }
 
 void SelfContactClose::listFacing(const std::vector<Facing>& facing) {

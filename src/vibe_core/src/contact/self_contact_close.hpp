@@ -11,6 +11,10 @@
 
 namespace vibe {
 
+/// Cosine between the normals of two triangles of a sharp fold, at most. SelfContactSearch::meetings() has all of them.
+/// Design choice: 107 degrees [1].
+constexpr double kFoldedCosine = -0.3;
+
 /// Says which vertices of a surface are so near along it that they belong to the same wall.
 class SurfaceWalls {
  public:
@@ -78,8 +82,8 @@ class SelfContactClose {
 
   /// @param facing    the triangles around the vertex may be nearer to the triangle than the distance; ascending by
   ///                  vertex
-  /// @param meetings  all triangles without a common edge that are nearer to each other than the least distance, may
-  ///                  have more; they need not face each other, and may be of one wall
+  /// @param meetings  all triangles without a common edge that are nearer to each other than the least distance and
+  ///                  whose normals have a cosine below kFoldedCosine, also of one wall; may have more
   /// @param at        positions [m]
   /// @param distance  of places on walls that face each other [m]
   /// @param least     of places where triangles meet; below the former [m]
@@ -99,6 +103,7 @@ class SelfContactClose {
   void meet(int triangle, int other);
   Eigen::Vector3d at(int node) const { return {(*at_)[0][node], (*at_)[1][node], (*at_)[2][node]}; }
   bool isFar(int triangle) const;
+  bool areFolded(int one, int other) const;
   void addVertices(int triangle, int other);
   void addEdges(int triangle, int other);
   void addEdgePair(const Edge& one, const Edge& other);

@@ -96,8 +96,8 @@ Places placesByTrial(const SurfaceMesh& mesh, const std::array<std::vector<doubl
   return places;
 }
 
-// Triangles of one wall, which face nothing else, and triangles whose normals do not oppose.
-TEST(SelfContactClose, WhereTrianglesMeetEachPlaceIsFoundAsByTrial) {
+// Triangles of one wall, which face nothing else.
+TEST(SelfContactClose, WhereTrianglesOfAFoldMeetPlacesAreThoseOfTrial) {
   constexpr double kLeast = 1e-3;
   const SurfaceMesh mesh = sphere(0.01, 4);
   const VertexTriangles rings(mesh.triangles, mesh.vertices.size());
@@ -116,41 +116,42 @@ TEST(SelfContactClose, WhereTrianglesMeetEachPlaceIsFoundAsByTrial) {
   Places found = placesOf(places);
   for (auto place = found.begin(); place != found.end();)
     place = place->first == 1 && place->second[3] < 0 ? found.erase(place) : std::next(place);
-  EXPECT_GT(found.size(), 30U);
-  EXPECT_EQ(found, placesByTrial(mesh, at, kLeast));
+  const Places expected = placesByTrial(mesh, at, kLeast);
+  EXPECT_GT(found.size(), 20U);
+  EXPECT_LT(found.size(), expected.size()) << "those of triangles whose normals agree are not there";
+  EXPECT_TRUE(std::includes(expected.begin(), expected.end(), found.begin(), found.end()));
   EXPECT_TRUE(close.find({}, {}, at, 2 * kLeast, kLeast).empty());
 }
 
-/// A strip of two triangles on each side of a crease, folded flat upon itself.
-SurfaceMesh foldedStrip() {
+/// Six triangles around a vertex, half of them folded over upon the other half.
+SurfaceMesh fan() {
   constexpr double kEdge = 10e-3;
   SurfaceMesh mesh;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) mesh.vertices.emplace_back(i * kEdge, j * kEdge, 0);
-  for (int i = 0; i < 2; ++i)
-    for (int j = 0; j < 2; ++j) {
-      const int v = 3 * i + j;
-      mesh.triangles.push_back({v, v + 3, v + 4});
-      mesh.triangles.push_back({v, v + 4, v + 1});
-    }
+  mesh.vertices.emplace_back(0, 0, 0);
+  for (int k = 0; k < 6; ++k)
+    mesh.vertices.emplace_back(kEdge * std::cos(k * M_PI / 3), kEdge * std::sin(k * M_PI / 3), 0);
+  for (int k = 0; k < 6; ++k) mesh.triangles.push_back({0, 1 + k, 1 + (k + 1) % 6});
   return mesh;
 }
 
-// All of it is one wall, within two edges: without a force the step would pass through itself and be stopped, time and
-// again.
+// All of it is one wall, within two edges: without a force each step would pass through the fold and be stopped.
 TEST(SelfContactClose, AFoldOfOneWallThatMeetsItselfPushesApart) {
-  ContactWorld world(foldedStrip());
+  ContactWorld world(fan());
   const auto force = [&](double gap) {
-    for (std::size_t j = 0; j < 3; ++j)
-      world.set(6 + j, Eigen::Vector3d(1.5e-3, (static_cast<double>(j) + 0.3) * 9e-3, gap));
+    for (std::size_t k = 2; k < 4; ++k) {  // turned about the x axis, and drawn in
+      const Eigen::Vector3d& p = world.rest.vertices[k];
+      world.set(k, {0.8 * p.x(), -0.8 * p.y(), gap});
+    }
     world.detect(0.5e-3);
     world.evaluate();
-    return world.totalForce(6, 9).z();
+    return world.totalForce(2, 4).z();
   };
   const double least = 0.05 * kWallThickness;
-  EXPECT_GT(force(0.4 * least), 0.05);
-  EXPECT_LT(force(0.8 * least), force(0.4 * least)) << "it grows as the fold closes";
-  EXPECT_EQ(force(1.05 * least), 0) << "and begins at the minimum distance";
+  const double near = force(0.4 * least), far = force(0.8 * least);
+  EXPECT_GT(far, 0);
+  EXPECT_GT(near, 2 * far) << "it grows as the fold closes";
+  EXPECT_LT(force(0.99 * least), 0.1 * far) << "and begins";
+  EXPECT_EQ(force(1.01 * least), 0) << "at the minimum distance";
 }
 
 // Of the feet on edges and vertices only those that are local minima count; the others must be all there.
