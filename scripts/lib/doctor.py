@@ -12,6 +12,7 @@ import pwd
 import re
 import resource
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -104,8 +105,8 @@ def system(report):
     disk = shutil.disk_usage(WORKSPACE).free
     report.check(disk > 2e9, "room on the disk", "{:.1f} GB are free at {}; a build needs 2".format(disk / 1e9, WORKSPACE))
     busy = os.getloadavg()[0] > len(os.sched_getaffinity(0)) + 0.5
-    report.check(not busy, "free processors", "other programs use all cores (load {:.1f}); stop them before a session in "
-                 "real time".format(os.getloadavg()[0]))  # fmt: skip
+    report.check(not busy, "free processors", "the load is {:.1f} on {} cores: programs wait for them, or for a disk; let them "
+                 "end before a session in real time".format(os.getloadavg()[0], len(os.sched_getaffinity(0))))  # fmt: skip
 
 
 def packages(report):
@@ -132,7 +133,9 @@ def workspace(report):
     report.check(" " not in WORKSPACE, "path", "catkin cannot build in a path with a space; move the clone")
     mine = writable(build)
     if built and not mine:
-        newer = output_of("find", os.path.join(WORKSPACE, "src"), "-type", "f", "-newer", record, "-not", "-name", "*.pyc")
+        newer = output_of(
+            "bash", "-c", 'vibe_root=$0; source "$0/scripts/lib/parts.sh"; newerSources "$1" OFF', WORKSPACE, record
+        )
         report.check(not newer, "build of another user", "'{}' owns the workspace and {} is newer than what is built; let "
                      "'{}' run scripts/build, or work in a copy".format(owner, newer.split("\n")[0], owner))  # fmt: skip
     else:
@@ -294,4 +297,5 @@ def main():
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # of `scripts/doctor | head`
     sys.exit(main())
