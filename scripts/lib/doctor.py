@@ -20,6 +20,7 @@ import time
 import xmlrpc.client
 
 from doctor_files import look_at
+from doctor_graph import simulators_of, unanswered
 
 WORKSPACE = os.environ["VIBE_WORKSPACE"]
 PATIENCE = 3.0  # for one command [s]
@@ -177,10 +178,11 @@ def network(report):
     socket.setdefaulttimeout(1.0)
     nodes = None
     with contextlib.suppress(OSError, xmlrpc.client.Error, ValueError):
-        published, _, _ = xmlrpc.client.ServerProxy(uri).getSystemState("/vibe_doctor")[2]
-        nodes = {node for _, names in published for node in names}
-        wanted = [topic for topic, _ in published if topic.endswith("/applied_input")]
-        report.fact("simulators", ", ".join(wanted) or "none")
+        published, subscribed, _ = map(dict, xmlrpc.client.ServerProxy(uri).getSystemState("/vibe_doctor")[2])
+        nodes = {node for names in published.values() for node in names}
+        report.fact("simulators", ", ".join(sorted(simulators_of(published))) or "none")
+        for sentence in unanswered(published, subscribed):
+            report.check(False, "topic", sentence)
     report.fact("master", "{}: {}".format(uri, "does not answer" if nodes is None else " ".join(sorted(nodes))))
 
 
@@ -193,7 +195,7 @@ def devices(report):
         closed = [path for path in found if not os.access(path, os.R_OK)]
         if found:
             report.check(len(closed) < len(found), what, "no {} can be read by you ({} belongs to the group {}); join that group or "
-                         "install the udev rules of docs/hardware.md".format(pattern, closed[:1], group_of(closed)))  # fmt: skip
+                         "install the udev rules of docs/hardware.md".format(pattern, closed[0] if closed else "", group_of(closed)))  # fmt: skip
     report.fact("real-time priority", "up to {}".format(resource.getrlimit(resource.RLIMIT_RTPRIO)[0]))
 
 
@@ -247,8 +249,12 @@ def last_session(report):
             report.fact(os.path.basename(path), "{:.2f} MB".format(os.path.getsize(path) / 1e6))
     bag = os.path.join(folder, "session.bag")
     running = time.time() - max((os.path.getmtime(path) for path in glob.glob(bag + "*")), default=0) < 10
-    report.check(os.path.exists(bag) or running, "recording", "{} is not complete; if no session runs, the recorder was "
-                 "killed or the disk was full: `rosbag reindex` mends what is there".format(bag))  # fmt: skip
+    if os.path.exists(bag + ".active"):
+        report.check(running, "recording", "{} is not complete; the recorder may have been killed, or the disk full: `rosbag "
+                     "reindex` mends what is there".format(bag))  # fmt: skip
+    else:
+        report.check(os.path.exists(bag), "recording", "the session in {} has recorded nothing; see what its logs "
+                     "say".format(folder))  # fmt: skip
     for log in sorted(glob.glob(os.path.join(folder, "log/*.log"))):
         lines = [line for line in read(log).splitlines() if COMPLAINT.search(line)]
         for line in lines[-LOG_LINES:]:

@@ -33,7 +33,7 @@ using namespace vibe::rviz_plugins;
 
 constexpr int kWarmUp = 10, kFrames = 100;
 constexpr double kMasterPatience = 10;  // [s]
-constexpr double kGoal = 0.5;  // for geometry and upload [ms]
+constexpr double kGoal = 0.5;           // for geometry and upload [ms]
 
 enum Part { Read, Geometry, Colours, Upload, Rest, Whole, kPartCount };
 constexpr std::array<const char*, kPartCount> kPartNames{"reading", "geometry", "colours", "upload", "rest", "process"};
