@@ -92,7 +92,7 @@ TEST_F(DeviceDriverTest, ADeviceThatIsListedButNeverOpensIsReportedOnceAndUsedWh
   run(10);
   EXPECT_EQ(said.all.size(), 1U);
   EXPECT_EQ(said.count("The input device at /fake/A1, serial number A1 is there, but opening it fails again and again "
-                       "(/fake/A1: Device or resource busy); end other programs that use it, check the cable"),
+                       "(/fake/A1: Device or resource busy); another program may use it: end that, or check the cable"),
             1);
   EXPECT_EQ(driver.statistics().state, LinkState::Unusable);
   EXPECT_NE(driver.statistics().problem, "");

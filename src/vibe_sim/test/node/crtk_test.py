@@ -7,7 +7,7 @@ import unittest
 import numpy
 import rospy
 import rostest
-from geometry_msgs.msg import PoseStamped, TwistStamped
+from geometry_msgs.msg import PoseStamped, Twist, TwistStamped
 from node_test_support import OVERSTITCH_JOINTS, PERIOD, SCOPE_JOINTS, joints
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, Header
@@ -232,11 +232,11 @@ class CrtkTest(unittest.TestCase):
     def test_the_velocity_of_the_tip_is_that_of_its_joints(self):
         self.send("scope/servo_jp", [0.03, 0.2, 0.4, -0.3])
         self.step(120)
-        self.send("scope/servo_jp", [0.04, 0.5, 0.2, -0.1])
-        self.step(8)
-        self.assertTrue(wait_until(lambda: self.twist.stamps()[-8:] == self.pose.stamps()))
-        twists = self.twist.messages[-8:]
-        for k in range(2, 8):
+        self.send("scope/move_jp", [0.06, 0.6, 0.1, 0.0])
+        self.step(12)
+        self.assertTrue(wait_until(lambda: self.twist.stamps()[-12:] == self.pose.stamps()))
+        twists = self.twist.messages[-12:]
+        for k in range(3, 11):
             linear, angular = (
                 numpy.array([v.x, v.y, v.z]) for v in (twists[k].twist.linear, twists[k].twist.angular)
             )
@@ -247,9 +247,9 @@ class CrtkTest(unittest.TestCase):
             self.assertGreater(numpy.linalg.norm(angular), 0.1)
             self.assertLess(numpy.linalg.norm(linear - expected[:3]), 0.02 * numpy.linalg.norm(linear))
             self.assertLess(numpy.linalg.norm(angular - expected[3:]), 0.02 * numpy.linalg.norm(angular))
-        self.assertTrue(self.reset(seed=0, keep_time=True).success)
-        self.assertTrue(wait_until(lambda: len(self.twist.messages) > 8))
-        self.assertEqual(self.twist.messages[-1].twist, type(self.twist.messages[-1].twist)())
+        self.twist.clear()
+        self.assertTrue(self.reset(seed=0, keep_time=False).success)
+        self.assertTrue(self.twist.waits_for(lambda m: m.twist == Twist()))
 
     def test_the_wall_ahead_has_a_place_and_a_normal(self):
         self.step(5)
