@@ -17,7 +17,7 @@ checkCall() {
 useScratchHome() {
   [ -z "${ROS_HOME:-}${ROS_LOG_DIR:-}" ] || return 0
   ! mkdir -p -- "${HOME:-/nonexistent}/.ros" 2>/dev/null || [ ! -w "$HOME/.ros" ] || return 0
-  ROS_HOME=$(mktemp -d "${TMPDIR:-/tmp}/vibe_home.XXXXXX") || die 'neither the home nor the folder for temporary files can be written to; set ROS_HOME to a folder that can'
+  ROS_HOME=$(mktemp -d "${TMPDIR:-/tmp}/vibe_home.XXXXXX") || die "no folder for logs can be made, neither in the home nor in ${TMPDIR:-/tmp}; set ROS_HOME to a folder that you may write to, with room on its disk"
   export ROS_HOME MPLCONFIGDIR=$ROS_HOME
 }
 

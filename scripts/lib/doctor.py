@@ -12,6 +12,7 @@ import pwd
 import re
 import resource
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -19,6 +20,7 @@ import time
 import xmlrpc.client
 
 from doctor_files import look_at
+from doctor_graph import simulators_of, unanswered
 
 WORKSPACE = os.environ["VIBE_WORKSPACE"]
 PATIENCE = 3.0  # for one command [s]
@@ -104,8 +106,8 @@ def system(report):
     disk = shutil.disk_usage(WORKSPACE).free
     report.check(disk > 2e9, "room on the disk", "{:.1f} GB are free at {}; a build needs 2".format(disk / 1e9, WORKSPACE))
     busy = os.getloadavg()[0] > len(os.sched_getaffinity(0)) + 0.5
-    report.check(not busy, "free processors", "other programs use all cores (load {:.1f}); stop them before a session in "
-                 "real time".format(os.getloadavg()[0]))  # fmt: skip
+    report.check(not busy, "free processors", "the load is {:.1f} on {} cores: programs wait for them, or for a disk; let them "
+                 "end before a session in real time".format(os.getloadavg()[0], len(os.sched_getaffinity(0))))  # fmt: skip
 
 
 def packages(report):
@@ -132,7 +134,9 @@ def workspace(report):
     report.check(" " not in WORKSPACE, "path", "catkin cannot build in a path with a space; move the clone")
     mine = writable(build)
     if built and not mine:
-        newer = output_of("find", os.path.join(WORKSPACE, "src"), "-type", "f", "-newer", record, "-not", "-name", "*.pyc")
+        newer = output_of(
+            "bash", "-c", 'vibe_root=$0; source "$0/scripts/lib/parts.sh"; newerSources "$1" OFF', WORKSPACE, record
+        )
         report.check(not newer, "build of another user", "'{}' owns the workspace and {} is newer than what is built; let "
                      "'{}' run scripts/build, or work in a copy".format(owner, newer.split("\n")[0], owner))  # fmt: skip
     else:
@@ -174,10 +178,11 @@ def network(report):
     socket.setdefaulttimeout(1.0)
     nodes = None
     with contextlib.suppress(OSError, xmlrpc.client.Error, ValueError):
-        published, _, _ = xmlrpc.client.ServerProxy(uri).getSystemState("/vibe_doctor")[2]
-        nodes = {node for _, names in published for node in names}
-        wanted = [topic for topic, _ in published if topic.endswith("/applied_input")]
-        report.fact("simulators", ", ".join(wanted) or "none")
+        published, subscribed, _ = map(dict, xmlrpc.client.ServerProxy(uri).getSystemState("/vibe_doctor")[2])
+        nodes = {node for names in published.values() for node in names}
+        report.fact("simulators", ", ".join(sorted(simulators_of(published))) or "none")
+        for sentence in unanswered(published, subscribed):
+            report.check(False, "topic", sentence)
     report.fact("master", "{}: {}".format(uri, "does not answer" if nodes is None else " ".join(sorted(nodes))))
 
 
@@ -190,7 +195,7 @@ def devices(report):
         closed = [path for path in found if not os.access(path, os.R_OK)]
         if found:
             report.check(len(closed) < len(found), what, "no {} can be read by you ({} belongs to the group {}); join that group or "
-                         "install the udev rules of docs/hardware.md".format(pattern, closed[:1], group_of(closed)))  # fmt: skip
+                         "install the udev rules of docs/hardware.md".format(pattern, closed[0] if closed else "", group_of(closed)))  # fmt: skip
     report.fact("real-time priority", "up to {}".format(resource.getrlimit(resource.RLIMIT_RTPRIO)[0]))
 
 
@@ -244,8 +249,12 @@ def last_session(report):
             report.fact(os.path.basename(path), "{:.2f} MB".format(os.path.getsize(path) / 1e6))
     bag = os.path.join(folder, "session.bag")
     running = time.time() - max((os.path.getmtime(path) for path in glob.glob(bag + "*")), default=0) < 10
-    report.check(os.path.exists(bag) or running, "recording", "{} is not complete; if no session runs, the recorder was "
-                 "killed or the disk was full: `rosbag reindex` mends what is there".format(bag))  # fmt: skip
+    if os.path.exists(bag + ".active"):
+        report.check(running, "recording", "{} is not complete; the recorder may have been killed, or the disk full: `rosbag "
+                     "reindex` mends what is there".format(bag))  # fmt: skip
+    else:
+        report.check(os.path.exists(bag), "recording", "the session in {} has recorded nothing; see what its logs "
+                     "say".format(folder))  # fmt: skip
     for log in sorted(glob.glob(os.path.join(folder, "log/*.log"))):
         lines = [line for line in read(log).splitlines() if COMPLAINT.search(line)]
         for line in lines[-LOG_LINES:]:
@@ -294,4 +303,5 @@ def main():
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # of `scripts/doctor | head`
     sys.exit(main())

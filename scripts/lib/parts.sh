@@ -23,6 +23,20 @@ keysOf() {
   esac
 }
 
+# newerSources BUILT TESTING PACKAGE...: what is compiled, or what code or build files are generated from, and newer than
+# the record of a build; of tests only where TESTING is ON; no package: of all. What is read where it lies, such as
+# Python modules, scenes and pages, needs no build.
+newerSources() {
+  local built=$1 name without=() folders=()
+  [ "$2" = ON ] || without=(! -path '*/test/*' ! -path '*/fuzz/*')
+  shift 2
+  [ $# -gt 0 ] || folders=("$vibe_root/src")
+  for name in "$@"; do [ ! -d "$vibe_root/src/$name" ] || folders+=("$vibe_root/src/$name"); done
+  [ ${#folders[@]} -eq 0 ] || find "${folders[@]}" -type f -newer "$built" "${without[@]}" \( -name '*.[ch]pp' -o -name '*.[ch]' \
+    -o -name '*.cc' -o -name '*.msg' -o -name '*.srv' -o -name '*.action' -o -name '*.cmake' -o -name CMakeLists.txt \
+    -o -name package.xml -o -name setup.py \)
+}
+
 parts=(session devices vision measurements python firmware tests)
 
 # checkPart PART: ends the script if there is no such part

@@ -25,6 +25,7 @@ printf 'name: x # \302\240 \303\244\ngas: {}\n' >good.yaml
 printf 'scop\320\265: {}\n' >letter.yaml
 printf 'A: 00 0 255 0 0 0\nA: 02 0 255 0 0 0\nE: 0.0 0003 0000 7\n' >pad.evemu
 : >empty.obj
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >open.obj
 /usr/bin/python3 - <<'PYTHON'
 import rosbag
 from std_msgs.msg import String
@@ -40,6 +41,7 @@ check 'a letter of another script' finds 'letter.yaml:1 contains CYRILLIC SMALL 
 check 'comments are free' isQuietAbout 'good.yaml'
 check 'an axis without a state' finds 'the axes 02 have no event'
 check 'an empty file' finds 'empty.obj is empty'
+check 'what the import says of a surface' finds 'open.obj is not closed: it has 1 hole'
 check 'a file that is not there' finds 'none.bag cannot be read .No such file'
 check 'topics that were left out' finds 'filtered.bag lacks applied_input, session_info, snapshot'
 check 'nothing of the machine' isQuietAbout 'X server|ROS_HOME'
@@ -47,3 +49,29 @@ export DISPLAY=:987 ROS_HOME=$scratch/page.glb/none
 check 'the machine is looked at' asks good.yaml
 check 'a display that does not answer' finds 'no X server answers at DISPLAY=:987'
 check 'a folder that cannot be written to' finds 'ROS_HOME is .*/page.glb/none, which cannot'
+
+# a master with a simulator and a client whose arm has another name
+cat >master.py <<'PYTHON'
+import xmlrpc.server
+server = xmlrpc.server.SimpleXMLRPCServer(("localhost", 0), logRequests=False)
+state = [[["/applied_input", ["/sim_node"]], ["/scope/measured_cp", ["/sim_node"]],
+          ["/scope/simulated/measured_js", ["/sim_node"]], ["/scope/operating_state", ["/sim_node"]],
+          ["/PSM1/servo_cp", ["/client"]], ["/scope/move_cp", ["/client"]]],
+         [["/PSM1/measured_cp", ["/client"]], ["/scope/measured_js", ["/client", "/sim_node"]],
+          ["/overstitch/measured_js", ["/sim_node"]], ["/scope/operating_state", ["/client"]],
+          ["/scope/servo_cp", ["/sim_node"]], ["/scope/move_cp", ["/sim_node"]], ["/PSM1/goal", ["/client"]]], []]
+server.register_function(lambda caller: [1, "", state], "getSystemState")
+print(server.server_address[1], flush=True)
+server.serve_forever()
+PYTHON
+unset ROS_HOME
+coproc MASTER { exec /usr/bin/python3 master.py; }
+master=$MASTER_PID
+read -r port <&"${MASTER[0]}"
+export ROS_MASTER_URI=http://localhost:$port
+check 'a graph is looked at' asks good.yaml
+kill "$master"
+check 'a client that listens where nobody sends' finds '/client listens to /PSM1/measured_cp, which nobody publishes; there is /scope/measured_cp'
+check 'the joints of the tool' finds '/client listens to /scope/measured_js, .* there is /scope/simulated/measured_js'
+check 'a command that nobody receives' finds '/client sends /PSM1/servo_cp, .* there is /scope/servo_cp'
+check 'no other topic' isQuietAbout 'goal|operating_state|move_cp|overstitch'

@@ -39,4 +39,15 @@ check 'a part that is not there is named' refuses 1 "vibe_firmware of the part '
 check 'nor is a part the whole' refuses 1 'only a part is built' asOther "$build"
 isBuilt everything 'now - 1 hour'
 check 'a source that is newer is named' refuses 1 'vibe_sim/a.cpp is newer than what is built' asOther "$build" --part session
+isBuilt everything 'now'
+touch -d 'now - 2 hours' "$workspace/src/vibe_sim/a.cpp"
+mkdir -p "$workspace/src/vibe_sim/test" "$workspace/src/vibe_vision" "$workspace/docs"
+for name in vibe_sim/README.md vibe_sim/node.py vibe_sim/scene.yaml vibe_sim/test/b.cpp vibe_vision/c.cpp; do
+  touch -d 'now + 1 hour' "$workspace/src/$name"
+done
+check 'what is not compiled, or not for this part, may be newer' asOther "$build" --part session
+check 'another part is' refuses 1 'vibe_vision/c.cpp is newer' asOther "$build" --part session --part vision
+check 'and tests are' refuses 1 'vibe_sim/test/b.cpp is newer' asOther "$build" --part session --tests
+touch -d 'now + 1 hour' "$workspace/src/vibe_sim/CMakeLists.txt"
+check 'and what a build is made of' refuses 1 'vibe_sim/CMakeLists.txt is newer' asOther "$build" --part session
 chmod -R u+w "$workspace"

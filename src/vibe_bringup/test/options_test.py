@@ -162,7 +162,18 @@ class Run(OptionsTest):
         for name in ("new", "new-8"):
             with self.assertRaises(FileExistsError):
                 places.claim_session(name)
-            self.refuses("already holds a session", "run", "--output", name)
+
+    def test_a_session_that_failed_before_it_recorded_leaves_its_folder(self):
+        code = "import sys; sys.path.insert(0, {!r}); from vibe_bringup import places; print(places.claim_session('x'))"
+        code = code.format(os.path.dirname(os.path.dirname(places.__file__)))
+        for _ in range(2):  # one after the other
+            self.assertEqual(subprocess.check_output([sys.executable, "-c", code], text=True), "x\n")
+        self.assertFalse(places.holds_session("x"))
+        for name in ("session.bag.active", "summary.txt", "session.bag"):
+            open("x/" + name, "wb").close()
+            self.refuses("already holds a session", "run", "--output", "x")
+            self.assertNotEqual(subprocess.call([sys.executable, "-c", code], stderr=subprocess.DEVNULL), 0)
+            os.remove("x/" + name)
 
 
 class OthersTest(OptionsTest):

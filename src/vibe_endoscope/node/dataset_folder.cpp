@@ -19,7 +19,8 @@ void savePng(const std::string& file, const std::uint8_t* pixels, int width, int
   const int channels = format == QImage::Format_RGB888 ? 3 : 1;
   const QImage image(pixels, width, height, channels * width, format);
   if (!image.save(QString::fromStdString(file), "PNG"))
-    throw std::runtime_error("'" + file + "' cannot be written; make room on the disk.");
+    throw std::runtime_error("'" + file +
+                             "' cannot be written; make room if the disk is full, or give another --output.");
 }
 
 std::string quoted(const std::string& text) {
@@ -115,7 +116,8 @@ DatasetFolder::DatasetFolder(const DatasetOptions& options) : options_(options) 
   is_new_ = !fs::exists(options.output, problem);
   fs::create_directories(options.output, problem);
   if (problem || !fs::is_directory(options.output))
-    throw std::runtime_error("The folder '" + options.output + "' cannot be made; give another --output.");
+    throw std::runtime_error("The folder '" + options.output + "' cannot be made (" +
+                             (problem ? problem.message() : "it is a file") + "); give another --output.");
   for (const auto& entry : fs::directory_iterator(options.output))
     if (isOfDataSet(entry.path()))
       throw std::runtime_error("The folder '" + options.output + "' is not empty; give another --output or remove it.");
@@ -236,7 +238,8 @@ void DatasetFolder::writeText(const std::string& name, const std::string& text) 
   out << text;
   out.close();
   if (!out)
-    throw std::runtime_error("'" + options_.output + "/" + name + "' cannot be written; make room on the disk.");
+    throw std::runtime_error("'" + options_.output + "/" + name +
+                             "' cannot be written; make room if the disk is full, or give another --output.");
 }
 
 std::string DatasetFolder::intrinsics() const {
@@ -292,7 +295,7 @@ void DatasetFolder::finish(const vibe_msgs::SessionInfo& info, const std::string
   times_.close(), poses_.close();
   if (!times_ || !poses_)
     throw std::runtime_error("times.txt or poses.txt in '" + options_.output +
-                             "' cannot be written; make room on the disk.");
+                             "' cannot be written; make room if the disk is full, or give another --output.");
   writeText("intrinsics.json", intrinsics());
   writeText("labels.json", labels);
   writeText("dataset.json", description(info, frame));

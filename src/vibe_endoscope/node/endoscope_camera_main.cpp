@@ -12,6 +12,7 @@
 #include "endoscope_camera.hpp"
 #include "vibe_graphics/graphics/resources.hpp"
 #include "vibe_graphics/graphics/virtual_display.hpp"
+#include "vibe_node/startup.hpp"
 
 namespace endoscope = vibe::endoscope;
 namespace graphics = vibe::graphics;
@@ -20,6 +21,7 @@ namespace {
 
 constexpr int kFailure = 1;
 constexpr int kUsage = 2;
+constexpr double kMasterPatience = 10;  // [s]
 
 int fail(const std::exception& error, int status) {
   std::fprintf(stderr, "endoscope_camera: %s\n", error.what());
@@ -41,9 +43,10 @@ void run(const endoscope::CameraOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "endoscope_camera");
   endoscope::CameraOptions options;
   try {
+    vibe::node::init(argc, argv, "endoscope_camera");
+    vibe::node::waitForMaster(kMasterPatience);
     options = endoscope::readCameraOptions(ros::NodeHandle("~"));
   } catch (const std::exception& error) {
     return fail(error, kUsage);

@@ -26,9 +26,11 @@ SessionFrames::SessionFrames(const std::string& file) {
   findTopics();
   rosbag::View infos(bag_, rosbag::TopicQuery(prefix_ + "session_info"));
   if (infos.size() == 0 || infos.begin()->instantiate<vibe_msgs::SessionInfo>()->urdf.empty())
-    throw std::runtime_error("'" + file +
-                             "' does not hold the URDF of the scope (topic session_info), so nothing tells " +
-                             "where the camera is; record the session with this release and a scope in the scene.");
+    throw std::runtime_error(
+        "'" + file + "' does not hold the URDF of the scope, so nothing tells where the camera is: " +
+        (infos.size() == 0 ? "it has no message on session_info; if topics were chosen, keep that, else "
+                             "record the session with this release."
+                           : "the one in session_info is empty; record with a scope in the scene."));
   info_ = *infos.begin()->instantiate<vibe_msgs::SessionInfo>();
   poses_ = std::make_unique<JointTree>(info_.urdf);
   readFixedFrames();
@@ -46,9 +48,12 @@ void SessionFrames::findTopics() {
   const auto connections = topologies.getConnections();
   const std::string name = "tissue/topology";
   if (connections.empty() || connections[0]->topic.size() < name.size())
-    throw std::runtime_error("'" + bag_.getFileName() + "' has no topic tissue/topology, so there is nothing to see.");
+    throw std::runtime_error("'" + bag_.getFileName() +
+                             "' has no topic tissue/topology, so there is nothing to see; if topics were "
+                             "chosen, keep it.");
   if (connections.size() > 1 && connections[0]->topic != connections[1]->topic)
-    throw std::runtime_error("'" + bag_.getFileName() + "' holds several simulators; record one of them alone.");
+    throw std::runtime_error("'" + bag_.getFileName() +
+                             "' holds several simulators; copy the topics of one with rosbag filter.");
   prefix_ = connections[0]->topic.substr(0, connections[0]->topic.size() - name.size());
 }
 
@@ -56,7 +61,7 @@ void SessionFrames::readFixedFrames() {
   rosbag::View view(bag_, rosbag::TopicQuery(std::vector<std::string>{"/tf_static", prefix_ + "tf_static"}));
   if (view.size() == 0)
     throw std::runtime_error("'" + bag_.getFileName() + "' has no topic /tf_static, so nothing tells where the scope " +
-                             "is; record the session with scripts/record or scripts/run.");
+                             "is; if topics were chosen, keep it, else record with scripts/record or scripts/run.");
   for (const rosbag::MessageInstance& message : view)
     for (const auto& transform : message.instantiate<tf2_msgs::TFMessage>()->transforms)
       poses_->setFixed(transform.child_frame_id, transform.header.frame_id, poseOf(transform.transform));

@@ -203,10 +203,12 @@ class Session {
       plug();
   }
 
-  /// Says once a second at most that the machine is too slow, and once that the hand has come to its end.
+  /// Says once a second at most that it is behind, and once that the hand has come to its end.
   void report(const TickSchedule& schedule) {
     if (schedule.behind() && emulator_.time() >= next_warning_) {
-      std::fprintf(stderr, "vibe_emulator: %.0f ms behind; the machine is too busy for 1,000 ticks per second.\n",
+      std::fprintf(stderr,
+                   "vibe_emulator: %.0f ms behind its 1,000 ticks per second; the machine may be too busy, or have "
+                   "stood still.\n",
                    1e3 * schedule.delay());
       next_warning_ = emulator_.time() + 1;
     }

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <memory>
+#include <string>
 
 #include "vibe_core/common/error.hpp"
 #include "vibe_node/wall_clock.hpp"
@@ -43,7 +44,9 @@ std::optional<bool> lampState(unsigned long pixel) {
 }
 
 LampWatch::LampWatch(Callback changed) : changed_(std::move(changed)), display_(XOpenDisplay(nullptr)) {
-  if (display_ == nullptr) throw Error("There is no X display to watch; set DISPLAY or ~screen to false.");
+  if (display_ == nullptr)
+    throw Error(std::string("No X display to watch answers at DISPLAY='") + XDisplayName(nullptr) +
+                "'; set DISPLAY to one that does, or ~screen to false.");
   root_ = DefaultRootWindow(display_);
   if (DefaultDepth(display_, DefaultScreen(display_)) != 24) {
     XCloseDisplay(display_);

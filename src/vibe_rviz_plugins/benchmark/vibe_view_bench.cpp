@@ -24,6 +24,7 @@
 #include "vibe_graphics/graphics/dynamic_mesh.hpp"
 #include "vibe_graphics/graphics/resources.hpp"
 #include "vibe_graphics/messages/tissue_messages.hpp"
+#include "vibe_node/startup.hpp"
 
 namespace {
 
@@ -31,7 +32,8 @@ using namespace vibe;
 using namespace vibe::rviz_plugins;
 
 constexpr int kWarmUp = 10, kFrames = 100;
-constexpr double kGoal = 0.5;  // for geometry and upload [ms]
+constexpr double kMasterPatience = 10;  // [s]
+constexpr double kGoal = 0.5;           // for geometry and upload [ms]
 
 enum Part { Read, Geometry, Colours, Upload, Rest, Whole, kPartCount };
 constexpr std::array<const char*, kPartCount> kPartNames{"reading", "geometry", "colours", "upload", "rest", "process"};
@@ -209,14 +211,10 @@ int run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "vibe_view_bench", ros::init_options::AnonymousName);
-  if (!ros::master::check()) {
-    std::fprintf(stderr, "vibe_view_bench: no ROS master answers at %s; start roscore, or use scripts/bench_view.\n",
-                 ros::master::getURI().c_str());
-    return 2;
-  }
-  QApplication application(argc, argv);
   try {
+    vibe::node::init(argc, argv, "vibe_view_bench", ros::init_options::AnonymousName);
+    vibe::node::waitForMaster(kMasterPatience);
+    const QApplication application(argc, argv);
     return run();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "vibe_view_bench: %s\n", error.what());

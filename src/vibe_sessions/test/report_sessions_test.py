@@ -92,14 +92,47 @@ class SessionsTest(unittest.TestCase):
         self.assertEqual(read_recording(self.path).remark, "")
         self.check(read_recording(self.path, session="1"), 1)
 
-    def test_what_was_sorted_by_simulated_time_is_not_mixed(self):
-        self.write({"identity": FIRST}, {"identity": SECOND})
+    def sort(self):
+        """By the times of the messages, as tools that merge or filter recordings do."""
         copy = os.path.join(self.folder, "copy.bag")
         with rosbag.Bag(self.path) as source, rosbag.Bag(copy, "w") as target:
-            for topic, message, stamp in source.read_messages():
+            for topic, message, stamp in sorted(source.read_messages(), key=lambda each: each[2]):
                 target.write(topic, message, stamp)
         self.path = copy
-        self.assertIn("messages of several sessions in '/' in turns", self.problem_of())
+
+    def test_namespaces_that_were_sorted_by_simulated_time(self):
+        self.write({"identity": FIRST, "namespace": "/left"}, {"identity": SECOND, "namespace": "/right"})
+        self.sort()
+        self.check(read_recording(self.path), 1)
+        second = read_recording(self.path, session="2")
+        self.check(second, 2)
+        self.assertNotIn("in turns", second.remark)
+
+    def test_sessions_in_turns_with_the_same_stamps(self):
+        self.write({"identity": FIRST}, {"identity": SECOND})
+        self.sort()
+        for choice, count, identity in ((None, 1, FIRST), ("2", 2, SECOND), ("aaaa", 2, SECOND)):
+            recording = read_recording(self.path, session=choice)
+            self.assertEqual(list(recording.steps), list(range(60 * count)))
+            self.assertEqual((recording.identity, recording.scene), (identity, "name: s{}\n".format(count)))
+            self.assertIn("come in turns", warnings_of(recording)[0])
+            self.assertEqual(numbers_of(recording)["session"]["steps"], 60 * count)
+        # the second one is longer, and what came then is its own
+        self.assertEqual(recording.skill.path_length, 2)
+        self.assertGreater(min(recording.tip[::4]), 2e9)
+        self.assertIsNone(read_recording(self.path).skill)
+
+    def test_sessions_in_turns_with_stamps_of_their_own(self):
+        self.write({"identity": FIRST, "origin": 1e9}, {"identity": SECOND, "origin": 1e9 + 0.005})
+        self.sort()
+        self.check(read_recording(self.path), 1)
+        self.check(read_recording(self.path, session="2"), 2)
+
+    def test_in_turns_without_identity(self):
+        self.write({}, {"origin": 1.005})
+        self.sort()
+        self.assertIn("they have no identity", self.problem_of())
+        self.assertIn("they have no identity", self.problem_of(session="2"))
 
     def test_a_recording_that_was_merged_with_a_part_of_itself(self):
         self.write({"identity": FIRST})

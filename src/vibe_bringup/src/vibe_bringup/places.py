@@ -1,10 +1,12 @@
 """Where things are: files of packages, and folders for what is made. Standard library and, where it is there, rospkg."""
 
+import fcntl
 import os
 
 ROBOT = "package://vibe_description/urdf/scope.urdf"
 RVIZ_CONFIG = "package://vibe_description/rviz/vibe.rviz"
 SCENE = "package://vibe_core/scenes/stomach.yaml"
+claims = []  # descriptors of the folders whose locks this process holds until it ends
 
 
 def package_folder(package):
@@ -42,26 +44,42 @@ def output_folder(name):
 
 
 def holds_session(folder):
-    """Whether a session has been there, or runs there now."""
-    return any(os.path.lexists(os.path.join(folder, name)) for name in ("session.bag", "session.bag.active", "log"))
+    """Whether a session has been recorded there, or is being. One that failed before has left nothing but logs."""
+    return any(os.path.lexists(os.path.join(folder, name)) for name in ("session.bag", "session.bag.active", "summary.txt"))
 
 
 def claim_session(folder, free_name=False):
-    """Makes the folder of a session with its folder for logs, which no other session gets; with `free_name` the first
-    free one of FOLDER, FOLDER-2 and so on. Returns its path. Raises FileExistsError."""
+    """Makes the folder of a session with its folder for logs, which no other session gets while this process runs; with
+    `free_name` the first free one of FOLDER, FOLDER-2 and so on. Returns its path. Raises FileExistsError."""
     name, number = folder, 1
     while True:
         os.makedirs(name, exist_ok=True)
-        try:
-            if os.path.lexists(os.path.join(name, "session.bag")):
-                raise FileExistsError("'{}' already holds a session".format(name))
-            os.mkdir(os.path.join(name, "log"))  # only one succeeds
+        if claim_logs(os.path.join(name, "log")) and not holds_session(name):
             return name
-        except FileExistsError:
-            if not free_name:
-                raise FileExistsError("'{}' already holds a session; give another folder".format(name)) from None
+        if not free_name:
+            raise FileExistsError("'{}' already holds a session, or one runs there; give another folder".format(name))
         number += 1
         name = "{}-{}".format(folder, number)
+
+
+def claim_logs(folder):
+    """Whether this process got the folder, in which logs of a session that failed may be; logs are appended to."""
+    try:
+        os.mkdir(folder)
+        is_new = True
+    except FileExistsError:
+        is_new = False
+        if not os.path.isdir(folder) or not os.access(folder, os.W_OK):
+            return False
+    lock = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        if isinstance(error, BlockingIOError) or not is_new:  # a file system without locks: the maker of the folder gets it
+            os.close(lock)
+            return False
+    claims.append(lock)
+    return True
 
 
 def missing_folders(path):

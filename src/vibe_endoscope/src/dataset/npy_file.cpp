@@ -24,7 +24,9 @@ void writeArray(const std::string& file, const std::vector<std::size_t>& shape, 
   out.write(header.data(), static_cast<std::streamsize>(header.size()));
   out.write(static_cast<const char*>(values), static_cast<std::streamsize>(bytes));
   out.close();
-  if (!out) throw std::runtime_error("'" + file + "' cannot be written; make room on the disk.");
+  if (!out)
+    throw std::runtime_error("'" + file +
+                             "' cannot be written; make room if the disk is full, or choose another folder.");
 }
 
 }  // namespace

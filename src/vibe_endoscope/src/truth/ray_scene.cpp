@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 namespace vibe::endoscope {
 
@@ -102,7 +103,9 @@ struct RayScene::Embree {
   };
 
   Embree() : device(rtcNewDevice("threads=1,set_affinity=0")) {
-    if (device == nullptr) throw std::runtime_error("Embree cannot be started on this processor; it needs SSE2.");
+    if (device == nullptr)
+      throw std::runtime_error("Embree cannot be started (error " + std::to_string(rtcGetDeviceError(nullptr)) +
+                               "; 4: too little memory, 5: a processor without SSE2).");
     scene = rtcNewScene(device);
     // the shapes move in every frame, and a ray must not slip through between two triangles
     rtcSetSceneFlags(scene, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_DYNAMIC | RTC_SCENE_FLAG_ROBUST));

@@ -12,6 +12,7 @@ using vibe_firmware::AxisConfig;
 using vibe_firmware::Refusal;
 
 constexpr std::size_t kLargestReport = 64;
+constexpr const char* kInstall = "; its firmware may be of another release: install that of this one.";
 
 std::string number(double value) {
   char text[40];
@@ -61,15 +62,14 @@ void DeviceConnection::get(std::uint8_t id, const char* name, Report& report) {
   try {
     size = port_->getFeature(id, bytes, sizeof bytes);
   } catch (const ReportRejected& rejection) {
-    throw Error(std::string("It rejects the request for ") + name + " (" + rejection.what() +
-                "); install firmware of this release.");
+    throw Error(std::string("It rejects the request for ") + name + " (" + rejection.what() + ")" + kInstall);
   } catch (const NoAnswer& silence) {
     failUnanswered(std::string("the request for ") + name, silence);
   }
   if (size <= sizeof bytes && vibe_firmware::unpack(bytes, size, report)) return;
   throw Error(std::string("Its ") + name + " has " + std::to_string(size) + " bytes and id " +
               std::to_string(bytes[0]) + " instead of " + std::to_string(Size) + " and " + std::to_string(id) +
-              "; install firmware of this release.");
+              kInstall);
 }
 
 void DeviceConnection::readAxis(int axis) {
@@ -77,8 +77,7 @@ void DeviceConnection::readAxis(int axis) {
   const auto id = static_cast<std::uint8_t>(vibe_firmware::kAxisReportId + axis);
   get<vibe_firmware::AxisReport, vibe_firmware::kAxisReportSize>(id, "configuration of an axis", report);
   if (report.axis != axis || !isSane(report.config)) {
-    throw Error("The configuration of its axis " + std::to_string(axis) +
-                " has values out of range; install firmware of this release.");
+    throw Error("The configuration of its axis " + std::to_string(axis) + " has values out of range" + kInstall);
   }
   axes_[static_cast<std::size_t>(axis)] = report.config;
 }
@@ -100,8 +99,7 @@ void DeviceConnection::sendParameters(const vibe_firmware::ParameterReport& para
   try {
     port_->setFeature(bytes, sizeof bytes);
   } catch (const ReportRejected& rejection) {
-    throw Error(std::string("It rejects the form of the parameters (") + rejection.what() +
-                "); install firmware of this release.");
+    throw Error(std::string("It rejects the form of the parameters (") + rejection.what() + ")" + kInstall);
   } catch (const NoAnswer& silence) {
     failUnanswered("the parameters", silence);
   }

@@ -160,7 +160,7 @@ void DeviceDriver::noteFailure(const HidInfo& info, const std::string& reason) {
   } else if (failures_ == kMostFailures || state_ != LinkState::Unusable) {
     setUnusable("The " + std::string(deviceName(kind_)) + " at " + identify(info) +
                 " is there, but opening it fails again and again (" + reason +
-                "); end other programs that use it, check the cable and plug the device in again.");
+                "); another program may use it: end that, or check the cable and plug the device in again.");
   }
 }
 

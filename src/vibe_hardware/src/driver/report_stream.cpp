@@ -75,13 +75,13 @@ ReportStream::Result ReportStream::judge(const InputReport& report, double arriv
   if (step == 0) return reject(Result::Duplicated, counts_.duplicated, number + " came a second time");
   if (step < 0) {
     return reject(Result::Reordered, counts_.reordered,
-                  number + " came after " + last + ": it was reordered or replayed");
+                  number + " came after " + last + ": it was reordered, sent again, or the device began anew");
   }
   if (elapsed <= 0) {
     return reject(Result::Implausible, counts_.implausible, number + " has a device time before that of " + last);
   }
   if (sampled > arrival + kAhead) {
-    return reject(Result::Implausible, counts_.implausible, number + " has a device time in the future");
+    return reject(Result::Implausible, counts_.implausible, number + " has a device time ahead of the wall clock");
   }
   return Result::Accepted;
 }

@@ -143,7 +143,8 @@ void copyText(const std::string& text, __u8 (&field)[size]) {
 UhidServer::UhidServer(UsbHost& device) : device_(device), file_(::open(kPath, O_RDWR | O_NONBLOCK | O_CLOEXEC)) {
   if (!file_)
     throw std::runtime_error(std::string(kPath) + " cannot be opened (" + std::strerror(errno) +
-                             "); load the kernel module uhid, and give your user write access to the file.");
+                             (errno == EACCES || errno == EPERM ? "); give your user write access to the file."
+                                                                : "); load the kernel module uhid."));
   create();
 }
 

@@ -114,7 +114,9 @@ double BlinkHand::duration() const {
 BlinkLog::BlinkLog(const std::string& file, std::vector<double> blinks)
     : file_(file), out_(file), blinks_(std::move(blinks)) {
   out_ << "blink,event,report\n" << std::flush;
-  if (!out_) throw Error("The blinks cannot be written to '" + file_ + "'; choose a file in a folder that exists.");
+  if (!out_)
+    throw Error("The blinks cannot be written to '" + file_ +
+                "'; choose a file that you may write, in a folder that exists.");
 }
 
 void BlinkLog::tick(double hand, std::int64_t wall) {
@@ -126,7 +128,7 @@ void BlinkLog::report(std::int64_t wall) {
   if (reported_ == events_.size()) return;
   for (; reported_ < events_.size(); ++reported_) out_ << reported_ << ',' << events_[reported_] << ',' << wall << '\n';
   out_.flush();
-  if (!out_) throw Error("The blinks cannot be written to '" + file_ + "' any more; is the disk full?");
+  if (!out_) throw Error("The blinks cannot be written to '" + file_ + "' any more; the disk may be full.");
 }
 
 }  // namespace vibe::hardware

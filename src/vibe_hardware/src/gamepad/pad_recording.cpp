@@ -1,7 +1,9 @@
 #include "vibe_hardware/gamepad/pad_recording.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cinttypes>
+#include <cstring>
 #include <filesystem>
 #include <sstream>
 #include <vector>
@@ -171,7 +173,8 @@ namespace {
 
 std::FILE* openFile(const std::string& file, const char* mode) {
   std::FILE* result = std::fopen(file.c_str(), mode);
-  if (result == nullptr) throw Error("Cannot write the pad recording '" + file + "'; check its folder.");
+  if (result == nullptr)
+    throw Error("Cannot write the pad recording '" + file + "' (" + std::strerror(errno) + "); choose another file.");
   return result;
 }
 

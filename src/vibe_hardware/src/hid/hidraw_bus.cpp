@@ -47,7 +47,7 @@ class HidrawPort : public HidPort {
   std::size_t read(std::uint8_t* bytes, std::size_t capacity, double timeout) override {
     const int milliseconds = static_cast<int>(std::ceil(1e3 * timeout));
     const int size = hid_read_timeout(device_, bytes, capacity, milliseconds);
-    if (size < 0) throw DeviceGone(path_ + " was unplugged");
+    if (size < 0) throw DeviceGone(path_ + " cannot be read any more: it was unplugged, or has reset");
     return static_cast<std::size_t>(size);
   }
 
@@ -72,7 +72,7 @@ class HidrawPort : public HidPort {
     std::ifstream file(std::string(kKernelFolder) + "/" + node + "/device/report_descriptor", std::ios::binary);
     std::vector<std::uint8_t> bytes(kMaxReportDescriptor + 1);
     file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    if (file.bad()) throw DeviceGone(path_ + " was unplugged while its report descriptor was read");
+    if (file.bad()) throw DeviceGone(path_ + " went while its report descriptor was read");
     bytes.resize(static_cast<std::size_t>(file.gcount()));
     return bytes;
   }
@@ -92,7 +92,7 @@ class HidrawPort : public HidPort {
   if (error == ENOENT &&
       access((std::string(kKernelFolder) + path.substr(path.find_last_of('/'))).c_str(), F_OK) == 0) {
     throw std::runtime_error("The kernel knows the device " + path +
-                             ", but the file is not here: pass it into this container or start udev.");
+                             ", but the file is not here: if this is a container, pass it in, else start udev.");
   }
   throw DeviceGone(path + " cannot be opened: " + std::strerror(error));
 }
@@ -120,8 +120,8 @@ HidrawBus::~HidrawBus() {
 std::vector<HidInfo> HidrawBus::list() {
   if (access(kKernelFolder, F_OK) != 0) {
     throw std::runtime_error(
-        "There are no HID devices on this machine: the kernel has no /sys/class/hidraw. Load the module hid or, in a "
-        "container or virtual machine, pass the device in; devices are used as soon as they appear.");
+        "No HID device can be seen: there is no /sys/class/hidraw. Load the module hid or, in a container or virtual "
+        "machine, pass the device in; devices are used as soon as they appear.");
   }
   const std::lock_guard<std::mutex> lock(libraryMutex());
   std::vector<HidInfo> found;

@@ -197,7 +197,8 @@ const char* deviceName(DeviceKind kind) {
 void checkReportDescriptor(const std::uint8_t* bytes, std::size_t size, DeviceKind kind) {
   const ReportLayout layout = parseReportDescriptor(bytes, size);
   const std::string remedy =
-      "; select another device by its serial number in the calibration, or install firmware of this release.";
+      "; select another device by its serial number in the calibration, or, if its firmware is of another release, "
+      "install that of this one.";
   if (layout.usage_page != kGenericDesktop || layout.usage != kGamepad) {
     throw Error(std::string("It is not a ") + deviceName(kind) + ": its report descriptor has usage " +
                 std::to_string(layout.usage) + " of page " + std::to_string(layout.usage_page) +

@@ -110,7 +110,7 @@ Packet receive(int file, const std::string& path, double timeout) {
   Packet packet(kMaxPacket);
   const ssize_t size = ::recv(file, packet.data(), packet.size(), MSG_DONTWAIT);
   if (size < 0 && (errno == EAGAIN || errno == EINTR)) return {};
-  if (size <= 0) throw DeviceGone("Device " + path + " is gone: its emulator has closed the socket.");
+  if (size <= 0) throw DeviceGone("Device " + path + " is gone: its socket was closed, as when the emulator ends.");
   packet.resize(static_cast<std::size_t>(size));
   return packet;
 }
@@ -126,7 +126,8 @@ Hello greet(int file, const std::string& path) {
   if (packet.empty()) throw DeviceGone("Socket " + path + " does not answer as a device: nothing comes from it.");
   const std::optional<Hello> hello = unpackHello(packet.data(), packet.size());
   if (!hello)
-    throw OtherProtocol("Socket " + path + " does not answer as a device; start the emulator of the same release.");
+    throw OtherProtocol("Socket " + path +
+                        " does not answer as a device of this release; start the emulator of the same release.");
   return *hello;
 }
 
@@ -177,8 +178,9 @@ class SocketPort : public HidPort {
       return {};  // to a request that was given up
     }
     if (packet[0] != kInput || packet.size() < 2)
-      throw DeviceGone("Device " + path_ +
-                       " sends packets of another protocol; start the emulator of the same release.");
+      throw DeviceGone(
+          "Device " + path_ +
+          " sends packets of another protocol; its emulator may be of another release: start that of this one.");
     if (waiting_.size() == kMaxWaiting) waiting_.pop_front();
     waiting_.push_back(std::move(packet));
     return {};

@@ -49,7 +49,10 @@ FileDescriptor listenAt(const std::string& path) {
   if (!makeAddress(path, address))
     throw std::runtime_error("Socket " + path + ": the path has more than " +
                              std::to_string(sizeof address.sun_path - 1) + " bytes; choose a shorter folder.");
-  if (connectTo(path)) throw std::runtime_error("Socket " + path + " is served already; end the other emulator first.");
+  if (connectTo(path))
+    throw std::runtime_error("Socket " + path +
+                             " is served already, by another emulator or program; end that first, or choose another "
+                             "folder.");
   struct stat about {};
   if (errno == ECONNREFUSED && ::lstat(path.c_str(), &about) == 0 && S_ISSOCK(about.st_mode))
     ::unlink(path.c_str());  // its server has ended without removing it
@@ -57,7 +60,7 @@ FileDescriptor listenAt(const std::string& path) {
   if (!file || ::bind(file.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
       ::listen(file.get(), 16) != 0)
     throw std::runtime_error("Socket " + path + " cannot be made (" + std::strerror(errno) +
-                             "); choose a folder that you may write to.");
+                             "); choose another folder, which you may write to.");
   return file;
 }
 

@@ -122,12 +122,15 @@ TEST(PadRecording, AFileIsCheckedBeforeThereIsAPadAndStaysAsItIs) {
   PadRecorder::checkFile(file);
   EXPECT_EQ(std::filesystem::file_size(file), 18U);
   std::filesystem::remove(file);
-  for (const std::string& place : {std::string("/nowhere/pad.evemu"), testing::TempDir()}) {
+  for (const auto& [place, why] :
+       {std::pair<std::string, std::string>{"/nowhere/pad.evemu", "No such file or directory"},
+        {testing::TempDir(), "Is a directory"}}) {
     try {
       PadRecorder::checkFile(place);
       ADD_FAILURE() << place;
     } catch (const Error& error) {
-      EXPECT_EQ(std::string(error.what()), "Cannot write the pad recording '" + place + "'; check its folder.");
+      EXPECT_EQ(std::string(error.what()),
+                "Cannot write the pad recording '" + place + "' (" + why + "); choose another file.");
     }
   }
 }

@@ -90,7 +90,9 @@ TEST(ReportDescriptor, RecognisesTheDevicesOfThisRelease) {
   EXPECT_EQ(checkError(haptic(), DeviceKind::Input), "no error");  // it has all that an input device needs
   EXPECT_EQ(checkError(input(), DeviceKind::Haptic),
             "It is not a haptic device of this release: its parameter report (id 2) has 0 bytes instead of 43; select "
-            "another device by its serial number in the calibration, or install firmware of this release.");
+            "another device by its serial number in the calibration, or, if its firmware is of another release, "
+            "install that of "
+            "this one.");
   const Bytes mouse{0x05, 1, 0x09, 2, 0xA1, 1, 0x75, 8, 0x95, 3, 0x81, 2, 0xC0};
   EXPECT_NE(checkError(mouse, DeviceKind::Haptic).find("has usage 2 of page 1, not a gamepad's 5 of 1"),
             std::string::npos);

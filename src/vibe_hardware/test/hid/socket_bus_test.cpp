@@ -108,7 +108,8 @@ TEST(SocketBus, ADeviceOfAnotherReleaseIsReportedIfItIsTheOnlyOne) {
   EXPECT_EQ(listGreetedWith(hello), "1 listed");
   ++hello[1];  // version of the protocol
   const std::string sentence =
-      "Socket " + folder.path() + "/old.hid does not answer as a device; start the emulator of the same release.";
+      "Socket " + folder.path() +
+      "/old.hid does not answer as a device of this release; start the emulator of the same release.";
   EXPECT_EQ(listGreetedWith(hello), sentence);
   EXPECT_EQ(listGreetedWith({}), "0 listed") << "it may be about to end";
   FakeFunction function;

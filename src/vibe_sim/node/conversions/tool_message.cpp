@@ -44,6 +44,18 @@ sensor_msgs::JointState makeMeasuredOverstitch(const State& state, const JointAr
   return makeMeasured(state, velocity, jointsOf(InputChannel::Overstitch), stamp);
 }
 
+geometry_msgs::TwistStamped makeTipTwist(const Eigen::Isometry3d& before, const Eigen::Isometry3d& now, double seconds,
+                                         std::int64_t stamp) {
+  const Eigen::AngleAxisd turn(Eigen::Quaterniond(now.linear() * before.linear().transpose()).normalized());
+  geometry_msgs::TwistStamped message;
+  message.header.stamp = toRosTime(stamp);
+  message.header.frame_id = kWorldFrame;
+  message.twist.linear =
+      toMessage<geometry_msgs::Vector3>(Eigen::Vector3d((now.translation() - before.translation()) / seconds));
+  message.twist.angular = toMessage<geometry_msgs::Vector3>(Eigen::Vector3d(turn.axis() * (turn.angle() / seconds)));
+  return message;
+}
+
 vibe_msgs::OperatingState makeOperatingState(bool present, bool paused, bool busy, std::int64_t stamp) {
   vibe_msgs::OperatingState message;
   message.header.stamp = toRosTime(stamp);

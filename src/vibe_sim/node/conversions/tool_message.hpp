@@ -3,11 +3,13 @@
 #include <cstdint>
 
 #include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/TwistStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/Float64MultiArray.h>
 #include <vibe_msgs/HapticParameters.h>
 #include <vibe_msgs/OperatingState.h>
+#include <Eigen/Geometry>
 
 #include "input/input_sample.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
@@ -27,6 +29,11 @@ JointArray toolJoints(const State& state);
 sensor_msgs::JointState makeMeasuredScope(const State& state, const JointArray& velocity, std::int64_t stamp);
 /// The same of the suturing device, whose joints have no effort.
 sensor_msgs::JointState makeMeasuredOverstitch(const State& state, const JointArray& velocity, std::int64_t stamp);
+
+/// Velocity of the tip between two of its poses in the world: linear [m/s] and angular [rad/s], mean over the time.
+/// @param seconds  from one to the other, above 0
+geometry_msgs::TwistStamped makeTipTwist(const Eigen::Isometry3d& before, const Eigen::Isometry3d& now, double seconds,
+                                         std::int64_t stamp);
 
 /// @param present  there is such an arm in the scene
 vibe_msgs::OperatingState makeOperatingState(bool present, bool paused, bool busy, std::int64_t stamp);

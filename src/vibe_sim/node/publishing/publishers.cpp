@@ -86,6 +86,7 @@ bool ArmPublishers::hasListener() const {
 
 Publishers::Publishers(OutletSource outlets, bool with_clock)
     : scope_pose_(outlets.advertise<geometry_msgs::PoseStamped>("scope/measured_cp", kSmallQueue)),
+      scope_twist_(outlets.advertise<geometry_msgs::TwistStamped>("scope/measured_cv", kSmallQueue)),
       hand_pose_(outlets.advertise<geometry_msgs::PoseStamped>("scope/setpoint_cp", kSmallQueue)),
       helix_pose_(outlets.advertise<geometry_msgs::PoseStamped>("overstitch/helix/measured_cp", kSmallQueue)),
       wrench_(outlets.advertise<geometry_msgs::WrenchStamped>("scope/measured_cf", kSmallQueue)),
@@ -215,11 +216,11 @@ void Publishers::warn(const std::string& text) {
 
 bool Publishers::hasListener() const {
   return arms_.hasListener() ||
-         anyIsHeard(
-             {&scope_pose_,    &hand_pose_,         &helix_pose_,  &wrench_,        &joint_states_, &hand_joints_,
-              &topology_,      &particles_,         &procedure_,   &skill_metrics_, &events_,       &sutures_,
-              &applied_input_, &solver_statistics_, &scene_,       &haptic_,        &pull_,         &step_result_,
-              &session_info_,  &snapshot_,          &step_timing_, &clock_});
+         anyIsHeard({&scope_pose_,    &scope_twist_, &hand_pose_, &helix_pose_,    &wrench_,
+                     &joint_states_,  &hand_joints_, &topology_,  &particles_,     &procedure_,
+                     &skill_metrics_, &events_,      &sutures_,   &applied_input_, &solver_statistics_,
+                     &scene_,         &haptic_,      &pull_,      &step_result_,   &session_info_,
+                     &snapshot_,      &step_timing_, &clock_});
 }
 
 void Publishers::tool(const TimedSimulation& simulation, bool continues, std::int64_t stamp) {
@@ -227,7 +228,10 @@ void Publishers::tool(const TimedSimulation& simulation, bool continues, std::in
   const Model& model = simulation.model();
   if (!model.tool) return;
   model.tool->forwardKinematics(simulation.state().joints, simulation.state().tool_displacement, link_poses_);
-  scope_pose_.publish(makePose(model.tool_base * link_poses_[model.tip_link], kWorldFrame, stamp));
+  const Eigen::Isometry3d tip = model.tool_base * link_poses_[model.tip_link];
+  scope_pose_.publish(makePose(tip, kWorldFrame, stamp));
+  scope_twist_.publish(makeTipTwist(continues ? last_tip_ : tip, tip, simulation.time().period(), stamp));
+  last_tip_ = tip;
   helix_pose_.publish(makePose(model.tool_base * link_poses_[model.helix_link], kWorldFrame, stamp));
   if (hand_pose_.getNumSubscribers() > 0) {
     model.tool->forwardKinematics(simulation.state().joints, link_poses_);

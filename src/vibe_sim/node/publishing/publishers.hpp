@@ -81,14 +81,15 @@ class Publishers {
   bool hasRecorder() const { return applied_input_.getNumSubscribers() > 0; }
 
  private:
-  Outlet scope_pose_, hand_pose_, helix_pose_, wrench_, joint_states_, hand_joints_, topology_, particles_, procedure_,
-      skill_metrics_, events_, sutures_, applied_input_, solver_statistics_, scene_, haptic_, pull_, step_result_,
-      session_info_, snapshot_, step_timing_, clock_;
+  Outlet scope_pose_, scope_twist_, hand_pose_, helix_pose_, wrench_, joint_states_, hand_joints_, topology_,
+      particles_, procedure_, skill_metrics_, events_, sutures_, applied_input_, solver_statistics_, scene_, haptic_,
+      pull_, step_result_, session_info_, snapshot_, step_timing_, clock_;
   ArmPublishers arms_;
   std::atomic<int> warnings_{0};
   std::unique_ptr<tf2_ros::StaticTransformBroadcaster> static_transforms_;  // null for a bag
   std::unique_ptr<ParticleCloud> cloud_;
   std::vector<Eigen::Isometry3d> link_poses_;
+  Eigen::Isometry3d last_tip_ = Eigen::Isometry3d::Identity();
   std::string last_kind_;            // of procedure/state: what must not change unnoticed
   std::int64_t last_procedure_ = 0;  // stamps [ns]
   std::uint64_t last_suture_kind_ = 0;

@@ -227,6 +227,14 @@ std::vector<RecordedSession> readSessions(const Bags& bags, const std::string& n
   return reader.sessions();
 }
 
+std::optional<std::uint64_t> identityOf(const rosbag::MessageInstance& message) {
+  if (const auto input = message.instantiate<vibe_msgs::StepInput>()) return input->session;
+  if (const auto snapshot = message.instantiate<vibe_msgs::StateSnapshot>()) return snapshot->session;
+  if (const auto info = message.instantiate<vibe_msgs::SessionInfo>()) return info->session;
+  if (const auto statistics = message.instantiate<vibe_msgs::SolverStatistics>()) return statistics->session;
+  return {};
+}
+
 bool isTopic(const std::string& topic, const std::string& name) {
   if (topic == name) return true;
   return topic.size() > name.size() && topic.compare(topic.size() - name.size(), name.size(), name) == 0 &&

@@ -70,6 +70,9 @@ boost::shared_ptr<M> instantiateGrown(const rosbag::MessageInstance& message, co
 /// MD5 sum of vibe_msgs/StateSnapshot before it had an identity.
 inline constexpr const char* kFormerSnapshot = "b55268b4f8de9782e13eb08f44c66a10";
 
+/// Of the messages that have one, which session they are of; empty for others.
+std::optional<std::uint64_t> identityOf(const rosbag::MessageInstance& message);
+
 /// Whether a topic's whole name is `name` in any namespace.
 bool isTopic(const std::string& topic, const std::string& name);
 

@@ -243,6 +243,7 @@ const std::vector<RecordingRule>& recordingRules() {
       {"scope/measured_cf", 0.1, true},
       {"joint_states", 0.1, true},
       {"overstitch/helix/measured_cp", kNever, true},
+      {"scope/measured_cv", kNever, true},
       {"scope/setpoint_js", kNever, true},
       {"scope/setpoint_cp", kNever, true},
       {"scope/simulated/measured_js", kNever, true},

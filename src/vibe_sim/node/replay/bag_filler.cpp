@@ -1,6 +1,8 @@
 #include "replay/bag_filler.hpp"
 
 #include <algorithm>
+#include <map>
+#include <vector>
 
 #include <rosbag/view.h>
 
@@ -22,15 +24,6 @@ bool hasClock(const Recording& recording) {
   return recording.view(rosbag::TopicQuery("/clock"))->size() > 0;
 }
 
-// Messages without an identity could not be told apart.
-void checkAlone(const Recording& recording) {
-  const auto& all = recording.sessions();
-  if (std::count_if(all.begin(), all.end(), [&](const auto& each) { return each.prefix == recording.prefix(); }) > 1)
-    throw Error("Recording '" + recording.file() + "' holds several sessions in the namespace '" +
-                recording.session().nameSpace() +
-                "', whose topics cannot be told apart; --fill needs one of one session.");
-}
-
 // An open bag with the name of the file while it is incomplete.
 std::unique_ptr<rosbag::Bag> begin(const std::string& file) {
   claimBag(file);
@@ -45,17 +38,67 @@ std::unique_ptr<rosbag::Bag> begin(const std::string& file) {
   }
 }
 
+bool startsWith(const std::string& text, const std::string& begin) {
+  return text.rfind(begin, 0) == 0;
+}
+
+// Times of the first message of each session in the namespace.
+std::map<std::uint64_t, ros::Time> firstTimes(const Recording& recording, const std::string& prefix) {
+  std::map<std::uint64_t, ros::Time> first;
+  const auto is_known = [&](const rosbag::ConnectionInfo* connection) {
+    for (const char* topic : {"session_info", "snapshot", "applied_input", "solver_statistics"})
+      if (connection->topic == prefix + topic) return true;
+    return false;
+  };
+  const auto view = recording.view(is_known);
+  for (const rosbag::MessageInstance& message : *view)
+    if (const auto id = identityOf(message)) first.try_emplace(*id, message.getTime());
+  return first;
+}
+
 }  // namespace
+
+SessionFilter::SessionFilter(const Recording& recording) : prefix_(recording.prefix()), id_(recording.session().id) {
+  const RecordedSession& mine = recording.session();
+  std::vector<const RecordedSession*> others;
+  for (const RecordedSession& each : recording.sessions())
+    if (each.prefix != prefix_ && startsWith(each.prefix, prefix_)) {
+      inner_.push_back(each.prefix);
+    } else if (each.prefix == prefix_ && &each != &mine) {
+      others.push_back(&each);
+    }
+  is_alone_ = others.empty();
+  if (is_alone_) return;
+  const auto refuse = [&](const std::string& why) {
+    throw Error("Recording '" + recording.file() + "' cannot be filled: it holds several sessions in the namespace '" +
+                mine.nameSpace() + "' " + why +
+                ", so that messages that are only copied cannot be told apart; fill a recording of one session.");
+  };
+  const auto first = firstTimes(recording, prefix_);
+  for (const RecordedSession* each : others) {
+    if (each->id == 0 || id_ == 0) refuse("without identity");
+    if (each->begin <= mine.end && each->end >= mine.begin) refuse("that overlap in time");
+    if (each->begin < mine.begin) from_ = first.at(id_);
+    if (each->begin > mine.end) to_ = std::min(to_, first.at(each->id));
+  }
+}
+
+bool SessionFilter::has(const rosbag::MessageInstance& message) const {
+  const std::string topic = message.getTopic();
+  const auto holds = [&topic](const std::string& prefix) { return startsWith(topic, prefix); };
+  if (is_alone_ || !holds(prefix_) || std::any_of(inner_.begin(), inner_.end(), holds)) return true;
+  if (const auto id = identityOf(message)) return *id == id_;
+  return message.getTime() >= from_ && message.getTime() < to_;
+}
 
 BagFiller::BagFiller(const Recording& recording, const std::string& file)
     : recording_(recording),
+      filter_(recording),
       bag_(begin(file)),
       file_(file),
       target_{*bag_, recording.prefix(),
               [prefix = recording.prefix()](const std::string& topic) { return isReplayed(topic, prefix); }},
-      publishers_(OutletSource(target_), hasClock(recording)) {
-  checkAlone(recording);
-}
+      publishers_(OutletSource(target_), hasClock(recording)) {}
 
 // A bag is closed by its destructor, and one that cannot be written throws there, which ends the program.
 BagFiller::~BagFiller() {
@@ -101,7 +144,7 @@ void BagFiller::finish(const TimedSimulation& simulation) {
   try {
     const auto all = recording_.view([](const rosbag::ConnectionInfo*) { return true; });
     for (const rosbag::MessageInstance& message : *all)
-      if (!isReplayed(message.getTopic(), recording_.prefix()))
+      if (!isReplayed(message.getTopic(), recording_.prefix()) && filter_.has(message))
         bag_->write(message.getTopic(), message.getTime(), message);
     bag_->close();
     rosbag::Bag whole(file_ + ".active", rosbag::bagmode::Read);

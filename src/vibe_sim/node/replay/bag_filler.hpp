@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <rosbag/bag.h>
 
@@ -13,6 +14,23 @@
 
 namespace vibe::sim {
 
+/// Which messages in the namespace of the chosen session belong to it: by their identity, and those without by time,
+/// from the first one with its identity to the first with that of the next session.
+class SessionFilter {
+ public:
+  /// @throws Error if sessions in the namespace overlap or have no identity
+  explicit SessionFilter(const Recording& recording);
+
+  bool has(const rosbag::MessageInstance& message) const;
+
+ private:
+  std::string prefix_;
+  std::uint64_t id_;
+  bool is_alone_ = true;
+  std::vector<std::string> inner_;  // namespaces of other simulators within it
+  ros::Time from_{ros::TIME_MIN}, to_{ros::TIME_MAX};
+};
+
 /// Makes a whole recording of a thinned one: what the recorder kept whole is copied, and what a replay computes
 /// (recordingRules()) is written anew, message by message as the simulator sent it. Beside the listener's calls:
 ///
@@ -21,12 +39,14 @@ namespace vibe::sim {
 ///   while (!replay.done()) replay.step();
 ///   filler.finish(replay.session());
 ///
+/// Of several sessions in the namespace only the chosen one is copied; other namespaces are copied whole.
 /// Limits: /tf is not written (robot_state_publisher makes it from joint_states), and /clock has no messages from
 /// pauses.
 class BagFiller : public Replay::Listener {
  public:
   /// The calls of the listener and finish() throw an Error if the disk is full.
-  /// @throws Error if the file is there already or cannot be written
+  /// @throws Error if the file is there already or cannot be written, or if the recording has other sessions in the
+  /// namespace that overlap in time or have no identity, so that the rest of the messages cannot be told apart
   BagFiller(const Recording& recording, const std::string& file);
   ~BagFiller() override;
 
@@ -45,6 +65,7 @@ class BagFiller : public Replay::Listener {
   [[noreturn]] void fail(const std::string& why);
 
   const Recording& recording_;
+  SessionFilter filter_;
   std::unique_ptr<rosbag::Bag> bag_;
   std::string file_;
   bool failed_ = false;

@@ -7,7 +7,7 @@ import unittest
 import numpy
 import rospy
 import rostest
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import PoseStamped, Twist, TwistStamped
 from node_test_support import OVERSTITCH_JOINTS, PERIOD, SCOPE_JOINTS, joints
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, Header
@@ -44,10 +44,12 @@ class CrtkTest(unittest.TestCase):
         cls.overstitch_state = Recorder("overstitch/operating_state", OperatingState)
         cls.pose = Recorder("scope/measured_cp", PoseStamped)
         cls.jacobian = Recorder("scope/jacobian", Float64MultiArray)
+        cls.twist = Recorder("scope/measured_cv", TwistStamped)
         cls.wall = Recorder("wall/measured_cp", PoseStamped)
         cls.applied = Recorder("applied_input", StepInput)
         cls.setpoint = Recorder("scope/setpoint_cp", PoseStamped)
-        cls.recorders = [cls.setpoint, cls.scope, cls.overstitch, cls.pose, cls.jacobian, cls.wall, cls.applied]
+        cls.recorders = [cls.setpoint, cls.scope, cls.overstitch, cls.pose, cls.twist, cls.jacobian, cls.wall]
+        cls.recorders.append(cls.applied)
         names = ["scope/measured_js", "scope/servo_jp", "scope/move_jp"]
         names += ["overstitch/measured_js", "overstitch/servo_jp", "overstitch/move_jp"]
         cls.to = {name: rospy.Publisher(name, JointState, queue_size=10) for name in names}
@@ -226,6 +228,28 @@ class CrtkTest(unittest.TestCase):
         turned = forward(self.pose.messages[-1]) - forward(before)
         expected = numpy.cross(jacobian[3:] @ step, forward(before))
         self.assertLess(numpy.linalg.norm(turned - expected), 0.03 * numpy.linalg.norm(turned))
+
+    def test_the_velocity_of_the_tip_is_that_of_its_joints(self):
+        self.send("scope/servo_jp", [0.03, 0.2, 0.4, -0.3])
+        self.step(120)
+        self.send("scope/move_jp", [0.06, 0.6, 0.1, 0.0])
+        self.step(12)
+        self.assertTrue(wait_until(lambda: self.twist.stamps()[-12:] == self.pose.stamps()))
+        twists = self.twist.messages[-12:]
+        for k in range(3, 11):
+            linear, angular = (
+                numpy.array([v.x, v.y, v.z]) for v in (twists[k].twist.linear, twists[k].twist.angular)
+            )
+            moved = place(self.pose.messages[k]) - place(self.pose.messages[k - 1])
+            numpy.testing.assert_allclose(linear, moved / PERIOD, atol=1e-9)
+            middle = (array(self.jacobian.messages[k]) + array(self.jacobian.messages[k - 1])) / 2
+            expected = middle @ numpy.array(self.scope.messages[k].velocity)
+            self.assertGreater(numpy.linalg.norm(angular), 0.1)
+            self.assertLess(numpy.linalg.norm(linear - expected[:3]), 0.02 * numpy.linalg.norm(linear))
+            self.assertLess(numpy.linalg.norm(angular - expected[3:]), 0.02 * numpy.linalg.norm(angular))
+        self.twist.clear()
+        self.assertTrue(self.reset(seed=0, keep_time=False).success)
+        self.assertTrue(self.twist.waits_for(lambda m: m.twist == Twist()))
 
     def test_the_wall_ahead_has_a_place_and_a_normal(self):
         self.step(5)

@@ -11,10 +11,12 @@
 
 #include <cstdio>
 #include <functional>
+#include <map>
 #include <set>
 
 #include "conversions/input_message.hpp"
 #include "recording/recording.hpp"
+#include "replay/bag_filler.hpp"
 #include "sentences.hpp"
 
 namespace vibe::sim::mangled_recording_test {
@@ -305,6 +307,36 @@ TEST_F(MangledRecording, MergedBagsAreReadOnce) {
     EXPECT_EQ(Recording(file).lost(), "");
   }
   EXPECT_EQ(stepsOf(Recording({whole, whole})), 120U);
+}
+
+// What replay --fill copies: by identity, and without one by time, where sessions follow each other.
+TEST_F(MangledRecording, OnlyTheChosenSessionIsFilled) {
+  {
+    rosbag::Bag bag(file, rosbag::bagmode::Write);
+    write(bag, {});
+    write(bag, {kSecond, "/", 40, 2});
+    write(bag, {kSecond + 1, "/right/", 11, 3});
+    for (const int second : {12, 39, 41, 60}) bag.write("/note", ros::Time(second), std_msgs::String());
+  }
+  for (const std::string choice : {"1", "2"}) {
+    const Recording recording(file, {"", choice});
+    const SessionFilter filter(recording);
+    std::map<std::string, std::vector<double>> times;
+    const auto all = recording.view([](const rosbag::ConnectionInfo*) { return true; });
+    for (const rosbag::MessageInstance& message : *all)
+      if (filter.has(message)) times[message.getTopic()].push_back(message.getTime().toSec());
+    EXPECT_EQ(times["/applied_input"].size(), 120U);
+    EXPECT_EQ(times["/snapshot"].size(), 5U);
+    EXPECT_EQ(times["/right/applied_input"].size(), 120U);
+    EXPECT_EQ(times["/scene"], std::vector<double>{choice == "1" ? 10.0 : 40.0});
+    EXPECT_EQ(times["/note"], choice == "1" ? (std::vector<double>{12, 39}) : (std::vector<double>{41, 60}));
+  }
+  const SessionFilter filter(Recording(file, {"/right", ""}));  // alone in its namespace
+  for (const std::uint64_t id : {kSecond, std::uint64_t{0}}) {
+    writeAll({{id == 0 ? id : kFirst}, {id, "/", id == 0 ? 40 : 15, 2}});
+    const Recording recording(file, {"", "1"});
+    expectMentions(sentenceOf([&] { SessionFilter{recording}; }), "cannot be filled: it holds several sessions in");
+  }
 }
 
 TEST_F(MangledRecording, AStepThatComesTwiceAndDiffersIsRefused) {

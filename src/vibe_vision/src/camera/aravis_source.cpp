@@ -114,7 +114,8 @@ bool AravisSource::accept(ArvBuffer* buffer, Frame& frame) {
 /// @return why the frame cannot be read, with the remedy; empty if it can
 std::string AravisSource::obstacle(ArvBuffer* buffer, int& width, int& height) const {
   if (arv_buffer_get_payload_type(buffer) != ARV_BUFFER_PAYLOAD_TYPE_IMAGE) {
-    return "the camera sends no images but another type of payload; switch chunk data and compression off";
+    return "the camera sends no images but another type of payload; switch off what changes it, such as chunk data or "
+           "compression";
   }
   const auto format = static_cast<PixelFormat>(arv_buffer_get_image_pixel_format(buffer));
   width = arv_buffer_get_image_width(buffer);
@@ -187,7 +188,7 @@ std::string AravisSource::goodStatus() const {
   const AravisCamera::Facts& facts = camera_->facts();
   return "gige:" + name_ + ": " + facts.name + ", " + std::to_string(facts.width) + " x " +
          std::to_string(facts.height) + " at " + std::to_string(static_cast<int>(facts.rate + 0.5)) + " Hz" +
-         (camera_->lacksPriority() ? "; real-time priority is not permitted: raise rtprio in /etc/security/limits.conf"
+         (camera_->lacksPriority() ? "; real-time priority was not given; raise rtprio in /etc/security/limits.conf"
                                    : "") +
          facts.notes;
 }

@@ -106,10 +106,13 @@ void requireFree(const std::string& address) {
   if (socket >= 0) ::close(socket);
   if (is_free) return;
   if (is_address && error == EADDRINUSE) {
-    throw Error("fake camera: another camera already serves at " + address + "; stop it, or choose another address.");
+    throw Error("fake camera: the control port of " + address +
+                " is in use, perhaps by another fake camera; stop that, or choose another address.");
   }
-  throw Error("fake camera: " + address + " is no IPv4 address of this computer; choose one of ip address, such as " +
-              "127.0.0.1.");
+  const std::string why = is_address && error != EADDRNOTAVAIL
+                              ? std::string(" cannot be used (") + std::strerror(error) + ")"
+                              : " is no IPv4 address of this computer";
+  throw Error("fake camera: " + address + why + "; choose one of ip address, such as 127.0.0.1.");
 }
 
 }  // namespace

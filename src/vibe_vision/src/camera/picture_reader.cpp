@@ -87,7 +87,9 @@ VideoReader::VideoReader(const std::string& file) : file_(file) {
 void VideoReader::open() {
   read_ = 0;
   if (capture_.open(file_, cv::CAP_FFMPEG)) return;
-  throw Error(file_ + ": cannot be read as a video; it is damaged, or of a format that FFmpeg does not know.");
+  throw Error(
+      file_ +
+      ": FFmpeg cannot read it as a video; it may be none, damaged, or of another format: see what ffprobe says.");
 }
 
 PictureReader::Result VideoReader::next(cv::Mat& picture) {

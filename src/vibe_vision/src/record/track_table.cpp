@@ -90,7 +90,7 @@ void TrackTable::add(const Frame& frame, const Measurements& measurements) {
 
 void TrackTable::close() {
   out_.close();
-  if (!out_) throw Error(file_ + ": could not be written completely; free some space on the disk");
+  if (!out_) throw Error(file_ + ": could not be written completely; the disk may be full");
 }
 
 TrackSummary::TrackSummary(const VisionConfig& config) {

@@ -293,7 +293,8 @@ TEST(FakeCamera, ASecondOneAtTheSameAddressIsRefused) {
     const FakeCamera second(gradientRing(), {});
     FAIL();
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("another camera already serves"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("is in use, perhaps by another fake camera"), std::string::npos)
+        << error.what();
   }
 }
 

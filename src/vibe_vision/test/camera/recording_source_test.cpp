@@ -228,7 +228,7 @@ TEST_F(RecordingSourceTest, ATruncatedVideoEndsWithAMessage) {
 
 TEST_F(RecordingSourceTest, WhatIsNoVideoIsRefused) {
   std::ofstream(path("text.mkv")) << "this is no video";
-  EXPECT_SAYS(errorOf("video:" + path("text.mkv")), "cannot be read as a video");
+  EXPECT_SAYS(errorOf("video:" + path("text.mkv")), "cannot read it as a video");
   EXPECT_SAYS(errorOf("video:" + path("absent.mkv")), "there is no such file");
   EXPECT_SAYS(errorOf("video:" + folder_.string()), "is not a file");
 }

@@ -8,7 +8,7 @@ import numpy
 
 from .bag_file import BagError, BagFile
 from .message_types import StepReader, after_header, offset_of, parse, stamp_of
-from .sessions import SessionTracker, choose_session, identity_of
+from .sessions import SessionTracker, StampOwners, choose_session, identity_of
 from .topics import INPUTS, find_topics, namespaces_of
 
 # topics of which only the last message counts
@@ -86,12 +86,23 @@ def read_recording(path, namespace=None, session=None):
     """Reads one session of a bag, by default the first. Raises BagError with one sentence if there is nothing to report
     on."""
     with BagFile(path) as bag:
-        sessions, chosen = choose_session(bag, namespace, session)
-        if not sessions:
-            return Reader(bag, namespaces_of(bag)[0]).read()
-        target = sessions[chosen]
-        in_namespace = [each for each in sessions if each.namespace == target.namespace]
-        return Reader(bag, target.namespace, target.identity, in_namespace.index(target), sessions, chosen).read()
+        try:
+            return reader_of(bag, *choose_session(bag, namespace, session)).read()
+        except SessionsAlternate:
+            return reader_of(bag, *choose_session(bag, namespace, session, read=True), StampReader).read()
+
+
+def reader_of(bag, sessions, chosen, kind=None):
+    if not sessions:
+        return Reader(bag, namespaces_of(bag)[0])
+    target = sessions[chosen]
+    in_namespace = [each for each in sessions if each.namespace == target.namespace]
+    kind = kind or Reader
+    return kind(bag, target.namespace, target.identity, in_namespace.index(target), sessions, chosen)
+
+
+class SessionsAlternate(Exception):
+    """Messages of sessions in one namespace come in turns, so that their order does not tell whose they are."""
 
 
 class Reader:
@@ -128,10 +139,13 @@ class Reader:
         """Whether a message belongs to the session; the first of the namespace if no identity is asked for."""
         tracker, about = self._tracker, self._bag.connections[connection]
         if connection in self._topics["applied_input"]:
-            _, step, run, _ = self._steps.read(data) if connection == self._first else StepReader(about).read(data)
-            tracker.step(identity_of(about, data), run, step)
+            reader = self._steps if connection == self._first else StepReader(about)
+            stamp, step, run, state_hash = reader.read(data)
+            tracker.step(identity_of(about, data), run, step, (stamp, state_hash))
         elif connection in self._topics["session_info"] and identity_of(about, data):
             tracker.identify(identity_of(about, data))
+        if tracker.alternate:
+            raise SessionsAlternate
         current = tracker.current
         if current is None:
             ours = self._number == 0  # what comes before the first identity, such as a latched scene
@@ -306,12 +320,6 @@ class Reader:
 
     def _tell_sessions(self):
         tracker, recording = self._tracker, self.recording
-        if tracker.alternate:
-            raise BagError(
-                "{}: has messages of several sessions in '{}' in turns, so those without identity cannot be told apart; it may "
-                "have been merged, or copied in the order of simulated time; report on the recording as it was, or on one "
-                "session of it".format(recording.path, recording.namespace or "/")
-            )
         ours = self._sessions[self._chosen] if self._sessions else tracker.sessions[self._number]
         sessions = self._sessions or tracker.sessions
         recording.identity = ours.identity
@@ -333,3 +341,40 @@ class Reader:
             if connection in self._last:
                 return parse(self._bag.connections[connection], self._last[connection])
         return None
+
+
+class StampReader(Reader):
+    """Of a bag in which sessions alternate: what has neither an identity nor a stamp that only one session has is left
+    out."""
+
+    def __init__(self, bag, namespace, identity, number, sessions, chosen):
+        super().__init__(bag, namespace, identity, number, sessions, chosen)
+        rivals = [each for each in sessions if each.namespace == namespace]
+        if not all(each.identity for each in rivals):
+            raise BagError(
+                "{}: has steps of several sessions in '{}' in turns, and they have no identity, as in recordings of an older "
+                "release, so they cannot be told apart; it may have been merged, or sorted by simulated time; report on the "
+                "recordings as they were".format(bag.path, namespace or "/")
+            )
+        self._owners = StampOwners(rivals)
+        self._left_out = 0
+
+    def _is_ours(self, connection, data):
+        about = self._bag.connections[connection]
+        owner = identity_of(about, data)
+        if not owner and "\nHeader header\n" in "\n" + about.definition.replace("std_msgs/", ""):
+            owner = self._owners.identity_at(stamp_of(data)[1])
+        self._left_out += not owner
+        if owner == self._identity:
+            self._counts[connection] = self._counts.get(connection, 0) + 1
+        return owner == self._identity
+
+    def _tell_sessions(self):
+        super()._tell_sessions()
+        if self._left_out:
+            self.recording.remark += (
+                " Messages of sessions in the namespace '{}' come in turns, and {} of them say neither by identity nor by stamp "
+                "whose they are; they are left out, so measures, drawings and curves may lack them.".format(
+                    self.recording.namespace or "/", self._left_out
+                )
+            )

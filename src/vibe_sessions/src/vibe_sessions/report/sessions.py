@@ -5,6 +5,8 @@ a simulator that is started again under its name sends nothing before the former
 """
 
 import struct
+from array import array
+from bisect import bisect_left
 from dataclasses import dataclass, field
 
 from .bag_file import BagError
@@ -24,7 +26,8 @@ class Session:
     namespace: str
     identity: int = 0
     steps: int = 0
-    seen: set = field(default_factory=set)  # (run, step) of a session without identity
+    seen: dict = field(default_factory=dict)  # (stamp, hash) by (run, step) of a session without identity
+    stamps: array = field(default_factory=lambda: array("q"))  # of its steps [ns]
 
     def name(self):
         identity = "{:016x}".format(self.identity) if self.identity else "without identity"
@@ -48,14 +51,26 @@ class SessionTracker:
         self.alternate |= before is not None
         self.current = before or self._begin(identity)
 
-    def step(self, identity, run, step):
+    def step(self, identity, run, step, content):
+        """`content`: stamp and hash of the state"""
         if identity:
             self.identify(identity)
-        elif self.current is None or (run and (run, step) in self.current.seen):
-            self._begin(0)  # an older release; a reset begins another run
+        elif self.current is None:
+            self._begin(0)
+        else:
+            self._step_again(run, step, content)
         if not identity:
-            self.current.seen.add((run, step))
+            self.current.seen[(run, step)] = content
         self.current.steps += 1
+        self.current.stamps.append(content[0])
+
+    def _step_again(self, run, step, content):
+        """Of an older release, in which a session begins with a step 0 that has been there; a reset begins another run."""
+        before = self.current.seen.get((run, step)) if run else None
+        if before is not None and step == 0:
+            self._begin(0)
+        elif before is not None and before != content:
+            self.alternate = True
 
     def _begin(self, identity):
         self.current = Session(self.namespace, identity)
@@ -71,15 +86,38 @@ def list_sessions(bag):
         topics = find_topics(bag, namespace)["applied_input"]
         readers = {connection: StepReader(bag.connections[connection]) for connection in topics}
         for connection, _received, data in bag.messages(readers):
-            _, step, run, _ = readers[connection].read(data)
-            tracker.step(identity_of(bag.connections[connection], data), run, step)
+            stamp, step, run, state_hash = readers[connection].read(data)
+            tracker.step(identity_of(bag.connections[connection], data), run, step, (stamp, state_hash))
         found += tracker.sessions
     return sorted(found, key=lambda session: session.identity)
 
 
-def choose_session(bag, namespace=None, session=None):
-    """(all sessions, number of the chosen one, from 0); the list is empty where the first of the only namespace is meant,
-    which needs no reading. Raises BagError if there is none such."""
+class StampOwners:
+    """Which of several sessions a message without identity belongs to, by its stamp: that of the only session with a step
+    that began or ended then."""
+
+    NEAR = 2000  # [ns]
+
+    def __init__(self, sessions):
+        self._moments = [(session.identity, self._moments_of(session.stamps)) for session in sessions]
+
+    def identity_at(self, stamp):
+        """0 if no session has such a step, or several have."""
+        owners = [identity for identity, moments in self._moments if self._has(moments, stamp)]
+        return owners[0] if len(owners) == 1 else 0
+
+    def _moments_of(self, stamps):
+        moments = sorted(stamps)
+        return moments + [2 * moments[-1] - moments[-2]] if len(moments) > 1 else moments
+
+    def _has(self, moments, stamp):
+        place = bisect_left(moments, stamp - self.NEAR)
+        return place < len(moments) and moments[place] <= stamp + self.NEAR
+
+
+def choose_session(bag, namespace=None, session=None, read=False):
+    """(all sessions, number of the chosen one, from 0); without `read` the list is empty where the first of the only
+    namespace is meant, which needs no reading. Raises BagError if there is none such."""
     names = namespaces_of(bag)
     if not names:
         others = sorted(connection.topic for connection in bag.connections.values())
@@ -91,7 +129,7 @@ def choose_session(bag, namespace=None, session=None):
     asked = None if namespace is None else without_slash(namespace)
     if asked is not None and asked not in names:
         raise BagError("{}: has no session in '{}', but in {}".format(bag.path, asked, quoted(names)))
-    if session is None and len(names) == 1:
+    if session is None and len(names) == 1 and not read:
         return [], 0
     sessions = list_sessions(bag)
     fitting = [
