@@ -2,6 +2,7 @@
 """Measures what the module and the environments take, as the rows of the table in docs/python.md. CPU times of the
 process unless wall time is named; a machine with other work on it makes them longer."""
 
+import ctypes
 import os
 import resource
 import subprocess
@@ -76,6 +77,7 @@ def scaling():
 
 def memory(particles, impedance):
     """Resident memory per further simulation that has run [MB]."""
+    ctypes.CDLL(None).malloc_trim(0)  # what earlier ones have left would be used first
     model = vibe.load(geometry={"particles": particles}, render_surface=False)
     kept = []
 
