@@ -2,6 +2,7 @@
 """Measures what the module and the environments take, as the rows of the table in docs/python.md. CPU times of the
 process unless wall time is named; a machine with other work on it makes them longer."""
 
+import ctypes
 import os
 import resource
 import subprocess
@@ -74,13 +75,14 @@ def scaling():
     return rates
 
 
-def memory(particles):
+def memory(particles, impedance):
     """Resident memory per further simulation that has run [MB]."""
+    ctypes.CDLL(None).malloc_trim(0)  # what earlier ones have left would be used first
     model = vibe.load(geometry={"particles": particles}, render_surface=False)
     kept = []
 
     def one():
-        simulation = vibe.Simulation(model, metrics=False)
+        simulation = vibe.Simulation(model, metrics=False, impedance=impedance)
         simulation.run(40, insertion=0.1, insufflate=True)
         kept.append(simulation)
 
@@ -111,7 +113,12 @@ def main():
     reset_and_step.spent = []
     for _ in range(20):
         reset_and_step()
-    print(f"| the first step after it, which makes a factor anew | {np.median(reset_and_step.spent):.1f} ms |")
+    print(f"| the first step after it, of a prepared snapshot | {np.median(reset_and_step.spent):.1f} ms |")
+    environment = Environment("Reach", organs=ORGAN)
+    for seed in range(20):
+        environment.reset(seed=seed)
+    seeds = iter(range(20))
+    print(f"| `reset()` of `Reach`, a goal known | {median(lambda: environment.reset(seed=next(seeds)), 20):.2f} ms |")
     full = vibe.Simulation(vibe.load())
     full.run(30, insertion=0.08, insufflate=True)
     print(f"| depth and labels, 128 x 128, 3,618 particles | {median(lambda: full.camera(128, 128), 30):.2f} ms |")
@@ -120,7 +127,9 @@ def main():
     rates = scaling()
     print(f"| 16 episodes of `Reach` side by side, steps per second of wall time: one thread; two | {rates[1]:.0f}; "
           f"{rates[2]:.0f} |")
-    print(f"| memory per further simulation, 1,000; 3,618 particles | {memory(1000):.0f} MB; {memory(3618):.0f} MB |")
+    for name, impedance in (("without impedance, as in environments", False), ("all of it", True)):
+        print(f"| memory per further simulation, 1,000; 3,618 particles: {name} | {memory(1000, impedance):.0f} MB; "
+              f"{memory(3618, impedance):.0f} MB |")
     print(f"load {os.getloadavg()[0]:.1f}, {len(os.sched_getaffinity(0))} cores", file=sys.stderr)
 
 

@@ -18,7 +18,9 @@ std::shared_ptr<const State> SnapshotHandle::stateFor(const std::shared_ptr<cons
 }
 
 void bindSnapshot(py::module_& module) {
-  const auto fromBytes = [](const py::bytes& bytes) { return SnapshotHandle{nullptr, nullptr, std::string(bytes)}; };
+  const auto fromBytes = [](const py::bytes& bytes) {
+    return SnapshotHandle{nullptr, nullptr, std::string(bytes), nullptr};
+  };
   py::class_<SnapshotHandle>(module, "Snapshot",
                              "The state of a simulation at one time. Cheap to make and to restore; can be pickled.")
       .def(py::init(fromBytes), py::arg("bytes"), "Of the bytes of a snapshot; they are checked when it is restored.")

@@ -20,12 +20,13 @@ namespace {
 constexpr std::int64_t kChunk = 32;  // steps between two looks whether the user interrupts
 
 std::shared_ptr<SimulationHandle> make(const ModelHandle& model, std::optional<std::uint64_t> seed, int threads,
-                                       bool metrics) {
+                                       bool metrics, bool impedance) {
   if (threads < 1 || threads > 1024) throw Error("'threads' is not from 1 to 1024; give the threads inside a step.");
   SimulationSettings settings;
   settings.seed = seed;
   settings.threads = threads;
   settings.metrics = metrics;
+  settings.impedance = impedance;
   const py::gil_scoped_release released;
   return std::make_shared<SimulationHandle>(model.model, settings);
 }
@@ -83,9 +84,11 @@ std::vector<Event> follow(SimulationHandle& handle, TraineeHandle& trainee, std:
   return use->events;
 }
 
-SnapshotHandle snapshot(SimulationHandle& handle) {
+SnapshotHandle snapshot(SimulationHandle& handle, bool prepared) {
   const Use use(handle);
-  return {use->simulation.sharedModel(), std::make_shared<const State>(use.state()), ""};
+  const py::gil_scoped_release released;
+  return {use->simulation.sharedModel(), std::make_shared<const State>(use.state()), "",
+          prepared ? use->simulation.prepare() : nullptr};
 }
 
 void restore(SimulationHandle& handle, const SnapshotHandle& snapshot) {
@@ -103,9 +106,10 @@ void bindLife(SimulationClass& simulation) {
   simulation
       .def(
           py::init(&make), py::arg("model"), py::arg("seed") = py::none(), py::arg("threads") = 1,
-          py::arg("metrics") = true,
+          py::arg("metrics") = true, py::arg("impedance") = true,
           "Begins at the initial state. seed: instead of the scene's; threads: inside a step, results do not depend on "
-          "them; metrics=False: measures() stays empty.")
+          "them; metrics=False: measures() stays empty; impedance=False: impedance() stays None, which saves time and "
+          "memory, and hash(), which covers its past, differs once the tool has touched something.")
       .def("close", &SimulationHandle::close, "Ends it; views stay valid. Whatever uses it later raises vibe.Error.")
       .def("__enter__", [](const py::object& self) { return self; })
       .def("__exit__", [](SimulationHandle& s, const py::args&) { s.close(); })
@@ -153,7 +157,10 @@ void bindSnapshots(SimulationClass& simulation) {
       .def(
           "hash", [](SimulationHandle& s) { return Use(s)->simulation.hash(); },
           "64 bits of all of the state: equal hashes mean equal states, and equal futures.")
-      .def("snapshot", &snapshot, "The present state, in memory.")
+      .def("snapshot", &snapshot, py::arg("prepared") = false,
+           "The present state, in memory. prepared=True, for states that many simulations go back to: keeps what the "
+           "first step after restore() takes long to make, too (a megabyte with 1,000 particles), with the same "
+           "results.")
       .def("restore", &restore, py::arg("snapshot"),
            "Back to a state; views show it. Raises vibe.Error if it is of another model.")
       .def("reset", &reset, py::arg("seed") = py::none(), "Back to the initial state.")

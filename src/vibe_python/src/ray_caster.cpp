@@ -22,15 +22,32 @@ struct Window {
   int left = 0, right = 0, top = 0, bottom = 0;  // the last ones do not belong to it
 };
 
+/// A vertex as the camera sees it.
+struct Corner {
+  Eigen::Vector3d place;  // in the camera [m]
+  Eigen::Array2d pixel;   // not a number behind the camera
+  unsigned beyond;        // a bit per plane of the picture's pyramid that it is outside of
+};
+
+constexpr unsigned kBehind = 1;
+
+// The pyramid ends half a pixel outside the outermost rays, far beyond rounding.
+Corner cornerAt(const Eigen::Vector3d& place, const Lens& lens) {
+  const double x = lens.focal * place.x(), y = lens.focal * place.y();
+  const double right = lens.centre_x * place.z(), low = lens.centre_y * place.z();
+  Corner corner{place, {x / place.z() + lens.centre_x, y / place.z() + lens.centre_y}, 0};
+  if (!(place.z() > kNear)) corner.beyond |= kBehind;
+  if (x > right) corner.beyond |= 2;
+  if (x < -right) corner.beyond |= 4;
+  if (y > low) corner.beyond |= 8;
+  if (y < -low) corner.beyond |= 16;
+  return corner;
+}
+
 // A corner behind the camera may be anywhere in the picture.
-Window windowOf(const Eigen::Vector3d* const (&corner)[3], const Lens& lens, const CastImage& image) {
-  Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (const Eigen::Vector3d* p : corner) {
-    if (!(p->z() > kNear)) return {0, image.width, 0, image.height};
-    const Eigen::Array2d pixel = lens.focal * p->head<2>().array() / p->z();
-    low = low.min(pixel);
-    high = high.max(pixel);
-  }
+Window windowOf(const Corner& a, const Corner& b, const Corner& c, const CastImage& image) {
+  if (((a.beyond | b.beyond | c.beyond) & kBehind) != 0) return {0, image.width, 0, image.height};
+  const Eigen::Array2d low = a.pixel.min(b.pixel).min(c.pixel), high = a.pixel.max(b.pixel).max(c.pixel);
   // pixel k is seen through its middle, k + 0.5
   const auto first = [](double edge, int size) {
     return static_cast<int>(std::clamp(std::ceil(edge - 0.5 - kRounding), 0.0, static_cast<double>(size)));
@@ -38,8 +55,8 @@ Window windowOf(const Eigen::Vector3d* const (&corner)[3], const Lens& lens, con
   const auto last = [](double edge, int size) {
     return static_cast<int>(std::clamp(std::floor(edge - 0.5 + kRounding) + 1, 0.0, static_cast<double>(size)));
   };
-  return {first(low.x() + lens.centre_x, image.width), last(high.x() + lens.centre_x, image.width),
-          first(low.y() + lens.centre_y, image.height), last(high.y() + lens.centre_y, image.height)};
+  return {first(low.x(), image.width), last(high.x(), image.width), first(low.y(), image.height),
+          last(high.y(), image.height)};
 }
 
 /// The rays (x, y, 1) of a row of the picture against one triangle: signs of volumes, linear in x (Moeller and Trumbore
@@ -80,13 +97,14 @@ void cast(TriangleCast triangle, int number, const Window& window, const Lens& l
   }
 }
 
-void findNormals(const SurfaceView& surface, const std::vector<Eigen::Vector3d>& place, CastImage& image) {
+void findNormals(const SurfaceView& surface, const std::vector<Corner>& corner, CastImage& image) {
   for (int i = 0; i < image.width * image.height; ++i) {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     if (image.triangle[i] >= 0) {
       const auto& t = surface.triangles[static_cast<std::size_t>(image.triangle[i])];
-      normal = (place[t[1]] - place[t[0]]).cross(place[t[2]] - place[t[0]]).normalized();
-      if (normal.dot(place[t[0]]) > 0) normal = -normal;
+      const Eigen::Vector3d &a = corner[t[0]].place, &b = corner[t[1]].place, &c = corner[t[2]].place;
+      normal = (b - a).cross(c - a).normalized();
+      if (normal.dot(a) > 0) normal = -normal;
     }
     for (int k = 0; k < 3; ++k) image.normal[3 * i + k] = static_cast<float>(normal[k]);
   }
@@ -97,22 +115,23 @@ void findNormals(const SurfaceView& surface, const std::vector<Eigen::Vector3d>&
 void castRays(const SurfaceView& surface, const Eigen::Isometry3d& camera, double field_of_view, CastImage& image) {
   const Lens lens{image.width / (2 * std::tan(field_of_view / 2)), image.width / 2.0, image.height / 2.0};
   const Eigen::Isometry3d to_camera = camera.inverse();
-  std::vector<Eigen::Vector3d> place(surface.x.size());
-  for (std::size_t i = 0; i < place.size(); ++i) place[i] = to_camera * surface.position(static_cast<int>(i));
+  std::vector<Corner> corner(surface.x.size());
+  for (std::size_t i = 0; i < corner.size(); ++i)
+    corner[i] = cornerAt(to_camera * surface.position(static_cast<int>(i)), lens);
   const int pixels = image.width * image.height;
   std::fill_n(image.depth, pixels, std::numeric_limits<float>::infinity());
   std::fill_n(image.triangle, pixels, -1);
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
     const auto& t = surface.triangles[i];
-    const Eigen::Vector3d* const corner[3] = {&place[t[0]], &place[t[1]], &place[t[2]]};
-    if (corner[0]->z() <= kNear && corner[1]->z() <= kNear && corner[2]->z() <= kNear) continue;
-    const Window window = windowOf(corner, lens, image);
+    const Corner &a = corner[t[0]], &b = corner[t[1]], &c = corner[t[2]];
+    if ((a.beyond & b.beyond & c.beyond) != 0) continue;
+    const Window window = windowOf(a, b, c, image);
     if (window.left >= window.right || window.top >= window.bottom) continue;
-    cast(TriangleCast(*corner[0], *corner[1], *corner[2]), static_cast<int>(i), window, lens, image);
+    cast(TriangleCast(a.place, b.place, c.place), static_cast<int>(i), window, lens, image);
   }
   for (int i = 0; i < pixels; ++i)
     if (image.triangle[i] < 0) image.depth[i] = std::numeric_limits<float>::quiet_NaN();
-  if (image.normal != nullptr) findNormals(surface, place, image);
+  if (image.normal != nullptr) findNormals(surface, corner, image);
 }
 
 }  // namespace vibe::python

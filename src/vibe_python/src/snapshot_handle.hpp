@@ -12,6 +12,7 @@ struct SnapshotHandle {
   std::shared_ptr<const Model> model;  ///< null: bytes only
   std::shared_ptr<const State> state;
   std::string bytes;
+  std::shared_ptr<const void> prepared;  ///< see Simulation::prepare()
 
   std::string encoded() const;
   /// The state for a model.

@@ -126,7 +126,7 @@ class ArraysTest(Worlds):
 class SnapshotTest(Worlds):
     def test_futures_are_equal(self):
         simulation = self.pressed()
-        copies = [simulation.snapshot()]
+        copies = [simulation.snapshot(), simulation.snapshot(prepared=True)]
         copies.append(pickle.loads(pickle.dumps(copies[0])))
         copies.append(vibe.Snapshot(copies[0].to_bytes()))
         simulation.run(5)
@@ -137,6 +137,15 @@ class SnapshotTest(Worlds):
             self.assertNotEqual(other.hash(), hashed)
             other.run(5, **{k: v for k, v in simulation.input.items() if k != "pull"})
             self.assertEqual(other.hash(), hashed)
+
+    def test_without_impedance_the_rest_is_the_same(self):
+        simulations = [self.simulation(impedance=wanted) for wanted in (True, False)]
+        for simulation in simulations:
+            simulation.run(100, insertion=0.3, tip_up_down=0.6, insufflate=True)
+        self.assertIsNotNone(simulations[0].impedance())
+        self.assertIsNone(simulations[1].impedance())
+        for view in ("x", "vy", "wrench"):
+            np.testing.assert_array_equal(getattr(simulations[0], view), getattr(simulations[1], view))
 
     def test_of_another_model_is_refused(self):
         snapshot = self.simulation().snapshot()

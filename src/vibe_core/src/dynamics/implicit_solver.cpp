@@ -125,8 +125,15 @@ std::unique_ptr<SolverWorkspace> ImplicitSolver::makeWorkspace(const Model& mode
   scratch->blocks = makeConstraintBlocks(model);
   if (model.tool)
     scratch->guard.emplace(*model.tool, model.organ.surface, model.organ.thickness, passableVertices(model.organ));
-  if (model.tool) scratch->impedance = std::make_unique<ImpedanceEstimator>(stepper_.body(), model.scene.step_period);
+  if (model.tool)
+    scratch->impedance =
+        std::make_unique<ImpedanceEstimator>(stepper_.body(), model.scene.step_period, restStiffness());
   return scratch;
+}
+
+const RestStiffness& ImplicitSolver::restStiffness() const {
+  std::call_once(rest_asked_, [this] { rest_ = std::make_unique<const RestStiffness>(stepper_.body()); });
+  return *rest_;
 }
 
 void ImplicitSolver::advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state,
@@ -134,6 +141,10 @@ void ImplicitSolver::advance(const Model& model, const ToolMotion* motion, bool 
   auto& own = static_cast<ImplicitWorkspace&>(scratch);
   own.stepper->stages = own.stages;
   ImplicitStep(model, stepper_, limits_, motion, insufflator_on, state, own, report).run();
+}
+
+std::shared_ptr<const void> ImplicitSolver::prepare(const State& state, SolverWorkspace& scratch) const {
+  return stepper_.shareFactor(state.solver, *static_cast<ImplicitWorkspace&>(scratch).stepper);
 }
 
 }  // namespace vibe

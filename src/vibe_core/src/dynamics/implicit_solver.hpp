@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -147,11 +148,16 @@ class ImplicitSolver : public Solver {
   std::unique_ptr<SolverWorkspace> makeWorkspace(const Model& model) const override;
   void advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state,
                SolverWorkspace& scratch, ThreadPool& pool, StepReport& report) const override;
+  std::shared_ptr<const void> prepare(const State& state, SolverWorkspace& scratch) const override;
 
  private:
   std::shared_ptr<const ShellElements> shell_;
   ImplicitStepper stepper_;
   LossLimits limits_;
+  mutable std::once_flag rest_asked_;
+  mutable std::unique_ptr<const RestStiffness> rest_;  // of all workspaces; made with the first one
+
+  const RestStiffness& restStiffness() const;
 };
 
 }  // namespace vibe

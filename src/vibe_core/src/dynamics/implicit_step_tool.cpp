@@ -212,7 +212,7 @@ void ImplicitStep::reportHand(double tool_work) {
 
 // Begins before anything is touched, because the factor that the impedance needs takes a while to make.
 void ImplicitStep::reportImpedance() {
-  if (scratch_.touches.empty() && scratch_.loads.contacts.empty()) return;
+  if (!scratch_.wants_impedance || (scratch_.touches.empty() && scratch_.loads.contacts.empty())) return;
   findToolContactRows(model_, *motion_, stepper_, report_, scratch_);
   report_.tool_impedance = scratch_.impedance->update(
       state_.step, scratch_.tool_rows, {state_.x.data(), state_.y.data(), state_.z.data()},

@@ -80,16 +80,12 @@ Eigen::Map<Eigen::Matrix<double, static_cast<int>(N), 1>> asVector(std::array<do
 
 }  // namespace
 
-ImpedanceEstimator::ImpedanceEstimator(const ElasticBody& body, double step_period)
+ImpedanceEstimator::ImpedanceEstimator(const ElasticBody& body, double step_period, const RestStiffness& rest)
     : body_(body),
       interval_(std::max(1, static_cast<int>(std::lround(kInterval / step_period)))),
       making_([this] { make(next_basis_, next_); }) {
-  const auto pattern =
-      std::make_shared<const BlockPattern>(blockPattern(body.nodeCount(), body.elements->nodeGroups()));
-  const auto plan = makeFactorPlan(*pattern);
-  for (Made* made : {&rest_, &current_, &next_})
-    made->stiffness = std::make_unique<StaticStiffness>(body, pattern, plan);
-  rest_.usable = rest_.stiffness->make({});
+  for (Made* made : {&rest_, &current_, &next_}) made->stiffness = std::make_unique<StaticStiffness>(body, rest);
+  rest_.usable = rest.factor != nullptr;
 }
 
 std::optional<ToolImpedance> ImpedanceEstimator::update(std::int64_t step, const ToolContactRows& touch,

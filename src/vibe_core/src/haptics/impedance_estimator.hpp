@@ -104,8 +104,8 @@ struct ToolContactRows {
 /// the speed of threads nor on what an estimator has done before: its members are caches of what the memory names.
 class ImpedanceEstimator {
  public:
-  /// Factors the stiffness at rest: costs tens of step times.
-  ImpedanceEstimator(const ElasticBody& body, double step_period);
+  /// @param rest  of the body; may be shared
+  ImpedanceEstimator(const ElasticBody& body, double step_period, const RestStiffness& rest);
 
   /// One step in which the tool is near tissue.
   /// @param step           its number; after 0.25 s without a step near tissue a new touch begins

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sparse/factor_plan.hpp"
+
 namespace vibe {
 
 namespace {
@@ -12,38 +14,52 @@ constexpr double kMinSpring = 1;
 
 }  // namespace
 
-StaticStiffness::StaticStiffness(const ElasticBody& body, std::shared_ptr<const BlockPattern> pattern,
-                                 std::shared_ptr<const FactorPlan> plan)
-    : body_(body), matrix_(std::move(pattern)), factor_(std::move(plan), FactorStorage::Float) {
-  displacement_.resize(3 * body.rest.size());
+RestStiffness::RestStiffness(const ElasticBody& body)
+    : plan(makeFactorPlan(blockPattern(body.nodeCount(), body.elements->nodeGroups()))) {
+  StaticStiffness::Own own(plan);
+  if (own.make(body, {})) factor = own.factor;
+}
+
+StaticStiffness::Own::Own(const std::shared_ptr<const FactorPlan>& plan)
+    : matrix(plan->pattern), factor(std::make_shared<Factor>(plan, FactorStorage::Float)) {}
+
+bool StaticStiffness::Own::make(const ElasticBody& body, const std::vector<float>& positions) {
+  displacement.assign(3 * body.rest.size(), 0.0);
+  if (!positions.empty())
+    for (std::size_t i = 0; i < displacement.size(); ++i)
+      displacement[i] = static_cast<double>(positions[i]) - body.rest[i / 3][static_cast<Eigen::Index>(i % 3)];
+  matrix.setZero();
+  body.elements->addStiffness(displacement.data(), matrix);
+  for (int i = 0; i < body.nodeCount(); ++i) {
+    const double spring = kMinSpring * body.mass[i] + (body.foundation.empty() ? 0 : body.foundation[i]);
+    matrix.add(i, i, spring * Eigen::Matrix3d::Identity());
+  }
+  for (int i = 0; i < body.nodeCount(); ++i)
+    if (body.fixed[i] != 0) matrix.fix(i);
+  return factor->compute(matrix);
+}
+
+StaticStiffness::StaticStiffness(const ElasticBody& body, const RestStiffness& rest)
+    : body_(body), plan_(rest.plan), factor_(rest.factor) {
   half_.resize(3 * body.rest.size() + 16);
+  if (factor_) schur_.reset(*factor_);
 }
 
 bool StaticStiffness::make(const std::vector<float>& positions) {
-  std::fill(displacement_.begin(), displacement_.end(), 0.0);
-  if (!positions.empty())
-    for (std::size_t i = 0; i < displacement_.size(); ++i)
-      displacement_[i] = static_cast<double>(positions[i]) - body_.rest[i / 3][static_cast<Eigen::Index>(i % 3)];
-  matrix_.setZero();
-  body_.elements->addStiffness(displacement_.data(), matrix_);
-  for (int i = 0; i < body_.nodeCount(); ++i) {
-    const double spring = kMinSpring * body_.mass[i] + (body_.foundation.empty() ? 0 : body_.foundation[i]);
-    matrix_.add(i, i, spring * Eigen::Matrix3d::Identity());
-  }
-  for (int i = 0; i < body_.nodeCount(); ++i)
-    if (body_.fixed[i] != 0) matrix_.fix(i);
-  if (!factor_.compute(matrix_)) return false;
+  if (!own_) own_ = std::make_unique<Own>(plan_);
+  if (!own_->make(body_, positions)) return false;
+  factor_ = own_->factor;
   columns_.reset();
-  schur_.reset(factor_);
+  schur_.reset(*factor_);
   return true;
 }
 
 void StaticStiffness::setGas(const std::vector<float>& direction4, double stiffness) {
-  schur_.setGas(direction4.data(), stiffness, factor_);
+  schur_.setGas(direction4.data(), stiffness, *factor_);
 }
 
 void StaticStiffness::setRows(const ConstraintRows& rows) {
-  schur_.setRows(rows, factor_, columns_);
+  schur_.setRows(rows, *factor_, columns_);
 }
 
 Eigen::MatrixXd StaticStiffness::movingMass(const Eigen::MatrixXd& motion) {
@@ -52,8 +68,8 @@ Eigen::MatrixXd StaticStiffness::movingMass(const Eigen::MatrixXd& motion) {
   for (int c = 0; c < modes; ++c) {
     std::fill(half_.begin(), half_.end(), 0.0F);
     schur_.eliminate(motion.col(c), 0, half_.data());
-    factor_.backward(half_.data());
-    factor_.store(half_.data(), shape[c].data());
+    factor_->backward(half_.data());
+    factor_->store(half_.data(), shape[c].data());
   }
   Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(modes, modes);
   for (int a = 0; a < modes; ++a)

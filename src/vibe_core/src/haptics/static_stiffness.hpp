@@ -8,11 +8,20 @@
 
 namespace vibe {
 
+/// The stiffness of a body at rest; constant, for many StaticStiffness.
+struct RestStiffness {
+  /// Costs tens of step times.
+  explicit RestStiffness(const ElasticBody& body);
+
+  std::shared_ptr<const FactorPlan> plan;
+  std::shared_ptr<const Factor> factor;  // null: it is not positive definite
+};
+
 /// The stiffness of a body at given positions, without inertia, and the compliance of a few rows.
 class StaticStiffness {
  public:
-  StaticStiffness(const ElasticBody& body, std::shared_ptr<const BlockPattern> pattern,
-                  std::shared_ptr<const FactorPlan> plan);
+  /// About rest, if that has a factor, until the first make(), which asks for the memory of another factor.
+  StaticStiffness(const ElasticBody& body, const RestStiffness& rest);
 
   /// Factors the stiffness at positions (3 * nodes) [m]; empty: rest. Costs tens of step times.
   /// @returns false where it is not positive definite; the object is then unusable until the next success
@@ -31,11 +40,21 @@ class StaticStiffness {
 
  private:
   const ElasticBody& body_;
-  BlockMatrix matrix_;
-  Factor factor_;
+  struct Own {
+    explicit Own(const std::shared_ptr<const FactorPlan>& plan);
+    bool make(const ElasticBody& body, const std::vector<float>& positions);
+
+    BlockMatrix matrix;
+    std::shared_ptr<Factor> factor;
+    std::vector<double> displacement;
+  };
+  friend RestStiffness;
+
+  std::shared_ptr<const FactorPlan> plan_;
+  std::unique_ptr<Own> own_;  // null: there is none yet
+  std::shared_ptr<const Factor> factor_;
   ColumnCache columns_;
   ConstraintSchur schur_;
-  std::vector<double> displacement_;
   std::vector<float> half_;
 };
 

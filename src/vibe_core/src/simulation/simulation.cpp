@@ -29,12 +29,17 @@ Simulation::Simulation(std::shared_ptr<const Model> model, const SimulationSetti
     : model_(std::move(model)),
       settings_(settings),
       state_(initialState(*model_, settings.seed.value_or(model_->scene.seed))),
-      workspace_(std::make_unique<Workspace>(*model_, settings.threads)),
+      workspace_(workspaceFor(*model_, settings)),
       input_(holdingInput(state_)) {
   if (settings.metrics) recorder_.emplace(*model_, state_);
-  if (!settings.stages) return;
-  stages_ = std::make_unique<StageSummary>();
-  workspace_->measureStages();
+  if (settings.stages) stages_ = std::make_unique<StageSummary>();
+}
+
+std::unique_ptr<Workspace> Simulation::workspaceFor(const Model& model, const SimulationSettings& settings) {
+  auto workspace = std::make_unique<Workspace>(model, settings.threads);
+  if (settings.stages) workspace->measureStages();
+  if (!settings.impedance) workspace->skipImpedance();
+  return workspace;
 }
 
 const std::vector<Event>& Simulation::step(const StepInput& input) {
@@ -86,6 +91,10 @@ void Simulation::reset(std::optional<std::uint64_t> seed) {
   replaceState(initialState(*model_, seed.value_or(model_->scene.seed)));
 }
 
+std::shared_ptr<const void> Simulation::prepare() {
+  return model_->solver->prepare(state_, workspace_->solverWorkspace());
+}
+
 void Simulation::replaceState(State state) {
   state_ = std::move(state);
   input_ = holdingInput(state_);
@@ -95,8 +104,7 @@ void Simulation::replaceState(State state) {
 
 void Simulation::replaceModel(std::shared_ptr<const Model> model) {
   State state = initialState(*model, model->scene.seed);
-  auto workspace = std::make_unique<Workspace>(*model, settings_.threads);
-  if (settings_.stages) workspace->measureStages();
+  auto workspace = workspaceFor(*model, settings_);
   if (recorder_) recorder_.emplace(*model, state);
   workspace_ = std::move(workspace);  // before the model goes, which it refers to
   model_ = std::move(model);

@@ -133,6 +133,7 @@ struct ImplicitStepper::Plan {
   TimeScheme scheme, fallback_scheme;
   FactorSchedule schedule;
   FactorStorage storage;
+  std::shared_ptr<FactorShelf> shelf = std::make_shared<FactorShelf>();
   bool free;           // nothing holds the body
   double safe_length;  // of a move that is not verified [m]
   double size = 0;     // of the body [m]
@@ -144,7 +145,13 @@ ImplicitStepper::ImplicitStepper(ElasticBody body, StepSettings settings, Factor
 ImplicitStepper::~ImplicitStepper() = default;
 
 std::shared_ptr<StepperWorkspace> ImplicitStepper::makeWorkspace() const {
-  return std::make_shared<StepperWorkspace>(body_.rest, plan_->factor_plan, plan_->storage, plan_->pattern);
+  return std::make_shared<StepperWorkspace>(body_.rest, plan_->factor_plan, plan_->storage, plan_->pattern,
+                                            plan_->shelf);
+}
+
+std::shared_ptr<const Factor> ImplicitStepper::shareFactor(const StepperMemory& memory,
+                                                           StepperWorkspace& scratch) const {
+  return plan_->schedule.share(body_, memory, scratch);
 }
 
 void ImplicitStepper::refactor(const MotionView& motion, StepperMemory& memory) const {
@@ -310,6 +317,7 @@ void ImplicitStepper::refactorHere(const BodyLoads& loads, StepperWorkspace& scr
     for (std::size_t k = 0; k < 3; ++k) positions[3 * i + k] = static_cast<float>(scratch.z[4 * i + k]);
   std::vector<StiffnessCoupling> couplings;
   collectCouplings(loads, scratch.z.data(), 1, couplings);
+  scratch.returnLent();
   if (!factorAt(body_, {positions, couplings}, 0, 1, scratch.plan, scratch.matrix, *scratch.factor))
     factorAt(body_, {{}, {}}, 0, 1, scratch.plan, scratch.matrix, *scratch.factor);
   scratch.columns.reset();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 #include "solver/couplings.hpp"
@@ -11,11 +12,13 @@
 namespace vibe {
 
 StepperWorkspace::StepperWorkspace(const std::vector<Eigen::Vector3d>& rest_positions,
-                                   std::shared_ptr<const FactorPlan> elements_plan, FactorStorage storage,
-                                   std::shared_ptr<const BlockPattern> pattern)
+                                   std::shared_ptr<const FactorPlan> elements_plan, FactorStorage storage_of_factor,
+                                   std::shared_ptr<const BlockPattern> pattern, std::shared_ptr<FactorShelf> factors)
     : plan(std::move(elements_plan)),
-      factor(std::make_unique<Factor>(plan, storage)),
-      next_factor(std::make_unique<Factor>(plan, storage)),
+      storage(storage_of_factor),
+      shelf(std::move(factors)),
+      factor(std::make_shared<Factor>(plan, storage)),
+      next_factor(std::make_shared<Factor>(plan, storage)),
       matrix(std::move(pattern)) {
   const std::size_t size = 4 * rest_positions.size();
   for (auto* v : {&rest, &z, &z_hat, &trial}) v->assign(size, 0);
@@ -33,6 +36,22 @@ StepperWorkspace::StepperWorkspace(const std::vector<Eigen::Vector3d>& rest_posi
 
 StepperWorkspace::~StepperWorkspace() {
   making.reset();  // it works on the other members
+}
+
+void StepperWorkspace::returnLent() {
+  if (spare) factor = std::move(spare);
+}
+
+std::shared_ptr<Factor> FactorShelf::find(std::uint64_t id) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto found = factors_.find(id);
+  return found == factors_.end() ? nullptr : found->second.lock();
+}
+
+void FactorShelf::put(std::uint64_t id, const std::shared_ptr<Factor>& factor) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (auto i = factors_.begin(); i != factors_.end();) i = i->second.expired() ? factors_.erase(i) : std::next(i);
+  factors_[id] = factor;
 }
 
 namespace {
@@ -160,9 +179,14 @@ void FactorSchedule::provide(const ElasticBody& body, const BodyLoads& loads, co
                              StepperWorkspace& scratch) const {
   if (scratch.factor_id != memory.linearization_id) {
     if (scratch.making) scratch.making->finish();
+    scratch.returnLent();
     if (scratch.next_id == memory.linearization_id) {
       scratch.factor.swap(scratch.next_factor);
       std::swap(scratch.columns, scratch.next_columns);
+    } else if (std::shared_ptr<Factor> known = scratch.shelf->find(memory.linearization_id)) {
+      scratch.spare = std::move(scratch.factor);
+      scratch.factor = std::move(known);
+      scratch.columns.reset();
     } else {
       factorSafely(body, {memory.linearization_point, memory.couplings}, scratch.plan, scratch.matrix, *scratch.factor);
       scratch.columns.reset();
@@ -173,6 +197,17 @@ void FactorSchedule::provide(const ElasticBody& body, const BodyLoads& loads, co
   }
   if (!memory.next.empty() && scratch.next_id != memory.next_id) makeInBackground(body, loads, memory, scratch);
   scratch.columns.setAttachments(*scratch.factor, loads.attachments);
+}
+
+std::shared_ptr<const Factor> FactorSchedule::share(const ElasticBody& body, const StepperMemory& memory,
+                                                    StepperWorkspace& scratch) const {
+  const std::uint64_t id = hashOf(memory.linearization_point, memory.couplings);
+  if (std::shared_ptr<Factor> known = scratch.shelf->find(id)) return known;
+  if (scratch.making) scratch.making->finish();  // it uses the matrix
+  auto factor = std::make_shared<Factor>(scratch.plan, scratch.storage);
+  factorSafely(body, {memory.linearization_point, memory.couplings}, scratch.plan, scratch.matrix, *factor);
+  scratch.shelf->put(id, factor);
+  return factor;
 }
 
 // With the columns of what is held and touched now, which most likely still is when the factor is used.

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "common/background_worker.hpp"
@@ -34,17 +36,35 @@ struct Evaluation {
   double volume = 0, pressure = 0;      // [m^3], [Pa]
 };
 
+/// Factors that are kept for many workspaces, by what they are about. They are not changed any more.
+class FactorShelf {
+ public:
+  std::shared_ptr<Factor> find(std::uint64_t id) const;
+  void put(std::uint64_t id, const std::shared_ptr<Factor>& factor);
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::uint64_t, std::weak_ptr<Factor>> factors_;  // those that nobody keeps are gone
+};
+
 /// All memory of an ImplicitStepper. Node vectors are 4 numbers per node.
 class StepperWorkspace {
  public:
   StepperWorkspace(const std::vector<Eigen::Vector3d>& rest, std::shared_ptr<const FactorPlan> elements_plan,
-                   FactorStorage storage, std::shared_ptr<const BlockPattern> pattern);
+                   FactorStorage storage, std::shared_ptr<const BlockPattern> pattern,
+                   std::shared_ptr<FactorShelf> factors);
   ~StepperWorkspace();
+
+  /// Afterwards `factor` is the workspace's own, about anything.
+  void returnLent();
 
   static constexpr int kHistory = RowUnknowns::kHistory;
 
   std::shared_ptr<const FactorPlan> plan;  // of the elements alone
-  std::unique_ptr<Factor> factor, next_factor;
+  FactorStorage storage;
+  std::shared_ptr<FactorShelf> shelf;
+  std::shared_ptr<Factor> factor, next_factor;
+  std::shared_ptr<Factor> spare;             // the own one, while `factor` is on the shelf; else null
   BlockMatrix matrix;                        // of the factor that is being made
   std::uint64_t factor_id = 0, next_id = 0;  // what they are about; 0: nothing
   FactorTask task;                           // of next_factor
@@ -102,6 +122,9 @@ struct FactorSchedule {
   /// The factor that the memory names, and the columns of the spots about it.
   void provide(const ElasticBody& body, const BodyLoads& loads, const StepperMemory& memory,
                StepperWorkspace& scratch) const;
+  /// The factor that the memory names, on the shelf as long as somebody keeps it.
+  std::shared_ptr<const Factor> share(const ElasticBody& body, const StepperMemory& memory,
+                                      StepperWorkspace& scratch) const;
   /// What StepperWorkspace::task says, in the background.
   static void makeNext(StepperWorkspace& scratch);
   /// The present positions, without couplings, from this step on.

@@ -16,9 +16,10 @@ class AlignedBuffer {
  public:
   void resize(std::int64_t count) {
     const std::size_t alignment = count * sizeof(Number) < kHugePage ? kLine : kHugePage;
-    const std::size_t bytes = (count * sizeof(Number) + kLine + alignment - 1) / alignment * alignment;
-    memory_.reset(static_cast<Number*>(std::aligned_alloc(alignment, bytes)));
-    if (memory_ == nullptr) throw std::bad_alloc();
+    const std::size_t bytes = (count * sizeof(Number) + 2 * kLine - 1) / kLine * kLine;
+    void* memory = nullptr;
+    if (posix_memalign(&memory, alignment, bytes) != 0) throw std::bad_alloc();
+    memory_.reset(static_cast<Number*>(memory));
     if (alignment == kHugePage)
       madvise(memory_.get(), bytes, MADV_HUGEPAGE);  // a hint; its return value does not matter
     size_ = count;

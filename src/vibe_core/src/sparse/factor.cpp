@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "common/lending_pool.hpp"
 #include "sparse/aligned_buffer.hpp"
 #include "sparse/factor_plan.hpp"
 #include "sparse/multifrontal.hpp"
@@ -43,8 +44,6 @@ struct Factor::Storage {
 
   void setPlan(std::shared_ptr<const FactorPlan> wanted) {
     plan = std::move(wanted);
-    if (kind == FactorStorage::Half) single_precision.setPlan(*plan);
-    known_to_double = false;
     const std::size_t rows = 3 * static_cast<std::size_t>(plan->pattern->size);
     scale.resize(rows);
     float_scale.resize(rows);
@@ -101,19 +100,21 @@ struct Factor::Storage {
   bool compute(const BlockMatrix& matrix) {
     const auto taking = [this](int s, const auto& panel) { take(s, panel); };
     if (!takeScale(matrix)) return false;
-    if (kind == FactorStorage::Half && single_precision.run(matrix, scale, taking)) return true;
-    if (!known_to_double) double_precision.setPlan(*plan);
-    known_to_double = true;
-    return double_precision.run(matrix, scale, taking);
+    return (kind == FactorStorage::Half && eliminate<float>(matrix, taking)) || eliminate<double>(matrix, taking);
+  }
+
+  // the fronts take more memory than the factor
+  template <class Real, class Take>
+  bool eliminate(const BlockMatrix& matrix, const Take& taking) const {
+    const typename LendingPool<Multifrontal<Real>>::Loan elimination;
+    elimination->setPlan(*plan);
+    return elimination->run(matrix, scale, taking);
   }
 
   std::shared_ptr<const FactorPlan> plan;
   FactorStorage kind;
   PanelKernels kernels;
-  Multifrontal<float> single_precision;
-  Multifrontal<double> double_precision;
-  bool known_to_double = false;  // the plan; its memory is rarely needed
-  std::vector<double> scale;     // D, in elimination order
+  std::vector<double> scale;  // D, in elimination order
   std::vector<float> float_scale, column_scale;
   AlignedBuffer<std::uint16_t> half;
   AlignedBuffer<float> single;

@@ -153,6 +153,17 @@ TEST(Haptic, AUsedWorkspaceGivesTheImpedanceOfANewOne) {
   EXPECT_GT(touched, 30);
 }
 
+TEST(Haptic, NotEstimatedItChangesNothingElse) {
+  World world = ballWorld(kFrame), without = ballWorld(kFrame);
+  without.workspace->skipImpedance();
+  for (int i = 0; i < 120; ++i) world.step(scopeAt(0.13)), without.step(scopeAt(0.13));
+  EXPECT_TRUE(world.workspace->toolImpedance());
+  EXPECT_FALSE(without.workspace->toolImpedance());
+  EXPECT_NE(hash(without.state), hash(world.state)) << "its past is in the state";
+  without.state.impedance = world.state.impedance;
+  EXPECT_EQ(firstDifference(without.state, world.state), "");
+}
+
 TEST(Haptic, ShapeMatchingCannotTell) {
   World world = ballWorld(kFrame, "shape_matching");
   world.run(2, scopeAt(0.13));

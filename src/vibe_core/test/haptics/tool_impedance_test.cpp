@@ -40,7 +40,7 @@ ToolContactRows held(int node) {
 
 class Estimate {
  public:
-  explicit Estimate(ElasticBody of) : body(std::move(of)), motion(body), estimator(body, kFrame) {}
+  explicit Estimate(ElasticBody of) : body(std::move(of)), motion(body), estimator(body, kFrame, RestStiffness(body)) {}
 
   std::optional<ToolImpedance> next(const ToolContactRows& touch) {
     return estimator.update(step++, touch, {motion.x[0].data(), motion.x[1].data(), motion.x[2].data()}, kNoGas, 0,

@@ -15,8 +15,9 @@ namespace {
 constexpr double kRadius = 0.05;
 
 /// A ball with gas on a foundation; with a scope that looks in at the top.
-std::shared_ptr<const Model> ball(double radius = kRadius) {
+std::shared_ptr<const Model> ball(double radius = kRadius, const std::string& tissue = "shape_matching") {
   Scene scene = test::bareScene();
+  scene.tissue.model = tissue;
   scene.seed = 5;
   scene.tissue.mass_damping = 5;
   scene.foundation = FoundationScene{};
@@ -124,6 +125,31 @@ TEST(Simulation, ASnapshotContinuesToTheBit) {
   EXPECT_THROW(other.loadSnapshot(file), Error);
   EXPECT_EQ(other.hash(), before);
   std::remove(file.c_str());
+}
+
+TEST(Simulation, APreparedStateHasTheSameFuture) {
+  const auto model = ball(kRadius, "shell");
+  Simulation a(model), b(model), fresh(model);
+  a.run(60, inputAt);
+  const State state = a.state();
+  std::shared_ptr<const void> prepared = a.prepare();
+  b.run(90, inputAt);
+  for (Simulation* simulation : {&b, &fresh}) {
+    simulation->replaceState(state);
+    simulation->step(inputAt(simulation->time()));
+    EXPECT_EQ(prepared.use_count(), 2) << "it is used";
+    prepared = nullptr;
+    prepared = a.prepare();  // still the same: the simulation keeps what it uses
+    EXPECT_EQ(prepared.use_count(), 2);
+    simulation->run(40, inputAt);
+    EXPECT_EQ(prepared.use_count(), 1) << "until there is another factor";
+  }
+  prepared = nullptr;
+  Simulation without(model);
+  without.replaceState(state);
+  without.run(41, inputAt);
+  EXPECT_EQ(b.hash(), without.hash());
+  EXPECT_EQ(fresh.hash(), without.hash());
 }
 
 TEST(Simulation, AnotherModelTakesOverAtItsBeginning) {

@@ -45,6 +45,7 @@ class SolverWorkspace {
 
   ToolPoses tool;                ///< before Solver::advance() `start` is that of the step
   StageClock* stages = nullptr;  ///< measures the parts of the step; null: nothing is measured
+  bool wants_impedance = true;   ///< false: StepReport::tool_impedance stays empty, State::impedance as it is
 };
 
 /// Advances the tissue by one step under everything that acts on it: its own elasticity, gas, weight, foundation, the
@@ -62,6 +63,12 @@ class Solver {
   /// Changes positions, velocities, orientations, gas and energy account of the state; not its clock, joints or grip.
   virtual void advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state,
                        SolverWorkspace& scratch, ThreadPool& pool, StepReport& report) const = 0;
+
+  /// What a first step from this state takes long to make. As long as the result lives, other workspaces of the model
+  /// need not make it. Null: there is no such thing. Changes no result.
+  virtual std::shared_ptr<const void> prepare(const State& /*state*/, SolverWorkspace& /*scratch*/) const {
+    return nullptr;
+  }
 };
 
 }  // namespace vibe

@@ -28,6 +28,7 @@ struct SimulationSettings {
   std::optional<std::uint64_t> seed;  ///< of the first state; empty: that of the scene
   int threads = 1;                    ///< used inside a step, 1 or more; results do not depend on it
   bool metrics = true;                ///< false: metrics() stays empty; for studies that have no use for them
+  bool impedance = true;              ///< false: toolImpedance() stays empty, and State::impedance as it is
   bool stages = false;                ///< true: stages() says what steps spend their time on
 
   /// One thread, no metrics.
@@ -115,6 +116,10 @@ class Simulation {
 
   /// Back to the initial state.
   void reset(std::optional<std::uint64_t> seed = {});
+  /// For a state that simulations of this model will go back to often: as long as the result lives, the first step
+  /// after replaceState() with it takes as long as any other, where it would take ten times as long. Costs that itself,
+  /// and the memory of a factor. Null: the solver has nothing to prepare.
+  std::shared_ptr<const void> prepare();
   /// Another state of the same model takes over.
   void replaceState(State state);
   /// Another model takes over, at its initial state with its scene's seed.
@@ -140,6 +145,8 @@ class Simulation {
   std::vector<Event> events_;
   StepTimer timer_;
   std::unique_ptr<StageSummary> stages_;
+
+  static std::unique_ptr<Workspace> workspaceFor(const Model& model, const SimulationSettings& settings);
 };
 
 }  // namespace vibe

@@ -37,6 +37,8 @@ class Workspace {
   int threads() const { return pool_.threads(); }
   /// From now on StepReport::stage_times says what a step spends its time on, with the implicit solver.
   void measureStages();
+  /// From now on toolImpedance() stays empty and State::impedance as it is. All else has the same bits.
+  void skipImpedance() { solver_workspace_->wants_impedance = false; }
 
   ThreadPool& threadPool() { return pool_; }
 

@@ -89,6 +89,10 @@ class ImplicitStepper {
 
   std::shared_ptr<StepperWorkspace> makeWorkspace() const;
 
+  /// The factor that a memory names. As long as the result lives, a workspace of this stepper that needs it, such as
+  /// after a return to that memory, has it at once, with the same results. Costs tens of step times.
+  std::shared_ptr<const Factor> shareFactor(const StepperMemory& memory, StepperWorkspace& scratch) const;
+
   /// Names the present positions as those that the factor is about, at once. Costs tens of step times.
   void refactor(const MotionView& motion, StepperMemory& memory) const;
 

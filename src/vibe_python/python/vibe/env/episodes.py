@@ -12,6 +12,7 @@ from .api import spaces
 INSUFFLATE = vibe.BUTTONS.index("insufflate")
 SUCCESS = 10.0  # reward of an episode that succeeds
 FORCE_FREE = 2.0  # force on the tool that costs nothing [N]; largest of the sleeve that docs/accuracy.md measures
+GOALS = 64  # per start, drawn once
 WALL_POINTS = 48  # places of the wall that an observation holds
 
 
@@ -86,8 +87,9 @@ class Task:
             if self.simulation[slot] is not None:
                 self.organ[slot].give(self.simulation[slot])
             self.organ[slot], self.simulation[slot] = organ, organ.take()
-        self.simulation[slot].restore(organ.starts[random.integers(len(organ.starts))])
-        self._draw_goal(slot, organ, random)
+        start = int(random.integers(len(organ.starts)))
+        self.simulation[slot].restore(organ.starts[start])
+        self._set_goal(slot, organ, start, int(random.integers(GOALS)))
         triangles = len(organ.model.triangles)
         self.wall_triangle[slot] = (np.arange(WALL_POINTS) * triangles) // WALL_POINTS
         self.time[slot] = 0
@@ -96,16 +98,23 @@ class Task:
         self.seen = None
         self.begun(slot)
 
-    def _draw_goal(self, slot, organ, random):
-        joints = self.simulation[slot].joints
+    def _set_goal(self, slot, organ, start, number):
+        """One of the goals of a start, which are found when first asked for: that takes ten times as long as a step."""
+        key = (type(self), self.along, self.around, start, number)
+        if key not in organ.goals:
+            organ.goals[key] = self._draw_goal(organ, self.simulation[slot].joints, [21, start, number])
+        place, self.goal_triangle[slot, 0], self.goal_weight[slot, 0] = organ.goals[key]
+        self.place = getattr(self, "place", [None] * self.count)
+        self.place[slot] = place
+
+    def _draw_goal(self, organ, joints, seed):
+        random = np.random.default_rng(seed)
         for _ in range(100):
             place = random.uniform(*self.along), random.uniform(*self.around)
             triangle, weight, position = organ.target(*place)
             if self.reachable(organ.model, position, organ.anatomy.outward(triangle, weight), joints):
                 break
-        self.goal_triangle[slot, 0], self.goal_weight[slot, 0] = triangle, weight
-        self.place = getattr(self, "place", [None] * self.count)
-        self.place[slot] = place
+        return place, triangle, weight
 
     def reachable(self, model, position, outward, joints):
         """Whether the scope can bring its tip there, as far as its joints go."""

@@ -25,6 +25,7 @@ class Organ:
     def __init__(self, shape, scale, particles):
         self.name = f"{shape} {scale:g}"
         self.model = vibe.load(geometry={"particles": particles, "shape": shape, "scale": scale}, render_surface=False)
+        self.goals = {}  # of tasks, by what they are drawn from; see Task
         self._free = []
         self._lock = threading.Lock()
         simulation = self.take()
@@ -39,7 +40,7 @@ class Organ:
         with self._lock:
             if self._free:
                 return self._free.pop()
-        return vibe.Simulation(self.model, metrics=False)
+        return vibe.Simulation(self.model, metrics=False, impedance=False)
 
     def give(self, simulation):
         with self._lock:
@@ -64,7 +65,7 @@ class Organ:
         buttons[0, vibe.BUTTONS.index("insufflate")] = 1
         vibe.step_all([simulation], joints[None], buttons, steps, 1)
         vibe.step_all([simulation], joints[None], buttons, steps // 3, 1)
-        return simulation.snapshot()
+        return simulation.snapshot(prepared=True)
 
     def target(self, along, around):
         """A place of the inside of the wall: triangle, weights (3,), and its position in the first start [m]."""

@@ -1,0 +1,197 @@
+#!/usr/bin/env python3
+"""Baselines for the task Reach of vibe.env, one command each; numpy is enough, demonstrations need python3-h5py:
+
+    learn.py demonstrate reach.hdf5          the expert's episodes on the organs of training
+    learn.py clone reach.hdf5 cloned.npz     a policy that imitates them
+    learn.py evaluate random expert cloned.npz    all of them on 100 seeds and organs that nobody trained on, as a table
+
+Actions are the tip's velocity. evaluate keeps every episode in a file and goes on where it was stopped."""
+
+import argparse
+import hashlib
+import json
+import os
+import sys
+
+import numpy as np
+
+from vibe.env import HELD_OUT, TRAINING, Environment, Expert, demonstrations
+
+INPUTS = ("to_goal", "wrench")
+
+
+class Random:
+    """Uniform actions, by the seed of the episode."""
+
+    def __init__(self, environment):
+        self.space = environment.action_space
+
+    def reset(self, seed):
+        self.random = np.random.default_rng([7, seed])
+
+    def action(self, _):
+        return self.random.uniform(self.space.low, self.space.high).astype(np.float32)
+
+
+class Scripted:
+    def __init__(self, environment):
+        self.expert = Expert(environment)
+
+    def reset(self, _):
+        self.expert.reset()
+
+    def action(self, observation):
+        return self.expert.action(observation)
+
+
+class Cloned:
+    """Two hidden layers of 64 tanh between scaled inputs and the action."""
+
+    def __init__(self, file):
+        with np.load(file) as stored:
+            self.parts = [stored[f"arr_{k}"] for k in range(len(stored.files))]
+
+    def reset(self, _):
+        pass
+
+    def action(self, observation):
+        row = np.concatenate([observation[name] for name in INPUTS])[None].astype(float)
+        return np.clip(forward(self.parts, row)[-1][0], -1, 1).astype(np.float32)
+
+
+def forward(parts, rows):
+    """The values of every layer. parts: mean and scale of the inputs, then weights and offsets of each layer."""
+    values = [(rows - parts[0]) / parts[1]]
+    for k in range(2, len(parts), 2):
+        sums = values[-1] @ parts[k] + parts[k + 1]
+        values.append(np.tanh(sums) if k + 2 < len(parts) else sums)
+    return values
+
+
+def gradients(parts, values, error):
+    """Of half the mean square of `error`, by weights and offsets."""
+    found, slope = [], error / len(error)
+    for k in range(len(parts) - 2, 1, -2):
+        below = values[k // 2 - 1]
+        found = [below.T @ slope, slope.sum(0)] + found
+        slope = (slope @ parts[k].T) * (1 - below**2)
+    return found
+
+
+def fit(rows, wanted, epochs, seed=0, batch=256, rate=1e-3):
+    """Adam (Kingma and Ba 2015) on the mean square error."""
+    random = np.random.default_rng(seed)
+    sizes = [rows.shape[1], 64, 64, wanted.shape[1]]
+    parts = [rows.mean(0), rows.std(0) + 1e-9]
+    for inner, outer in zip(sizes, sizes[1:]):
+        parts += [random.normal(0, inner**-0.5, (inner, outer)), np.zeros(outer)]
+    first, second, step = [0.0] * (len(parts) - 2), [0.0] * (len(parts) - 2), 0
+    for epoch in range(epochs):
+        loss = 0.0
+        for some in np.array_split(random.permutation(len(rows)), max(1, len(rows) // batch)):
+            values = forward(parts, rows[some])
+            error = values[-1] - wanted[some]
+            loss += (error**2).sum() / wanted.size
+            step += 1
+            for k, slope in enumerate(gradients(parts, values, error)):
+                first[k] = 0.9 * first[k] + 0.1 * slope
+                second[k] = 0.999 * second[k] + 0.001 * slope**2
+                parts[k + 2] -= rate * (first[k] / (1 - 0.9**step)) / (np.sqrt(second[k] / (1 - 0.999**step)) + 1e-8)
+        show(f"epoch {epoch + 1} of {epochs}, mean square error {loss:.4f}")
+    return parts
+
+
+def show(text):
+    print(f"\r{text} ", end="", file=sys.stderr, flush=True)
+
+
+def demonstrate(options):
+    environment = Environment("Reach", organs=TRAINING, action="tip")
+    kept, of = demonstrations.record(environment, Expert(environment), options.file, options.episodes, seed=options.seed,
+                                     progress=lambda done, of, kept: show(f"episode {done} of {of}, {kept} succeeded"))
+    print(f"\n{kept} of {of} episodes succeeded and are in {options.file}")
+
+
+def clone(options):
+    import h5py
+    if os.path.exists(options.policy):
+        sys.exit(f"{options.policy} exists and is not overwritten; name another file.")
+    with h5py.File(options.file, "r") as file:
+        demos = list(file["data"].values())
+        rows = np.concatenate([np.hstack([demo["obs"][name] for name in INPUTS]) for demo in demos]).astype(float)
+        wanted = np.concatenate([demo["actions"] for demo in demos]).astype(float)
+    np.savez(options.policy, *fit(rows, wanted, options.epochs))
+    print(f"\n{len(demos)} episodes, {len(rows)} actions: {options.policy}")
+
+
+def evaluate(options):
+    environment = Environment("Reach", organs=HELD_OUT, action="tip")
+    known = {}
+    if os.path.exists(options.episodes):
+        with open(options.episodes) as file:
+            known = {(row["policy"], row["seed"]): row for row in map(json.loads, file)}
+    print("| policy | success | 95 % | time [s] | greatest force [N], median |\n|---|---|---|---|---|")
+    for name in options.policies:
+        if name in ("random", "expert"):
+            policy, key = (Random if name == "random" else Scripted)(environment), name
+        else:
+            policy = Cloned(name)
+            with open(name, "rb") as file:
+                key = hashlib.sha1(file.read()).hexdigest()
+        rows = []
+        for seed in range(options.first, options.first + options.seeds):
+            if (key, seed) not in known:
+                known[key, seed] = {"policy": key, "seed": seed, **episode(environment, policy, seed)}
+                with open(options.episodes, "a") as file:
+                    file.write(json.dumps(known[key, seed]) + "\n")
+            rows.append(known[key, seed])
+            show(f"{name}: {len(rows)} of {options.seeds} episodes")
+        show(f"{'':60}\r")
+        print(table_row(os.path.basename(name), rows), flush=True)
+
+
+def episode(environment, policy, seed):
+    observation, info = environment.reset(seed=seed)
+    policy.reset(seed)
+    over = False
+    while not over:
+        observation, _, terminated, truncated, info = environment.step(policy.action(observation))
+        over = terminated or truncated
+    return {name: info[name] for name in ("is_success", "time", "max_force", "distance", "organ")}
+
+
+def table_row(name, rows):
+    n, share = len(rows), np.mean([row["is_success"] for row in rows])
+    z = 1.96  # interval of Wilson (1927)
+    middle, half = share + z**2 / (2 * n), z * np.sqrt(share * (1 - share) / n + z**2 / (4 * n**2))
+    low, high = max(0.0, middle - half) / (1 + z**2 / n), (middle + half) / (1 + z**2 / n)
+    time = np.median([row["time"] for row in rows])
+    force = np.median([row["max_force"] for row in rows])
+    return f"| {name} | {100 * share:.0f} % | {100 * low:.0f} to {100 * high:.0f} % | {time:.1f} | {force:.1f} |"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(dest="command", required=True)
+    one = commands.add_parser("demonstrate", help="writes the expert's episodes")
+    one.add_argument("file")
+    one.add_argument("--episodes", type=int, default=200)
+    one.add_argument("--seed", type=int, default=10000, help="of the first episode")
+    one.set_defaults(run=demonstrate)
+    one = commands.add_parser("clone", help="trains a policy on demonstrations")
+    one.add_argument("file")
+    one.add_argument("policy")
+    one.add_argument("--epochs", type=int, default=60)
+    one.set_defaults(run=clone)
+    one = commands.add_parser("evaluate", help="prints the table")
+    one.add_argument("policies", nargs="+", metavar="policy", help="random, expert, or a file of clone")
+    one.add_argument("--seeds", type=int, default=100)
+    one.add_argument("--first", type=int, default=0)
+    one.add_argument("--episodes", default="episodes.jsonl", help="file that keeps them (default: %(default)s)")
+    one.set_defaults(run=evaluate)
+    options = parser.parse_args()
+    options.run(options)
+
+
+if __name__ == "__main__":
+    main()

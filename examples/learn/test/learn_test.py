@@ -1,0 +1,70 @@
+"""The policy that is cloned: its gradients, and what it learns; the episodes of an evaluation are kept."""
+
+import json
+import os
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+import learn  # noqa: E402
+
+
+class Cloning(unittest.TestCase):
+    def test_gradients_are_slopes(self):
+        random = np.random.default_rng(1)
+        parts = [np.zeros(3), np.ones(3)] + [random.normal(size=size) for size in ((3, 5), 5, (5, 4), 4, (4, 2), 2)]
+        rows, wanted = random.normal(size=(7, 3)), random.normal(size=(7, 2))
+
+        def loss():
+            return 0.5 * ((learn.forward(parts, rows)[-1] - wanted) ** 2).sum() / len(rows)
+
+        values = learn.forward(parts, rows)
+        for part, slope in zip(parts[2:], learn.gradients(parts, values, values[-1] - wanted)):
+            at = tuple(0 for _ in part.shape)
+            before = loss()
+            part[at] += 1e-6
+            self.assertAlmostEqual((loss() - before) / 1e-6, slope[at], delta=1e-4)
+            part[at] -= 1e-6
+
+    def test_learns_a_function_and_not_from_wrong_pairs(self):
+        random = np.random.default_rng(2)
+        rows = random.uniform(-1, 1, (2000, 2))
+        wanted = np.stack([rows[:, 0] * rows[:, 1], rows[:, 0] ** 2], axis=1)
+        error = []
+        for taught in (wanted, random.permutation(wanted)):
+            parts = learn.fit(rows[:1500], taught[:1500], epochs=15, batch=32, rate=5e-3)
+            error.append(np.sqrt(np.mean((learn.forward(parts, rows[1500:])[-1] - wanted[1500:]) ** 2)))
+        self.assertLess(error[0], 0.05)
+        self.assertGreater(error[1], 0.2)
+
+
+class Evaluation(unittest.TestCase):
+    def test_the_interval_contains_the_share(self):
+        rows = [{"is_success": k < 9, "time": 1.0, "max_force": 2.0} for k in range(10)]
+        self.assertEqual(learn.table_row("x", rows), "| x | 90 % | 60 to 98 % | 1.0 | 2.0 |")
+
+    def test_episodes_that_are_known_are_not_run_again(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "episodes.jsonl")
+            with open(file, "w") as out:
+                for seed in range(3):
+                    out.write(json.dumps({"policy": "random", "seed": seed, "is_success": False, "time": 10.0,
+                                          "max_force": 1.0}) + "\n")
+            run = learn.episode
+            learn.episode = None  # cannot be called
+            try:
+                options = ["learn.py", "evaluate", "random", "--seeds", "3", "--episodes", file]
+                sys.argv, before = options, sys.argv
+                learn.main()
+                with self.assertRaises(TypeError):
+                    sys.argv = options[:4] + ["4"] + options[5:]
+                    learn.main()
+            finally:
+                learn.episode, sys.argv = run, before
+
+
+if __name__ == "__main__":
+    unittest.main()
