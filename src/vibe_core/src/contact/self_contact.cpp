@@ -97,7 +97,7 @@ void SelfContact::detect(const NodeVectors& x, const NodeVectors& v, double reac
   for (std::size_t k = 0; k < 3; ++k) std::copy(x[k], x[k] + thickness_.size(), memory_->start[k].begin());
   const SelfContactSearch::NodeVectors at = SelfContactMemory::view(memory_->start);
   found_ = memory_->search.adapt(at, at, searchDistance());
-  speeds_matter_ = found_ && !(memory_->search.near().empty() && memory_->search.meetings().empty());
+  speeds_matter_ = found_ && !memory_->search.near().empty();
   if (!speeds_matter_) return;
   for (std::size_t k = 0; k < 3; ++k) std::copy(v[k], v[k] + thickness_.size(), memory_->speed[k].begin());
   addPairs();
@@ -151,9 +151,7 @@ void SelfContact::addPair(int vertex, int triangle, double facing) {
 
 void SelfContact::addClosePairs() {
   SelfContactMemory& m = *memory_;
-  const double least = kFloor * min_thickness_;
-  for (const ClosePoints& close : m.close.find(m.facing, m.search.meetings(), m.start, kFound * max_thickness_, least))
-    addClosePair(close);
+  for (const ClosePoints& close : m.close.find(m.facing, m.start, kFound * max_thickness_)) addClosePair(close);
 }
 
 // What is nearer than a triangle's foot on one side of a vertex may be elsewhere: edges that cross, further triangles.
@@ -173,7 +171,6 @@ void SelfContact::addClosePair(const ClosePoints& close) {
   pair.away = close.away;
   const double apart_at_rest = close.in_wall ? kFolded : 1 / (1 + kContactOnset);
   pair.thickness = std::min(kCore * thickness, apart_at_rest * at_rest.norm());
-  if (close.late) pair.thickness = std::min(pair.thickness, kFloor * min_thickness_ / (1 + kContactOnset));
   pair.straight_below = kFloor / kCore;
   pair.stiffness = 0.5 * close.share * area / kSoftness * stiffness_ * pair.thickness;
   finish(pair);

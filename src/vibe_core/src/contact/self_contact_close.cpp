@@ -1,8 +1,6 @@
 #include "contact/self_contact_close.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <queue>
@@ -84,7 +82,7 @@ constexpr double kEqual = 1 - 1e-9;  // ratio of two squared distances that are 
 
 // The same place has other roundings as the foot in another triangle.
 bool isBefore(const ClosePoints& a, const ClosePoints& b) {
-  return std::tie(a.split, a.node, a.late, a.weight) < std::tie(b.split, b.node, b.late, b.weight);
+  return std::tie(a.split, a.node, a.weight) < std::tie(b.split, b.node, b.weight);
 }
 
 bool isSame(const ClosePoints& a, const ClosePoints& b) {
@@ -128,52 +126,20 @@ void SelfContactClose::listEdges() {
 }
 
 const std::vector<ClosePoints>& SelfContactClose::find(const std::vector<Facing>& facing,
-                                                       const std::vector<Meeting>& meetings,
-                                                       const std::array<std::vector<double>, 3>& at, double distance,
-                                                       double least) {
+                                                       const std::array<std::vector<double>, 3>& at, double distance) {
   at_ = &at;
-  places_.clear();
   distance_ = distance;
-  if (!facing.empty()) findFacing(facing);
-  const std::size_t facing_places = places_.size();
-  distance_ = least;
-  findMeetings(meetings);
-  for (std::size_t k = facing_places; k < places_.size(); ++k) places_[k].late = true;
+  places_.clear();
+  if (facing.empty()) return places_;
+  listFacing(facing);
+  for (std::vector<int>* marks : {&triangle_mark_, &vertex_mark_, &edge_mark_})
+    std::fill(marks->begin(), marks->end(), kNone);
+  for (std::size_t t = 0; t < triangles_.size(); ++t) findAt(static_cast<int>(t));
   std::sort(places_.begin(), places_.end(), isBefore);
   places_.erase(std::unique(places_.begin(), places_.end(), isSame), places_.end());
   places_.erase(std::remove_if(places_.begin(), places_.end(), [this](const ClosePoints& p) { return !isNearest(p); }),
                 places_.end());
   return places_;
-}
-
-void SelfContactClose::findFacing(const std::vector<Facing>& facing) {
-  listFacing(facing);
-  for (std::vector<int>* marks : {&triangle_mark_, &vertex_mark_, &edge_mark_})
-    std::fill(marks->begin(), marks->end(), kNone);
-  for (std::size_t t = 0; t < triangles_.size(); ++t) findAt(static_cast<int>(t));
-}
-
-// The marks keep each triangle from looking at a vertex or an edge of others twice; pairs come in no order.
-void SelfContactClose::findMeetings(const std::vector<Meeting>& meetings) {
-  for (const auto& [one, other] : meetings) {
-    setBox(one);
-    if (isFar(other) || !areFolded(one, other)) continue;
-    for (const auto& [triangle, opposite] : {Meeting{one, other}, Meeting{other, one}}) {
-      for (const int v : triangles_[opposite]) vertex_mark_[v] = kNone;
-      for (const int e : edge_of_[opposite]) edge_mark_[e] = kNone;
-      addVertices(triangle, opposite);
-      addEdges(triangle, opposite);
-    }
-  }
-}
-
-// What the search leaves out must not depend on its history: it finds all pairs whose normals differ that much.
-bool SelfContactClose::areFolded(int one, int other) const {
-  const auto normal = [this](const std::array<int, 3>& n) {
-    return Eigen::Vector3d((at(n[1]) - at(n[0])).cross(at(n[2]) - at(n[0])));
-  };
-  const Eigen::Vector3d a = normal(triangles_[one]), b = normal(triangles_[other]);
-  return a.dot(b) < kFoldedCosine * std::sqrt(a.squaredNorm() * b.squaredNorm());
 }
 
 void SelfContactClose::listFacing(const std::vector<Facing>& facing) {
@@ -195,18 +161,13 @@ void SelfContactClose::findAt(int triangle) {
   const auto& n = triangles_[triangle];
   const bool faces = std::any_of(n.begin(), n.end(), [&](int v) { return of_vertex_[v] < of_vertex_[v + 1]; });
   if (!faces && of_triangle_[triangle] == of_triangle_[triangle + 1]) return;
-  setBox(triangle);
+  const Eigen::Vector3d a = at(n[0]), b = at(n[1]), c = at(n[2]);
+  low_ = a.cwiseMin(b).cwiseMin(c).array() - distance_;
+  high_ = a.cwiseMax(b).cwiseMax(c).array() + distance_;
   for (int i = of_triangle_[triangle]; i < of_triangle_[triangle + 1]; ++i)
     rings_.visit(facing_vertex_[i], [&](int other) { meet(triangle, other); });
   for (const int v : n)
     for (int i = of_vertex_[v]; i < of_vertex_[v + 1]; ++i) meet(triangle, facing_triangle_[i]);
-}
-
-void SelfContactClose::setBox(int triangle) {
-  const auto& n = triangles_[triangle];
-  const Eigen::Vector3d a = at(n[0]), b = at(n[1]), c = at(n[2]);
-  low_ = a.cwiseMin(b).cwiseMin(c).array() - distance_;
-  high_ = a.cwiseMax(b).cwiseMax(c).array() + distance_;
 }
 
 void SelfContactClose::meet(int triangle, int other) {

@@ -11,10 +11,6 @@
 
 namespace vibe {
 
-/// Cosine between the normals of two triangles of a sharp fold, at most. SelfContactSearch::meetings() has all of them.
-/// Design choice: 107 degrees [1].
-constexpr double kFoldedCosine = -0.3;
-
 /// Says which vertices of a surface are so near along it that they belong to the same wall.
 class SurfaceWalls {
  public:
@@ -63,7 +59,6 @@ struct ClosePoints {
   Eigen::Vector3d away;          ///< from the second to the first [m]
   double share;                  ///< 1; of edges: square of the sine of the angle between them [1]
   bool in_wall;                  ///< on one wall, which is folded there
-  bool late = false;             ///< found only because it is nearer than the minimum distance of paths
 };
 
 /// Finds the places at which two walls, or parts of a folded one, are nearer than a distance, which are those that may
@@ -74,7 +69,6 @@ class SelfContactClose {
   struct Facing {
     int vertex, triangle;
   };
-  using Meeting = std::array<int, 2>;  ///< two triangles
 
   /// All outlive this.
   SelfContactClose(const std::vector<std::array<int, 3>>& triangles, const VertexTriangles& rings,
@@ -82,28 +76,21 @@ class SelfContactClose {
 
   /// @param facing    the triangles around the vertex may be nearer to the triangle than the distance; ascending by
   ///                  vertex
-  /// @param meetings  all triangles without a common edge that are nearer to each other than the least distance and
-  ///                  whose normals have a cosine below kFoldedCosine, also of one wall; may have more
   /// @param at        positions [m]
-  /// @param distance  of places on walls that face each other [m]
-  /// @param least     of places where triangles meet; below the former [m]
+  /// @param distance  [m]
   /// @returns each place once, ascending by node
-  const std::vector<ClosePoints>& find(const std::vector<Facing>& facing, const std::vector<Meeting>& meetings,
-                                       const std::array<std::vector<double>, 3>& at, double distance, double least);
+  const std::vector<ClosePoints>& find(const std::vector<Facing>& facing, const std::array<std::vector<double>, 3>& at,
+                                       double distance);
 
  private:
   using Edge = std::array<int, 2>;  // nodes, ascending
 
   void listEdges();
   void listFacing(const std::vector<Facing>& facing);
-  void findFacing(const std::vector<Facing>& facing);
-  void findMeetings(const std::vector<Meeting>& meetings);
   void findAt(int triangle);
-  void setBox(int triangle);
   void meet(int triangle, int other);
   Eigen::Vector3d at(int node) const { return {(*at_)[0][node], (*at_)[1][node], (*at_)[2][node]}; }
   bool isFar(int triangle) const;
-  bool areFolded(int one, int other) const;
   void addVertices(int triangle, int other);
   void addEdges(int triangle, int other);
   void addEdgePair(const Edge& one, const Edge& other);

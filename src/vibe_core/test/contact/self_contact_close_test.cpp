@@ -53,13 +53,13 @@ TEST(SelfContactClose, FindsEachPlaceOnce) {
     for (std::size_t k = 0; k < 3; ++k) at[k].push_back(p[static_cast<Eigen::Index>(k)]);
   SelfContactClose close(rest.triangles, rings, walls);
   const std::vector<SelfContactClose::Facing> all = {{0, 2}, {0, 3}, {1, 2}, {1, 3}};  // each ridge with both roofs
-  ASSERT_EQ(close.find(all, {}, at, 1e-3, 1e-4).size(), 1U);
-  const ClosePoints place = close.find(all, {}, at, 1e-3, 1e-4)[0];
+  ASSERT_EQ(close.find(all, at, 1e-3).size(), 1U);
+  const ClosePoints place = close.find(all, at, 1e-3)[0];
   EXPECT_EQ(place.node, (std::array<int, 4>{0, 1, 4, 5}));
   EXPECT_NEAR(place.away.norm(), 0.5e-3, 1e-12);
   EXPECT_NEAR(place.share, 1, 1e-12);
   for (const double weight : place.weight) EXPECT_NEAR(std::abs(weight), 0.5, 1e-12);
-  EXPECT_TRUE(close.find(all, {}, at, 0.4e-3, 1e-4).empty());
+  EXPECT_TRUE(close.find(all, at, 0.4e-3).empty());
 }
 
 using Places = std::set<std::pair<int, std::array<int, 4>>>;  // by split and nodes
@@ -96,64 +96,6 @@ Places placesByTrial(const SurfaceMesh& mesh, const std::array<std::vector<doubl
   return places;
 }
 
-// Triangles of one wall, which face nothing else.
-TEST(SelfContactClose, WhereTrianglesOfAFoldMeetPlacesAreThoseOfTrial) {
-  constexpr double kLeast = 1e-3;
-  const SurfaceMesh mesh = sphere(0.01, 4);
-  const VertexTriangles rings(mesh.triangles, mesh.vertices.size());
-  const SurfaceWalls walls(mesh, 1);  // all of it is one wall
-  SelfContactClose close(mesh.triangles, rings, walls);
-  std::vector<SelfContactClose::Meeting> all;
-  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
-    for (int u = 0; u < t; ++u) all.push_back({u, t});
-  std::mt19937 random(4);
-  std::uniform_real_distribution<double> uniform(-4e-3, 4e-3);
-  std::array<std::vector<double>, 3> at;
-  for (const Eigen::Vector3d& p : mesh.vertices)
-    for (Eigen::Index k = 0; k < 3; ++k) at[static_cast<std::size_t>(k)].push_back(p[k] + uniform(random));
-  const std::vector<ClosePoints>& places = close.find({}, all, at, 2 * kLeast, kLeast);
-  EXPECT_TRUE(std::all_of(places.begin(), places.end(), [](const ClosePoints& p) { return p.late && p.in_wall; }));
-  Places found = placesOf(places);
-  for (auto place = found.begin(); place != found.end();)
-    place = place->first == 1 && place->second[3] < 0 ? found.erase(place) : std::next(place);
-  const Places expected = placesByTrial(mesh, at, kLeast);
-  EXPECT_GT(found.size(), 20U);
-  EXPECT_LT(found.size(), expected.size()) << "those of triangles whose normals agree are not there";
-  EXPECT_TRUE(std::includes(expected.begin(), expected.end(), found.begin(), found.end()));
-  EXPECT_TRUE(close.find({}, {}, at, 2 * kLeast, kLeast).empty());
-}
-
-/// Six triangles around a vertex, half of them folded over upon the other half.
-SurfaceMesh fan() {
-  constexpr double kEdge = 10e-3;
-  SurfaceMesh mesh;
-  mesh.vertices.emplace_back(0, 0, 0);
-  for (int k = 0; k < 6; ++k)
-    mesh.vertices.emplace_back(kEdge * std::cos(k * M_PI / 3), kEdge * std::sin(k * M_PI / 3), 0);
-  for (int k = 0; k < 6; ++k) mesh.triangles.push_back({0, 1 + k, 1 + (k + 1) % 6});
-  return mesh;
-}
-
-// All of it is one wall, within two edges: without a force each step would pass through the fold and be stopped.
-TEST(SelfContactClose, AFoldOfOneWallThatMeetsItselfPushesApart) {
-  ContactWorld world(fan());
-  const auto force = [&](double gap) {
-    for (std::size_t k = 2; k < 4; ++k) {  // turned about the x axis, and drawn in
-      const Eigen::Vector3d& p = world.rest.vertices[k];
-      world.set(k, {0.8 * p.x(), -0.8 * p.y(), gap});
-    }
-    world.detect(0.5e-3);
-    world.evaluate();
-    return world.totalForce(2, 4).z();
-  };
-  const double least = 0.05 * kWallThickness;
-  const double near = force(0.4 * least), far = force(0.8 * least);
-  EXPECT_GT(far, 0);
-  EXPECT_GT(near, 2 * far) << "it grows as the fold closes";
-  EXPECT_LT(force(0.99 * least), 0.1 * far) << "and begins";
-  EXPECT_EQ(force(1.01 * least), 0) << "at the minimum distance";
-}
-
 // Of the feet on edges and vertices only those that are local minima count; the others must be all there.
 TEST(SelfContactClose, FindsWhatTrialFindsInACrumpledBall) {
   constexpr double kDistance = 2e-3;
@@ -169,7 +111,7 @@ TEST(SelfContactClose, FindsWhatTrialFindsInACrumpledBall) {
   std::array<std::vector<double>, 3> at;
   for (const Eigen::Vector3d& p : mesh.vertices)
     for (Eigen::Index k = 0; k < 3; ++k) at[static_cast<std::size_t>(k)].push_back(p[k] + uniform(random));
-  Places found = placesOf(close.find(all, {}, at, kDistance, 0.1 * kDistance));
+  Places found = placesOf(close.find(all, at, kDistance));
   const Places expected = placesByTrial(mesh, at, kDistance);
   for (auto place = found.begin(); place != found.end();)
     place = place->first == 1 && place->second[3] < 0 ? found.erase(place) : std::next(place);
