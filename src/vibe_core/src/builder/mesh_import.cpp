@@ -49,8 +49,8 @@ std::string unitAdvice(double size) {
     return unlikeliness(a) < unlikeliness(b);
   });
   if (!plausible(size * best->metres))
-    return "no usual unit makes that an organ of 0.05 to 1 m, so give geometry.target_volume";
-  return "give geometry.unit, perhaps '1 " + best->name + "', with which it is " + number(size * best->metres) +
+    return "no usual unit makes that an organ of 0.05 to 1 m, so state its target_volume";
+  return "state its unit, perhaps 'unit: 1 " + best->name + "', with which it is " + number(size * best->metres) +
          " m large";
 }
 
@@ -75,8 +75,8 @@ double findScale(const GeometryScene& geometry, const SurfaceMesh& mesh) {
   }
   const double unit = geometry.unit == 0.0 ? 1.0 : geometry.unit;
   if (unit > 0.0 && plausible(size * unit)) return unit;
-  throw Error(geometry.file + " is " + number(size) + " units large, which with geometry.unit " + number(unit) +
-              (geometry.unit == 0.0 ? " (metres, as glTF prescribes)" : "") + " is no organ of 0.05 to 1 m; " +
+  throw Error(geometry.file + " is " + number(size) + " units large, which with a unit of " + number(unit) + " m" +
+              (geometry.unit == 0.0 ? ", as glTF prescribes," : "") + " is no organ of 0.05 to 1 m; " +
               unitAdvice(size));
 }
 
