@@ -186,6 +186,13 @@ TEST(MeshImport, namesTheMissingLandmarks) {
   expectRejected(geometry, "missing: geometry.fundus, geometry.pylorus;");
 }
 
+TEST(MeshImport, refusesTwoLandmarksInOnePlace) {
+  const TemporaryFolder folder;
+  GeometryScene geometry = eggScene(folder.write("mesh.obj", test::toObj(makeEgg())));
+  geometry.fundus = geometry.oesophagus;
+  expectRejected(geometry, "The landmarks 'oesophagus' and 'fundus' are 0 mm apart");
+}
+
 TEST(MeshImport, saysWhatIsWrongWithTheFile) {
   const TemporaryFolder folder;
   expectRejected(eggScene(""), "geometry.file is missing");
