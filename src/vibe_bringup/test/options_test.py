@@ -128,7 +128,10 @@ class Run(OptionsTest):
             ("not '0.0'", "--duration 0.0"),
             ("--drive: nobody is called 'walk'; choose one of trainee device", "--drive walk"),
             ("'left' is not known; write script:FILE", "--drive emulator --hand left"),
-            ("cannot write to '/proc/session'", "--output /proc/session"),
+            ("cannot write to '/proc/session' (", "--output /proc/session"),
+            ("file.yaml' (it is a file); give a folder", "--output file.yaml"),
+            ("--scene: '.' is a folder, not a file", "--scene ."),
+            ("no file 'nobody', and vibe_core has no trainee of that name; it has expert, first", "--script nobody"),
             ("unknown option 'foo'", "foo"),
         ):
             self.refuses(sentence, "run", *words.split())
@@ -181,6 +184,7 @@ class OthersTest(OptionsTest):
         for name in ("replay", "dataset"):
             self.refuses("which recording?", name)
             self.refuses("there is no file 'no.bag'", name, "no.bag")
+            self.refuses("'.' is a folder, not a file", name, ".")
         self.refuses("one recording at a time, not 'b' as well", "dataset", "file.yaml", "--to", "3", "b")
         self.refuses("there is no file 'b'", "replay", "file.yaml", "--to", "3", "b")
         arguments = self.accepts("replay", "--from", "0", "file.yaml", "--to", "3")

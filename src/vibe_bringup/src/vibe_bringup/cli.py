@@ -7,6 +7,7 @@ workspace that it needs.
 """
 
 import argparse
+import errno
 import importlib
 import os
 import re
@@ -70,23 +71,31 @@ class Parser(argparse.ArgumentParser):
         made = places.missing_folders(folder)
         try:
             os.makedirs(folder, exist_ok=True)
-            writable = os.access(folder, os.W_OK)
-        except OSError:
-            writable = False
+            reason = "" if os.access(folder, os.W_OK) else os.strerror(errno.EACCES)
+        except FileExistsError:
+            reason = "it is a file"
+        except OSError as error:
+            reason = error.strerror
         places.remove_empty(made)
-        if not writable:
-            self.error("--output: cannot write to '{}'; give a folder that you may write to".format(folder))
+        if reason:
+            words = "--output: cannot write to '{}' ({}); give a folder that you may write to"
+            self.error(words.format(folder, reason))
         return folder
 
 
 # --- types of values
 
 
+def no_file(text, path):
+    """Why a path is not that of a file, in the words of who called."""
+    return ("'{}' is a folder, not a file" if os.path.isdir(path) else "there is no file '{}'").format(text)
+
+
 def file(text):
     """The absolute path of a file that is there; it may be given as package://PACKAGE/PATH."""
     path = places.find(text)
     if not os.path.isfile(path):
-        raise argparse.ArgumentTypeError("there is no file '{}'".format(text))
+        raise argparse.ArgumentTypeError(no_file(text, path))
     if not os.access(path, os.R_OK):
         raise argparse.ArgumentTypeError("'{}' cannot be read".format(text))
     return os.path.realpath(path)
@@ -129,7 +138,7 @@ def recording(parser, arguments):
     if not arguments.bags:
         parser.error("which recording?")
     if not os.path.isfile(arguments.bags[0]):
-        parser.error("there is no file '{}'".format(arguments.bags[0]))
+        parser.error(no_file(arguments.bags[0], arguments.bags[0]))
     return os.path.realpath(arguments.bags[0])
 
 
@@ -139,7 +148,7 @@ def recordings(parser, arguments):
         parser.error("which recording?")
     for bag in arguments.bags:
         if not os.path.isfile(bag):
-            parser.error("there is no file '{}'".format(bag))
+            parser.error(no_file(bag, bag))
     return [os.path.realpath(bag) for bag in arguments.bags]
 
 

@@ -77,7 +77,7 @@ def parse(words):
     check_mode(arguments, made.error)
     output = arguments.output or places.output_folder("sessions/latency-" + cli.time_stamp())
     if os.path.exists(output):
-        made.error("--output: '{}' is there already".format(output))
+        made.error("--output: '{}' is there already; give another path".format(output))
     arguments.output = made.check_output(output)
     return arguments
 

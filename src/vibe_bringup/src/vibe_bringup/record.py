@@ -21,7 +21,7 @@ def parse(words):
     arguments.free_name = not arguments.output  # another recorder may begin in the same second
     arguments.output = arguments.output or places.output_folder("sessions/{}.bag".format(cli.time_stamp()))
     if not arguments.free_name and os.path.exists(arguments.output):
-        made.error("--output: '{}' is there already".format(arguments.output))
+        made.error("--output: '{}' is there already; give another path".format(arguments.output))
     made.check_output(os.path.dirname(arguments.output) or ".")
     return arguments
 
@@ -29,7 +29,7 @@ def parse(words):
 def run(arguments):
     if subprocess.run(["rosparam", "get", "/run_id"], capture_output=True, check=False).returncode != 0:
         uri = os.environ.get("ROS_MASTER_URI", "http://localhost:11311")
-        print("record: no ROS master answers at {}; start one or set ROS_MASTER_URI".format(uri), file=sys.stderr)
+        print("record: no ROS master answers at {}; start one, or set ROS_MASTER_URI to that of yours (http://HOST:PORT)".format(uri), file=sys.stderr)
         return 1
     os.makedirs(os.path.dirname(arguments.output) or ".", exist_ok=True)
     command = ["rosrun", "vibe_sim", "vibe_record", *cli.words_of(arguments, "all", "free_name"), arguments.output]

@@ -15,7 +15,7 @@ be checked, or not all of it."""
 
 def new_file(text):
     if os.path.exists(text):
-        raise argparse.ArgumentTypeError("'{}' is there already".format(text))
+        raise argparse.ArgumentTypeError("'{}' is there already; give another path".format(text))
     return os.path.realpath(text)
 
 

@@ -35,7 +35,20 @@ def trainee(text):
             path = places.find("package://vibe_core/{}/{}.yaml".format(folder, text))
             if os.path.isfile(path):
                 return path
+        if not os.path.exists(text):
+            raise argparse.ArgumentTypeError(
+                "there is no file '{}', and vibe_core has no trainee of that name; it has {}".format(text, known_trainees())
+            )
     return cli.file(text)
+
+
+def known_trainees():
+    """The names of the shipped trainees."""
+    names = []
+    for folder in ("trainees", "trainees/demo"):
+        path = places.find("package://vibe_core/" + folder)
+        names += sorted(name[:-5] for name in os.listdir(path) if name.endswith(".yaml")) if os.path.isdir(path) else []
+    return ", ".join(names) or "none"
 
 
 def hand(text):

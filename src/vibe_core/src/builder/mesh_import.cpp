@@ -21,6 +21,7 @@ namespace {
 
 constexpr double kSmallestOrgan = 0.05;  // [m] largest side of the bounding box
 constexpr double kLargestOrgan = 1.0;    // [m]
+constexpr double kSamePlace = 1e-3;      // [m] between two landmarks
 constexpr double kTypicalOrgan = 0.25;   // [m]
 
 double largestSide(const SurfaceMesh& mesh) {
@@ -49,8 +50,8 @@ std::string unitAdvice(double size) {
     return unlikeliness(a) < unlikeliness(b);
   });
   if (!plausible(size * best->metres))
-    return "no usual unit makes that an organ of 0.05 to 1 m, so give geometry.target_volume";
-  return "give geometry.unit, perhaps '1 " + best->name + "', with which it is " + number(size * best->metres) +
+    return "no usual unit makes that an organ of 0.05 to 1 m, so state its target_volume";
+  return "state its unit, perhaps 'unit: 1 " + best->name + "', with which it is " + number(size * best->metres) +
          " m large";
 }
 
@@ -75,8 +76,8 @@ double findScale(const GeometryScene& geometry, const SurfaceMesh& mesh) {
   }
   const double unit = geometry.unit == 0.0 ? 1.0 : geometry.unit;
   if (unit > 0.0 && plausible(size * unit)) return unit;
-  throw Error(geometry.file + " is " + number(size) + " units large, which with geometry.unit " + number(unit) +
-              (geometry.unit == 0.0 ? " (metres, as glTF prescribes)" : "") + " is no organ of 0.05 to 1 m; " +
+  throw Error(geometry.file + " is " + number(size) + " units large, which with a unit of " + number(unit) + " m" +
+              (geometry.unit == 0.0 ? ", as glTF prescribes," : "") + " is no organ of 0.05 to 1 m; " +
               unitAdvice(size));
 }
 
@@ -92,6 +93,21 @@ void checkLandmarks(const GeometryScene& geometry) {
   if (missing.empty()) return;
   throw Error("landmarks of " + geometry.file + " are missing: " + missing +
               "; read them off in a mesh viewer as [x, y, z] in the frame and unit of the file");
+}
+
+/// Two names of one place are a mistake, and regions follow from them.
+void checkApart(const Landmarks& landmarks, const std::string& file) {
+  const std::array<std::pair<const char*, Eigen::Vector3d>, 4> named{{{"oesophagus", landmarks.oesophagus},
+                                                                      {"fundus", landmarks.fundus},
+                                                                      {"incisura", landmarks.incisura},
+                                                                      {"pylorus", landmarks.pylorus}}};
+  for (std::size_t a = 0; a < named.size(); ++a)
+    for (std::size_t b = a + 1; b < named.size(); ++b) {
+      const double distance = (named[a].second - named[b].second).norm();
+      if (!(distance < kSamePlace)) continue;
+      throw Error(file + ": The landmarks '" + named[a].first + "' and '" + named[b].first + "' are " +
+                  number(distance * 1e3) + " mm apart, which is one place; state the place of each.");
+    }
 }
 
 }  // namespace
@@ -111,6 +127,7 @@ ImportedMesh importMesh(const GeometryScene& geometry) {
   result.landmarks.fundus = map * *geometry.fundus;
   result.landmarks.incisura = map * *geometry.incisura;
   result.landmarks.pylorus = map * *geometry.pylorus;
+  checkApart(result.landmarks, geometry.file);
   return result;
 }
 

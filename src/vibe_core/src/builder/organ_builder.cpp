@@ -152,7 +152,11 @@ Organ buildImported(const Scene& scene, const Progress& progress) {
   markPatch(organ, organ.entry, kOesophagusRadius, End::Oesophagus);
   markPatch(organ, tree.closest(organ.landmarks.pylorus).point, kPylorusRadius, End::Duodenum);
   transform(organ, 1.0, -centroid(organ.surface));
-  labelStomach(organ);
+  try {
+    labelStomach(organ);
+  } catch (const Error& error) {
+    throw Error(geometry.file + ": " + error.what());
+  }
   return organ;
 }
 

@@ -1,4 +1,4 @@
-#include "common/foreign_content.hpp"
+#include "vibe_core/common/foreign_content.hpp"
 
 #include <array>
 #include <cctype>

@@ -205,6 +205,8 @@ class GltfReader {
     try {
       root_ = Json::parse(parts.json.begin(), parts.json.end());
     } catch (const Json::parse_error& error) {
+      if (error.byte > parts.json.size())
+        throw Error("ends within its JSON; it may have been cut off while it was written or copied");
       failGltf("its JSON cannot be understood at byte " + std::to_string(error.byte));
     }
     if (!root_.is_object()) failGltf("its JSON is not an object");
@@ -218,6 +220,8 @@ class GltfReader {
         throw Error("requires the extension " + shown(name) + ", which is not supported; export it without");
     }
     readNodes();
+    if (!shows_mesh_)
+      throw Error("shows no mesh: no node of the scene that is shown has one; export the scene with the surface");
     return std::move(mesh_);
   }
 
@@ -311,6 +315,7 @@ class GltfReader {
 
   void addMesh(std::uint64_t index, const Json& node, const Eigen::Matrix4d& transform) {
     const Json& mesh = item("meshes", index);
+    shows_mesh_ = true;
     const Json& weights = node.find("weights") != node.end() ? listIn(node, "weights") : listIn(mesh, "weights");
     int number = 0;
     for (const Json& primitive : listIn(mesh, "primitives")) {
@@ -489,6 +494,7 @@ class GltfReader {
   Json root_;
   std::map<std::uint64_t, std::string> buffers_;
   SurfaceMesh mesh_;
+  bool shows_mesh_ = false;
 };
 
 }  // namespace

@@ -87,8 +87,7 @@ class Reading {
     for (int v = 0; v < static_cast<int>(width.size()); ++v)
       if (width[v] > kWide * size && (best < 0 || mesh.vertices[v].z() > mesh.vertices[best].z())) best = v;
     if (best < 0)
-      throw Error(
-          "The surface is not like a stomach, it is wide nowhere, so its landmarks cannot be guessed; state them.");
+      throw Error("The surface is not like a stomach: it is wide nowhere, so its landmarks cannot be guessed.");
     return best;
   }
   // among places equally far, a narrow one
@@ -232,8 +231,7 @@ LandmarkEstimate estimateLandmarks(const SurfaceMesh& surface) {
   for (const Mark& mark : marks)
     if (mark.value < estimate.confidence) estimate.confidence = mark.value, estimate.doubt = mark.doubt;
   if (estimate.confidence <= 0)
-    throw Error("The surface is not like a stomach, " + estimate.doubt +
-                ", so its landmarks cannot be guessed; state them.");
+    throw Error("The surface is not like a stomach: " + estimate.doubt + ", so its landmarks cannot be guessed.");
   return estimate;
 }
 

@@ -14,11 +14,11 @@
 
 #include <Eigen/Geometry>
 
-#include "common/foreign_content.hpp"
 #include "geometry/mesh_readers.hpp"
 #include "geometry/surface_check.hpp"
 #include "geometry/text_lines.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/foreign_content.hpp"
 
 namespace vibe {
 

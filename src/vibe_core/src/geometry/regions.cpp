@@ -31,9 +31,9 @@ int landmarkVertex(const SurfaceMesh& mesh, const Eigen::Vector3d& p, const char
   const int v = nearestVertex(mesh, p);
   const double distance = (mesh.vertices[v] - p).norm();
   if (!(distance <= kFarthestLandmark)) {
-    throw Error("geometry." + std::string(name) + " is " +
+    throw Error("The landmark '" + std::string(name) + "' is " +
                 std::to_string(static_cast<int>(std::min(1e9, distance * 1e3))) +
-                " mm away from the surface; give it in the frame and the unit of the mesh file");
+                " mm away from the surface; state it in the axes and the unit of the surface file.");
   }
   return v;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <iterator>
@@ -18,7 +19,9 @@ namespace vibe {
 
 namespace {
 
-constexpr double kFlattest = 1e-9;   // height of a triangle over its longest edge
+constexpr double kFlattest = 1e-9;  // height of a triangle over its longest edge
+constexpr double kThinnest =
+    1e-6;  // volume over the cube of the largest side; 1e-4 for a tube 100 times as long as wide
 constexpr double kFarthest = 1e100;  // coordinates beyond have volumes that are not finite, in any unit
 
 /// A side of a triangle, under its undirected edge.
@@ -219,6 +222,19 @@ void checkCrossings(const SurfaceMesh& mesh, const std::string& name) {
               " cross near " + place(mesh.vertices[mesh.triangles[a][0]]) + "; move the sheets apart");
 }
 
+/// A surface without thickness is closed, and two sheets that coincide do not cross.
+void checkVolume(const SurfaceMesh& mesh, const std::string& name) {
+  Eigen::AlignedBox3d box;
+  for (const auto& t : mesh.triangles)
+    for (const int v : t) box.extend(mesh.vertices[v]);
+  const double side = box.sizes().maxCoeff(), volume = std::abs(enclosedVolume(mesh));
+  if (volume > kThinnest * side * side * side) return;
+  char sizes[96];
+  std::snprintf(sizes, sizeof sizes, "%.3g cubic units, with a largest side of %.4g units", volume, side);
+  throw Error(name + " encloses next to nothing, " + sizes +
+              "; it may have been flattened, as by a scale of 0: give it its thickness back");
+}
+
 }  // namespace
 
 void checkNumbers(const SurfaceMesh& mesh, const std::string& name) {
@@ -256,6 +272,7 @@ void checkSurface(const SurfaceMesh& mesh, const std::string& name) {
   checkOnePart(mesh, name);
   checkHandles(mesh, sides, name);
   checkCrossings(mesh, name);
+  checkVolume(mesh, name);
 }
 
 bool orientOutwards(SurfaceMesh& mesh) {

@@ -147,6 +147,16 @@ std::array<double, 3> guessedRotation(const std::string& mesh_file) {
   return rotationOf(statedAxes(mesh_file).value_or(PatientAxes::Lps));
 }
 
+/// @throws Error that names the file and says where to state the landmarks
+LandmarkEstimate landmarksOf(const SurfaceMesh& surface, const std::string& mesh_file) {
+  try {
+    return estimateLandmarks(remeshSurface(surface, kGuessVertices, nullptr, {}));
+  } catch (const Error& error) {
+    throw Error(mesh_file + ": " + error.what() + " State them, or its axes as rotation_rpy, in " +
+                sidecarOf(mesh_file) + ".");
+  }
+}
+
 Guess guess(GeometryScene& geometry, double thickness) {
   SurfaceMesh surface = readMeshFile(geometry.file);
   checkSurface(surface, geometry.file);
@@ -158,7 +168,7 @@ Guess guess(GeometryScene& geometry, double thickness) {
   if (geometry.rotation_rpy == std::array<double, 3>{0, 0, 0}) geometry.rotation_rpy = guessedRotation(geometry.file);
   const Eigen::Matrix3d map = geometry.unit * rotationFromRpy(geometry.rotation_rpy);
   for (auto& v : surface.vertices) v = map * v;
-  result.landmarks = estimateLandmarks(remeshSurface(surface, kGuessVertices, nullptr, {}));
+  result.landmarks = landmarksOf(surface, geometry.file);
   if (!unit_is_stated) addLengthMark(result.landmarks.length, result.size);
   const Landmarks& found = result.landmarks.landmarks;
   const Eigen::Matrix3d back = map.inverse();

@@ -81,7 +81,7 @@ class SceneReader {
       if (field.key != kBase) continue;
       std::string file = source_.text(field);
       if (isPackagePath(file)) {
-        file = resolveAddress(file);
+        file = resolve(field, file);
       } else {
         resolve(file);
       }
@@ -210,6 +210,14 @@ class SceneReader {
   void resolve(std::string& path) const {
     if (path.empty() || std::filesystem::path(path).is_absolute()) return;
     path = (std::filesystem::path(source_.place()).parent_path() / path).lexically_normal().string();
+  }
+
+  std::string resolve(const YamlField& field, const std::string& address) const {
+    try {
+      return resolveAddress(address);
+    } catch (const Error& error) {
+      source_.fail(field, error.what());
+    }
   }
 
   void checkFile(const YamlField& field, const std::string& path) const {

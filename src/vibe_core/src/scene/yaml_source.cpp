@@ -8,10 +8,10 @@
 #include <set>
 #include <sstream>
 
-#include "common/foreign_content.hpp"
 #include "scene/odd_characters.hpp"
 #include "scene/yaml_guard.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/foreign_content.hpp"
 #include "vibe_core/scene/unit.hpp"
 #include "vibe_core/scene/words.hpp"
 
@@ -26,6 +26,12 @@ constexpr std::size_t kShown = 60;  // of a user's text in an error message
 
 std::string quoted(const std::string& text) {
   return "'" + printable(text, kShown) + "'";
+}
+
+std::string showDegrees(double radians) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g deg", radians * 180 / M_PI);
+  return text;
 }
 
 const char* kindName(const YAML::Node& node) {
@@ -111,6 +117,10 @@ void YamlSource::collect(const YamlField& field, int& merges, std::vector<YamlFi
     const std::string path = field.path.empty() ? key : field.path + "." + key;
     YamlField next{key, path, lineOf(entry.first), entry.second};
     if (!seen.insert(key).second) fail(next, "is given a second time; keep one of the two");
+    if (entry.second.IsNull() && !key.empty() && key[0] >= '0' && key[0] <= '9')
+      fail(next,
+           "begins with a digit and has no value; write numbers with a decimal point and without separators, "
+           "since within { } a comma begins the next key");
     if (key == "<<") {
       merged.reset(entry.second);
     } else {
@@ -188,8 +198,9 @@ double YamlSource::quantity(const YamlField& field, const std::string& si_unit, 
   const Quantity result = parseQuantity(text, si_unit);
   if (!result.problem.empty()) fail(field, quoted(text) + " " + result.problem);
   if (result.value < low || result.value > high) {
+    const std::string degrees = si_unit == "rad" ? " (" + showDegrees(low) + " to " + showDegrees(high) + ")" : "";
     fail(field, quoted(text) + " is out of range; write a value from " + showQuantity(low, si_unit) + " to " +
-                    showQuantity(high, si_unit));
+                    showQuantity(high, si_unit) + degrees);
   }
   return result.value;
 }

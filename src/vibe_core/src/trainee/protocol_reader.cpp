@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/yaml_guard.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/words.hpp"
 #include "vibe_core/trainee/suture_pattern.hpp"
@@ -43,6 +44,8 @@ Protocol ProtocolReader::read() {
       protocol_.skill = readSkill(field);
     } else if (field.key == "goals") {
       readGoals(field);
+    } else if (field.key == "actions") {
+      source_.fail(field, "belongs to a script of motions, but its goals make this a protocol; keep one of the two");
     } else {
       source_.fail(field, "is not a known key; " + suggestKey(field.key, keys));
     }
@@ -119,7 +122,7 @@ void ProtocolReader::readGoal(const YamlField& verb) {
   } else if (verb.key == "suture_set" || verb.key == "sleeve") {
     readSleeve(verb);
   } else {
-    source_.fail(verb, "is not a goal; " + suggestKey(verb.key, goalNames()));
+    source_.fail(verb, "'" + printable(verb.key, 40) + "' is not a goal; " + suggestKey(verb.key, goalNames()));
   }
 }
 

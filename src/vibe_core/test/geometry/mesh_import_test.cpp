@@ -159,12 +159,12 @@ TEST(MeshImport, asksForTheUnitAndNamesTheLikelyOne) {
   GeometryScene geometry = eggScene(folder.write("mesh.obj", test::toObj(makeEgg())));
   geometry.unit = 0;
   expectRejected(geometry, "geometry.unit is missing");
-  expectRejected(geometry, "perhaps '1 mm', with which it is 0.2 m large");
+  expectRejected(geometry, "perhaps 'unit: 1 mm', with which it is 0.2 m large");
   geometry.file = folder.write("mesh.glb", test::toGlb(makeEgg()));
   expectRejected(geometry, "is 200 units large");
-  expectRejected(geometry, "perhaps '1 mm'");
+  expectRejected(geometry, "perhaps 'unit: 1 mm'");
   geometry.unit = 1000;
-  expectRejected(geometry, "no organ of 0.05 to 1 m");
+  expectRejected(geometry, "which with a unit of 1000 m is no organ of 0.05 to 1 m");
   geometry.unit = -1;
   expectRejected(geometry, "no organ of 0.05 to 1 m");
 }
@@ -186,6 +186,13 @@ TEST(MeshImport, namesTheMissingLandmarks) {
   expectRejected(geometry, "missing: geometry.fundus, geometry.pylorus;");
 }
 
+TEST(MeshImport, refusesTwoLandmarksInOnePlace) {
+  const TemporaryFolder folder;
+  GeometryScene geometry = eggScene(folder.write("mesh.obj", test::toObj(makeEgg())));
+  geometry.fundus = geometry.oesophagus;
+  expectRejected(geometry, "The landmarks 'oesophagus' and 'fundus' are 0 mm apart");
+}
+
 TEST(MeshImport, saysWhatIsWrongWithTheFile) {
   const TemporaryFolder folder;
   expectRejected(eggScene(""), "geometry.file is missing");
@@ -193,6 +200,7 @@ TEST(MeshImport, saysWhatIsWrongWithTheFile) {
   expectRejected(eggScene(folder.path()), "cannot be read");
   expectRejected(eggScene(folder.write("mesh.txt", "hello")), "not of a type");
   expectRejected(eggScene(folder.write("empty.obj", "")), "is empty");
+  expectRejected(eggScene(folder.write("cut.gltf", "{\"asset\": {\"version\"")), "ends within its JSON");
   expectRejected(eggScene(folder.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")), "has no faces");
   expectRejected(eggScene(folder.write("named.obj", test::toPly(makeEgg()))), "begins like a file of the type .ply");
   expectRejected(eggScene(folder.write("ring.obj", test::toObj(makeTorus(50, 20, 20, 10)))), "1 handle");

@@ -134,6 +134,12 @@ TEST(SurfaceCheck, refusesASurfaceThroughItself) {
   expectRejected(mesh, "passes through itself");
 }
 
+TEST(SurfaceCheck, refusesASurfaceWithoutThickness) {
+  EXPECT_EQ(refusal(makeBox(0.1, 0.2, 1e-4)), "");
+  expectRejected(makeBox(0.1, 0.2, 1e-9),
+                 "encloses next to nothing, 2e-11 cubic units, with a largest side of 0.2 units");
+}
+
 /// Damages the surface in one of the ways a file can be wrong; returns how.
 std::string damage(SurfaceMesh& mesh, std::mt19937& random) {
   const auto pick = [&](std::size_t count) { return static_cast<int>(random() % count); };

@@ -264,6 +264,7 @@ WRONG = [
     (_changed(extensionsRequired=["KHR_draco_mesh_compression"]), "requires the extension 'KHR_draco_mesh_compression'"),
     (_changed(extensionsRequired=["EXT_meshopt_compression"]), "requires the extension 'EXT_meshopt_compression'"),
     (_changed(extensionsRequired=["EXT_mesh_gpu_instancing"]), "requires the extension 'EXT_mesh_gpu_instancing'"),
+    (_changed(scenes=[{"nodes": []}]), "shows no mesh: no node"),
     (_changed(asset={"version": "1.0"}), "is glTF of version '1.0'"),
     (_changed(asset={"version": "2.0", "minVersion": "2.1"}), "requires glTF of version '2.1'"),
     (_changed(asset=None), "has no 'asset'"),

@@ -149,6 +149,7 @@ TEST_F(MeshGuess, ASurfaceWithoutLandmarksIsAnError) {
       ADD_FAILURE() << "no error";
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find("is not like a stomach"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find(file + ".landmarks.yaml"), std::string::npos) << error.what();
       EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
     }
     EXPECT_EQ(scene.geometry.kind, GeometryScene::Kind::Stomach) << "the scene is as it was";

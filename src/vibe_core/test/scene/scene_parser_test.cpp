@@ -81,6 +81,7 @@ TEST(SceneBase, OverridesWhatItNamesAndKeepsTheRest) {
   EXPECT_ERROR(with("marking: {power: 20}\nbase: sphere.yaml\n"), "needs the section 'scope'");
   EXPECT_ERROR(with("base: stomach.yaml\nsuture: {loose_tension: 4}\n"), "suture.loose_tension: is 4 N");
   EXPECT_ERROR(with("base: none.yaml\n"), "base: there is no file");
+  EXPECT_ERROR(with("name: x\nbase: package://vibe_cor/s.yaml\n"), "s.yaml:2: base: There is no package 'vibe_cor'");
   EXPECT_ERROR(with("basee: stomach.yaml\n"), "did you mean 'base'");
   EXPECT_ERROR(with("gas: {base: stomach.yaml}\n"), "gas.base: is not");
   EXPECT_EQ(toYaml(with("base: package://vibe_core/scenes/stomach.yaml\n")), toYaml(base));

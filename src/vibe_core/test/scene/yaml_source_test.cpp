@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "vibe_testing/expect_error.hpp"
@@ -162,6 +163,9 @@ TEST_F(YamlValues, RefusesBadOnesWithTheirPlace) {
   EXPECT_ERROR(source_.integer(field("i"), 0, 6), "f.yaml:1: i: '7' is out of range; write a whole number from 0 to 6");
   EXPECT_ERROR(source_.integer(field("f"), 0, 6), "f.yaml:2: f: '1.5' is not a whole number");
   EXPECT_ERROR(source_.quantity(field("f"), "Pa", 2, 3), "from 2 Pa to 3 Pa");
+  EXPECT_ERROR(source_.quantity(field("i"), "rad", -M_PI, M_PI), "rad (-180 deg to 180 deg)");
+  const YamlSource separated = parsed("{e: 60,000 Pa}");
+  EXPECT_ERROR(separated.map(separated.root()), "f.yaml:1: 000 Pa: begins with a digit and has no value");
   EXPECT_ERROR(source_.quantity(field("t"), "Pa", 2, 3), "f.yaml:3: t: 'two words' is not a number");
   EXPECT_ERROR(source_.boolean(field("i")), "neither true nor false");
   EXPECT_ERROR(source_.text(field("e")), "f.yaml:5: e: is empty");

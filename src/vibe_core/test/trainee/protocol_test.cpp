@@ -73,6 +73,9 @@ TEST(Protocol, PlacesMayBeSharesOfARegion) {
   EXPECT_EQ(std::get<MarkGoal>(protocol.goals[3]).place.region, Region::Fundus);
   EXPECT_FALSE(std::get<BiteGoal>(protocol.goals.back()).place.region);
   EXPECT_NE(errorOf("goals:\n  - bite: {region: bodi}\n").find("did you mean 'body'"), std::string::npos);
+  EXPECT_NE(errorOf("goals: [insuflate]\n").find("'insuflate' is not a goal; did you mean 'insufflate'"),
+            std::string::npos);
+  EXPECT_NE(errorOf("actions: []\ngoals: [cinch]\n").find("keep one of the two"), std::string::npos);
   EXPECT_NE(errorOf("goals:\n  - cinch: {region: body}\n").find("region: is not a known key"), std::string::npos);
 }
 

@@ -53,6 +53,12 @@ double readSeconds(const std::string& option, const std::string& text) {
   return value;
 }
 
+std::string seconds(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f s", value);
+  return text;
+}
+
 Options readOptions(const std::vector<std::string>& words) {
   Options options;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -76,7 +82,7 @@ Options readOptions(const std::vector<std::string>& words) {
     }
   }
   if (options.bags.empty()) throw Error("takes a recording; see --help.");
-  if (options.to <= options.from) throw Error("--to must be later than --from.");
+  if (options.to <= options.from) throw Error("--to must be later than --from; exchange their values.");
   if (!options.fill.empty() && (options.from > 0 || std::isfinite(options.to)))
     throw Error("--fill writes the whole recording; leave --from and --to out.");
   return options;
@@ -127,6 +133,7 @@ std::string sceneOf(const RecordedSession& session) {
 
 int list(const std::vector<std::string>& bags) {
   const std::vector<RecordedSession> sessions = listSessions(bags);
+  if (sessions.empty()) Recording(bags, {});  // says why
   std::printf("%6s  %-16s  %-12s  %10s  %8s  %5s  %s\n", "number", "session", "namespace", "length", "steps", "runs",
               "scene");
   for (std::size_t i = 0; i < sessions.size(); ++i)
@@ -144,6 +151,9 @@ int run(const Options& options) {
   std::unique_ptr<BagFiller> filler;
   if (!options.fill.empty()) filler = std::make_unique<BagFiller>(recording, options.fill);
   Replay replay(recording, filler ? *filler : nobody);
+  if (options.from > replay.duration())
+    throw Error("--from " + seconds(options.from) + " is after the end of the session, at " +
+                seconds(replay.duration()) + "; begin before that.");
   if (options.from > 0) replay.seek(options.from, false);
   const double begin = steadyTime(), first = replay.time();
   std::uint64_t steps = 0;

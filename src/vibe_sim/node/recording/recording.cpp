@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <tuple>
 #include <utility>
 
@@ -9,24 +10,42 @@
 #include <vibe_msgs/StateSnapshot.h>
 
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/foreign_content.hpp"
 
 namespace vibe::sim {
 
 namespace {
+
+// What is no bag of format 2.0 is told by its first bytes.
+void checkBegin(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw Error("Recording '" + file + "' cannot be opened; check its permissions.");
+  std::string begin(1024, '\0');
+  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<std::size_t>(stream.gcount()));
+  if (begin.rfind("#ROSBAG V2.0\n", 0) == 0) return;
+  const std::string foreign = foreignContent(begin);
+  if (!foreign.empty()) throw Error("Recording '" + file + "' " + foreign + ".");
+  if (begin.rfind("#ROS", 0) == 0)
+    throw Error("Recording '" + file + "' is a bag of another format than 2.0; convert a copy with `rosbag fix`.");
+  throw Error("Recording '" + file +
+              "' is not a bag: it does not begin with '#ROSBAG V2.0'; give the session.bag of a session.");
+}
 
 std::shared_ptr<rosbag::Bag> open(const std::string& file) {
   std::error_code code;
   const auto size = std::filesystem::file_size(file, code);
   if (code) throw Error("Recording '" + file + "' cannot be read (" + code.message() + "); check the path.");
   if (size == 0) throw Error("Recording '" + file + "' is empty: nothing was recorded.");
+  checkBegin(file);
   try {
     return std::make_shared<rosbag::Bag>(file, rosbag::bagmode::Read);
   } catch (const rosbag::BagUnindexedException&) {
     throw Error("Recording '" + file + "' has no index, as a recorder leaves it that was killed or whose disk was " +
                 "full; mend it with `rosbag reindex '" + file + "'`, which keeps all but the last chunk.");
   } catch (const std::exception& error) {  // of a damaged file also what is not a BagException
-    throw Error("Recording '" + file + "' cannot be read as a bag (" + error.what() +
-                "); if it was damaged, try `rosbag reindex` on a copy.");
+    throw Error("Recording '" + file + "' cannot be read to its end (" + error.what() +
+                "); it may have been cut off: copy it again, or mend a copy with `rosbag reindex`.");
   }
 }
 

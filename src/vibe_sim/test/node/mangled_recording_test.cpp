@@ -10,6 +10,7 @@
 #include <vibe_msgs/StepInput.h>
 
 #include <cstdio>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <set>
@@ -244,6 +245,18 @@ TEST_F(MangledRecording, MissingTopicsAreNamed) {
   EXPECT_EQ(Recording(file).runs()[0].scene, "name: scene1\n");
   mangle(without({"/scene"}));
   EXPECT_EQ(stepsOf(Recording(file)), 120U);
+}
+
+TEST_F(MangledRecording, WhatIsNoBagIsCalledThat) {
+  for (const auto& [content, sentence] : std::vector<std::pair<std::string, std::string>>{
+           {"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 1\n", "is a Git LFS pointer"},
+           {"<html></html>\n", "is a web page (HTML)"},
+           {"hello\n", "is not a bag: it does not begin with"},
+           {"#ROSBAG V1.2\n", "is a bag of another format than 2.0"},
+           {"#ROSBAG V2.0\n", "cannot be read to its end"}}) {
+    std::ofstream(file, std::ios::binary) << content;
+    expectMentions(refusal(), sentence);
+  }
 }
 
 TEST_F(MangledRecording, APartInTimeIsReadFromItsFirstSnapshot) {
