@@ -2,7 +2,8 @@
 // sources: src/trainee/protocol_reader.cpp src/trainee/suture_pattern.cpp src/input/step_input.cpp
 // sources: src/geometry/organ.cpp src/suture/technique.cpp src/suture/technique_patterns.cpp
 // sources: src/suture/technique_templates.cpp src/scene/yaml_source.cpp src/scene/yaml_guard.cpp src/scene/unit.cpp
-// sources: src/scene/words.cpp src/common/elementary_*.cpp
+// sources: src/scene/words.cpp src/scene/odd_characters.cpp src/common/foreign_content.cpp
+// sources: src/common/elementary_*.cpp
 // packages: yaml-cpp bullet
 #include <cmath>
 #include <cstdlib>

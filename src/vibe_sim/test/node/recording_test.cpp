@@ -146,7 +146,7 @@ TEST_F(RecordingFile, EmptyForeignMissingAndCutFilesHaveASentenceEach) {
   writeFile(file, "");
   expectMentions(errorOfReading(), "is empty");
   writeFile(file, "not a bag at all\n");
-  expectMentions(errorOfReading(), "as a bag");
+  expectMentions(errorOfReading(), "is not a bag");
   {
     rosbag::Bag bag(file, rosbag::bagmode::Write);
     std_msgs::String other;
