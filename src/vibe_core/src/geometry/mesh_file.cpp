@@ -138,21 +138,29 @@ SurfaceMesh dropUnused(const SurfaceMesh& mesh) {
   return kept;
 }
 
+// Coordinates beyond have no differences in a double; only vertices without a triangle may have them [m].
+constexpr double kFar = 1e150;
+
+std::int64_t cellNumber(double scaled) {
+  return std::isnan(scaled) ? 0 : static_cast<std::int64_t>(std::clamp(scaled, -0x1p60, 0x1p60));
+}
+
 }  // namespace
 
 SurfaceMesh weld(const SurfaceMesh& mesh, double tolerance) {
   SurfaceMesh merged;
   if (mesh.vertices.empty()) return merged;
   Eigen::AlignedBox3d box;
-  for (const auto& v : mesh.vertices) box.extend(v);
+  for (const auto& v : mesh.vertices)
+    if (v.cwiseAbs().maxCoeff() < kFar) box.extend(v);
+  if (box.isEmpty()) box.extend(Eigen::Vector3d::Zero().eval());
   // at most 2^40 cells per side, so that the cell numbers are exact
   const double cell_size = std::max({tolerance, box.sizes().maxCoeff() * 1e-12, 1e-300});
   std::map<Cell, std::vector<int>> cells;
   std::vector<int> number;
   for (const auto& p : mesh.vertices) {
     const Eigen::Vector3d scaled = (p - box.min()) / cell_size;
-    const Cell cell{static_cast<std::int64_t>(scaled.x()), static_cast<std::int64_t>(scaled.y()),
-                    static_cast<std::int64_t>(scaled.z())};
+    const Cell cell{cellNumber(scaled.x()), cellNumber(scaled.y()), cellNumber(scaled.z())};
     int v = findNear(cells, cell, p, merged.vertices, tolerance);
     if (v < 0) {
       v = static_cast<int>(merged.vertices.size());
