@@ -101,7 +101,7 @@ void label(SurfaceMesh surface, FuzzInput& input) {
 void import(const SurfaceMesh& raw, unsigned sum, FuzzInput& input) {
   try {
     checkNumbers(raw, "fuzz.obj");
-    SurfaceMesh mesh = weld(raw, 1e-7);
+    SurfaceMesh mesh = weld(raw, 1e-6);
     checkSurface(mesh, "fuzz.obj");
     orientOutwards(mesh);
     if (sum % 32 > 1) return;

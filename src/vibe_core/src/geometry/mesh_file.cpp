@@ -138,29 +138,23 @@ SurfaceMesh dropUnused(const SurfaceMesh& mesh) {
   return kept;
 }
 
-// Coordinates beyond have no differences in a double; only vertices without a triangle may have them [m].
-constexpr double kFar = 1e150;
-
-std::int64_t cellNumber(double scaled) {
-  return std::isnan(scaled) ? 0 : static_cast<std::int64_t>(std::clamp(scaled, -0x1p60, 0x1p60));
-}
-
 }  // namespace
 
-SurfaceMesh weld(const SurfaceMesh& mesh, double tolerance) {
+SurfaceMesh weld(const SurfaceMesh& raw, double part) {
+  const SurfaceMesh mesh = dropUnused(raw);  // those may have any positions, and are not checked
   SurfaceMesh merged;
   if (mesh.vertices.empty()) return merged;
   Eigen::AlignedBox3d box;
-  for (const auto& v : mesh.vertices)
-    if (v.cwiseAbs().maxCoeff() < kFar) box.extend(v);
-  if (box.isEmpty()) box.extend(Eigen::Vector3d::Zero().eval());
+  for (const auto& v : mesh.vertices) box.extend(v);
+  const double size = box.sizes().maxCoeff(), tolerance = part * size;
   // at most 2^40 cells per side, so that the cell numbers are exact
-  const double cell_size = std::max({tolerance, box.sizes().maxCoeff() * 1e-12, 1e-300});
+  const double cell_size = std::max({tolerance, size * 1e-12, 1e-300});
   std::map<Cell, std::vector<int>> cells;
   std::vector<int> number;
   for (const auto& p : mesh.vertices) {
     const Eigen::Vector3d scaled = (p - box.min()) / cell_size;
-    const Cell cell{cellNumber(scaled.x()), cellNumber(scaled.y()), cellNumber(scaled.z())};
+    const Cell cell{static_cast<std::int64_t>(scaled.x()), static_cast<std::int64_t>(scaled.y()),
+                    static_cast<std::int64_t>(scaled.z())};
     int v = findNear(cells, cell, p, merged.vertices, tolerance);
     if (v < 0) {
       v = static_cast<int>(merged.vertices.size());
@@ -179,10 +173,7 @@ SurfaceMesh weld(const SurfaceMesh& mesh, double tolerance) {
 SurfaceMesh readMeshFile(const std::string& path) {
   const SurfaceMesh raw = readRaw(path);
   checkNumbers(raw, path);
-  const SurfaceMesh used = dropUnused(raw);
-  Eigen::AlignedBox3d box;
-  for (const auto& v : used.vertices) box.extend(v);
-  SurfaceMesh mesh = weld(used, kWeldTolerance * box.sizes().maxCoeff());
+  SurfaceMesh mesh = weld(raw, kWeldTolerance);
   if (mesh.triangles.empty()) throw Error(path + " has only triangles without area; check that it is the right file");
   return mesh;
 }
