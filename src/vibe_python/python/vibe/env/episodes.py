@@ -11,7 +11,7 @@ from .api import spaces
 
 INSUFFLATE = vibe.BUTTONS.index("insufflate")
 SUCCESS = 10.0  # reward of an episode that succeeds
-FORCE_FREE = 2.0  # force on the tool that costs nothing [N]; largest of the sleeve that docs/accuracy.md measures
+FORCE_FREE = 2.0  # force on the tool that costs nothing [N]; twice the mean of the first session of the README
 GOALS = 64  # per start, drawn once
 WALL_POINTS = 48  # places of the wall that an observation holds
 
