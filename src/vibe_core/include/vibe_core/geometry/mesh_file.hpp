@@ -28,8 +28,8 @@ std::optional<PatientAxes> statedAxes(const std::string& path);
 /// Roll, pitch and yaw from these axes to ours (x front, y left, z head) [rad].
 std::array<double, 3> rotationOf(PatientAxes axes);
 
-/// Drops vertices without a triangle, merges those that are closer than a part of the longest side of the box around the
-/// surface, and drops the triangles and vertices that vanish.
+/// Drops vertices without a triangle, merges those that are closer than a part of the longest side of the box around
+/// the surface, and drops the triangles and vertices that vanish.
 /// @param raw   has passed checkNumbers()
 /// @param part  from 0 [1]
 SurfaceMesh weld(const SurfaceMesh& raw, double part);
