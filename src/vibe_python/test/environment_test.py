@@ -7,7 +7,7 @@ import unittest
 import numpy as np
 
 import vibe
-from vibe.env import TASKS, Environment, Expert, VectorEnvironment, api, demonstrations
+from vibe.env import TASKS, Environment, Expert, VectorEnvironment, api, demonstrations, organs
 
 SMALL = {"particles": 300, "organs": [("sthenic", 1.0)]}
 
@@ -54,6 +54,7 @@ class EnvironmentTest(unittest.TestCase):
             environment.close()
         self.assertFalse(equal(alone[0][0][0], alone[1][0][0]))  # control: another seed is another episode
         for threads in (1, 2):
+            organs.organ(*SMALL["organs"][0], SMALL["particles"]).goals.clear()  # as in another process
             together = VectorEnvironment("Reach", 3, threads=threads, **SMALL)
             seen, _ = together.reset(seed=5)
             actions = np.stack([self.actions(environment, seed, 15) for seed in (5, 6, 7)], 1)
