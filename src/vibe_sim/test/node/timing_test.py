@@ -59,8 +59,8 @@ class TimingTest(unittest.TestCase):
         cls.pose = Recorder("scope/measured_cp", PoseStamped)
         cls.applied = Recorder("applied_input", StepInput)
 
-    def start(self, **parameters):
-        self.simulator = Program("vibe_sim", "sim_node", name="sim_node", scene=scene("light.yaml"), **parameters)
+    def start(self, scene_file="light.yaml", **parameters):
+        self.simulator = Program("vibe_sim", "sim_node", name="sim_node", scene=scene(scene_file), **parameters)
         self.addCleanup(self.stop)
         self.timing.clear()
         self.pose.clear()
@@ -92,16 +92,25 @@ class TimingTest(unittest.TestCase):
         self.assertEqual(steps, list(range(steps[0], steps[0] + len(steps))))
         self.assertTrue(wait_until(lambda: len(set(self.pose.stamps()) & set(self.timing.stamps())) > 50))
 
+    def stages_of(self, message):
+        return [getattr(message, name) for name in message.__slots__ if name.startswith("stage_")]
+
     def test_stages_add_up_to_the_time_of_the_step(self):
-        self.start()
+        self.start("light_shell.yaml")
         for message in self.timing.messages[10:]:
-            stages = [getattr(message, name) for name in message.__slots__ if name.startswith("stage_")]
+            stages = self.stages_of(message)
             self.assertEqual(len(stages), 8)
-            self.assertGreater(message.stage_energy, 0)
+            self.assertEqual(message.stage_energy > 0, message.evaluations > 0, message)
             self.assertTrue(all(s >= 0 for s in stages), stages)
             # of the thread's CPU, and so no more than the wall time around it
             self.assertLess(sum(stages), 1e-9 * (ns(message.solved) - ns(message.begin)) + 1e-4)
             self.assertGreaterEqual(message.evaluations, message.iterations)
+        self.assertGreater(max(m.evaluations for m in self.timing.messages), 0)
+
+    def test_shape_matching_has_one_stage_only(self):
+        self.start()
+        for message in self.timing.messages[10:]:
+            self.assertEqual([s for s in self.stages_of(message) if s > 0], [message.stage_other])
 
     def test_steps_that_follow_begin_when_a_sample_arrives(self):
         self.start(follow="scope/measured_js")
