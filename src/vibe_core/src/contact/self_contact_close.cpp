@@ -171,18 +171,19 @@ void SelfContactClose::findAt(int triangle) {
 }
 
 void SelfContactClose::meet(int triangle, int other) {
-  if (std::exchange(triangle_mark_[other], triangle) == triangle || isFar(other)) return;
+  if (std::exchange(triangle_mark_[other], triangle) == triangle || isFar(triangles_[other])) return;
   addVertices(triangle, other);
   addEdges(triangle, other);
 }
 
-// By the boxes around it and the triangle that is looked at.
-bool SelfContactClose::isFar(int triangle) const {
-  const std::array<int, 3>& n = triangles_[triangle];
+// By the boxes around them and the triangle that is looked at.
+template <std::size_t Count>
+bool SelfContactClose::isFar(const std::array<int, Count>& nodes) const {
   for (Eigen::Index k = 0; k < 3; ++k) {
     const std::vector<double>& x = (*at_)[static_cast<std::size_t>(k)];
-    const double a = x[n[0]], b = x[n[1]], c = x[n[2]];
-    if (std::min(std::min(a, b), c) >= high_[k] || std::max(std::max(a, b), c) <= low_[k]) return true;
+    double least = x[nodes[0]], most = least;
+    for (std::size_t i = 1; i < Count; ++i) least = std::min(least, x[nodes[i]]), most = std::max(most, x[nodes[i]]);
+    if (least >= high_[k] || most <= low_[k]) return true;
   }
   return false;
 }
@@ -192,6 +193,7 @@ void SelfContactClose::addVertices(int triangle, int other) {
   std::sort(n.begin(), n.end());
   for (const int v : triangles_[other]) {
     if (std::exchange(vertex_mark_[v], triangle) == triangle || hasVertex(n, v)) continue;
+    if (isFar(std::array<int, 1>{v})) continue;
     const TriangleFoot foot = triangleFoot(at(v), at(n[0]), at(n[1]), at(n[2]));
     if (!(foot.away.squaredNorm() < distance_ * distance_)) continue;
     ClosePoints close{{v, kNone, kNone, kNone}, 1, {1, 0, 0, 0}, foot.away, 1, false};
@@ -207,7 +209,7 @@ void SelfContactClose::addVertices(int triangle, int other) {
 // The first of two edges is that of the triangle; where it is the second, the other triangle finds them.
 void SelfContactClose::addEdges(int triangle, int other) {
   for (const int q : edge_of_[other]) {
-    if (std::exchange(edge_mark_[q], triangle) == triangle) continue;
+    if (std::exchange(edge_mark_[q], triangle) == triangle || isFar(edges_[q])) continue;
     for (const int p : edge_of_[triangle]) {
       const Edge &one = edges_[p], &two = edges_[q];
       if (p >= q || one[0] == two[0] || one[0] == two[1] || one[1] == two[0] || one[1] == two[1]) continue;

@@ -90,7 +90,8 @@ class SelfContactClose {
   void findAt(int triangle);
   void meet(int triangle, int other);
   Eigen::Vector3d at(int node) const { return {(*at_)[0][node], (*at_)[1][node], (*at_)[2][node]}; }
-  bool isFar(int triangle) const;
+  template <std::size_t Count>
+  bool isFar(const std::array<int, Count>& nodes) const;
   void addVertices(int triangle, int other);
   void addEdges(int triangle, int other);
   void addEdgePair(const Edge& one, const Edge& other);
