@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <functional>
 
+#include "vibe_core/procedure/stitch.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_core/state/state_fields.hpp"
 #include "vibe_testing/scope_worlds.hpp"
@@ -30,6 +31,7 @@ World ballWorld(double step_period, const std::string& model = "shell", int leve
   scene.scope = test::scopeFromAbove(kRadius);
   scene.scope->friction = friction;
   scene.helix = test::wideHelix();
+  scene.suture = SutureScene{};
   return test::scopeWorld(scene, openBall(kRadius, level, 2.3e-3));
 }
 
@@ -295,6 +297,58 @@ TEST(Haptic, RendersATractionBetweenFramesBetterThanTheLastForce) {
   EXPECT_LT(errors.rendered, errors.held / 4);  // what is left is the error of the frames' own forces
   EXPECT_LT(errors.axis, errors.held_axis / 4);
   EXPECT_LT(errors.rendered, 0.02 * errors.change);
+}
+
+/// A thread through the wall on both sides of what the helix holds, 45 mm apart at rest, with T-tag; `cinched`: drawn
+/// until it is tight.
+void sew(World& world, bool cinched) {
+  const State& state = world.state;
+  const auto& triangles = world.model->organ.surface.triangles;
+  const SurfaceView wall{triangles, state.x, state.y, state.z};
+  const auto centre = [&](int t) {
+    const auto& [a, b, c] = triangles[static_cast<std::size_t>(t)];
+    return Eigen::Vector3d((wall.position(a) + wall.position(b) + wall.position(c)) / 3);
+  };
+  Suture suture;
+  for (const double side : {-1.0, 1.0}) {
+    const Eigen::Vector3d wanted = kRadius * Eigen::Vector3d(side * std::sin(0.38), 0, -std::cos(0.38));
+    int nearest = 0;
+    for (int t = 1; t < static_cast<int>(triangles.size()); ++t)
+      if ((centre(t) - wanted).norm() < (centre(nearest) - wanted).norm()) nearest = t;
+    suture.bites.push_back(
+        biteAround(*world.model, wall, nearest, centre(nearest), world.model->scene.suture->bite_radius));
+    suture.bites.back().depth = suture.bites.back().thickness;
+  }
+  suture.length = {(bitePosition(suture.bites[1], wall.x, wall.y, wall.z) -
+                    bitePosition(suture.bites[0], wall.x, wall.y, wall.z))
+                       .norm()};
+  suture.tension = {0};
+  world.state.procedure.sutures.push_back(suture);
+  StepInput input = scopeAt(0.1, 0.028, true);
+  for (const Button button : {TTag, Cinch}) {
+    if (button == Cinch && !cinched) break;
+    input.buttons[button] = 1;
+    world.run(button == Cinch ? 4 : kFrame, input);
+    input.buttons[button] = 0;
+    world.run(0.5, input);
+  }
+  ASSERT_EQ(world.state.procedure.sutures.size(), 1U);
+  ASSERT_FALSE(world.state.grip.empty());
+}
+
+TEST(Haptic, RendersATractionOfSewnTissueBetterThanTheLastForce) {
+  for (const bool cinched : {false, true}) {
+    World frames = ballWorld(kFrame);
+    takeHold(frames);
+    sew(frames, cinched);
+    const double before = frames.state.procedure.sutures[0].tension[0];
+    std::printf("%s, tension %.2f N: ", cinched ? "cinched" : "thread", before);
+    const Errors errors = renderBetweenFrames(
+        std::move(frames), 3, [](double t) { return scopeAt(0.1 - 4e-3 * (1 - std::cos(2 * M_PI * t)), 0.028, true); },
+        1);
+    EXPECT_GT(errors.change, 0.1);
+    EXPECT_LT(errors.rendered, errors.held / 2);
+  }
 }
 
 TEST(Haptic, RendersAContactBetweenFramesBetterThanTheLastForce) {

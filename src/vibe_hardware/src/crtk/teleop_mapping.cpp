@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vibe_core/scene/words.hpp"
@@ -159,8 +160,11 @@ class ArmReader {
     if (std::abs(gripper.open - gripper.closed) < 1e-3)
       source_.fail(fields.at("open"), "is the angle of 'closed', too; write two angles that differ");
     const JointLimits& limits = limits_[static_cast<std::size_t>(gripper.joint)];
-    readIf(fields, "at_closed", jointUnit(gripper.joint), limits.lower, limits.upper, gripper.at_closed);
-    readIf(fields, "at_open", jointUnit(gripper.joint), limits.lower, limits.upper, gripper.at_open);
+    const double spare = 1e-6 * (limits.upper - limits.lower);  // the digits that the writer of the URDF chose
+    for (const auto& [key, place] : {std::pair{"at_closed", &gripper.at_closed}, {"at_open", &gripper.at_open}}) {
+      readIf(fields, key, jointUnit(gripper.joint), limits.lower - spare, limits.upper + spare, *place);
+      *place = std::clamp(*place, limits.lower, limits.upper);
+    }
     mapping_.gripper = gripper;
   }
 };
