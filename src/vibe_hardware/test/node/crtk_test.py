@@ -56,13 +56,14 @@ class CrtkTest(unittest.TestCase):
         self.assertTrue(wait_until(lambda: "drives the scope" in self.node.output(), 20), self.node.output())
         self.assertTrue(wait_until(lambda: self.insertion() > BEFORE_THE_WALL[0] + 0.004, 20))
         self.assertTrue(wait_until(lambda: self.back() > 0.02, 20))
-        self.assertTrue(wait_until(lambda: self.back() == 0, 20), "it leaves the wall again")
+        self.assertTrue(wait_until(lambda: abs(self.back()) < 1e-3, 20), "it leaves the wall again")
         self.assertLess(max(abs(m.wrench.torque.x) for m in self.force.messages), 1e-9)
 
     def test_2_with_the_clutch_the_scope_stays_and_no_force_comes(self):
         self.assertTrue(wait_until(lambda: self.clutch.get_num_connections() > 0, 20))
         self.press(True)
         self.assertTrue(wait_until(lambda: "has let go" in self.node.output(), 20))
+        rospy.sleep(0.5)  # until the simulator is where it was sent
         place = self.insertion()
         self.assertTrue(wait_until(lambda: self.away() < 1e-3, 20) and wait_until(lambda: self.away() > 0.005, 20))
         self.assertAlmostEqual(self.insertion(), place, 5)
@@ -85,4 +86,5 @@ class CrtkTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    rospy.init_node("crtk_test")
     rostest.rosrun("vibe_hardware", "crtk", CrtkTest, sys.argv)
