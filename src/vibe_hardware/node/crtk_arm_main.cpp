@@ -30,10 +30,10 @@ constexpr double kLargestForce = 10;    // what its motors make [N]
 constexpr std::uint32_t kQueue = 10;
 
 struct Parameters {
-  double sway = 0;        // of the hand away from the person and back [m]
-  double frequency = 0.5; // [Hz]
-  double start = 2;       // when the sway begins [s]
-  double gripper = 0.5;   // its angle [rad]
+  double sway = 0;         // of the hand away from the person and back [m]
+  double frequency = 0.5;  // [Hz]
+  double start = 2;        // when the sway begins [s]
+  double gripper = 0.5;    // its angle [rad]
 };
 
 Parameters readParameters(const ros::NodeHandle& handle) {

@@ -15,14 +15,15 @@
 namespace vibe::hardware {
 namespace {
 
-constexpr double kForcePeriod = 0.005;             // without measurements the arm gets a force after so long [s]
+constexpr double kForcePeriod = 0.005;      // without measurements the arm gets a force after so long [s]
 constexpr double kJointInterval = 0.004;    // between commands to the scope, at least [s]
-constexpr double kArmButtonInterval = 0.1;     // between messages that change nothing [s]
+constexpr double kArmButtonInterval = 0.1;  // between messages that change nothing [s]
 constexpr double kOldest = 0.5;             // a measurement that claims to be older has the stamp of another clock [s]
 constexpr std::uint32_t kArmQueue = 10;
 
 /// Values of a message in the order of vibe::Joint from `first` on. @return whether all are there and finite
-bool readJointsInto(const sensor_msgs::JointState& message, int first, int count, std::array<double, kJointCount>& joints) {
+bool readJointsInto(const sensor_msgs::JointState& message, int first, int count,
+                    std::array<double, kJointCount>& joints) {
   std::array<double, kJointCount> read = joints;
   int found = 0;
   for (std::size_t i = 0; i < message.name.size() && i < message.position.size(); ++i)
@@ -62,7 +63,8 @@ void checkClock() {
   ros::param::get("/use_sim_time", use_sim_time);
   if (use_sim_time)
     throw Error(
-        "An arm is sampled in wall time, but /use_sim_time is true; run 'rosparam delete /use_sim_time' before any node "
+        "An arm is sampled in wall time, but /use_sim_time is true; run 'rosparam delete /use_sim_time' before any "
+        "node "
         "starts.");
 }
 

@@ -320,8 +320,8 @@ void sew(World& world, bool cinched) {
         biteAround(*world.model, wall, nearest, centre(nearest), world.model->scene.suture->bite_radius));
     suture.bites.back().depth = suture.bites.back().thickness;
   }
-  const Eigen::Vector3d between = bitePosition(suture.bites[1], wall.x, wall.y, wall.z) -
-                                  bitePosition(suture.bites[0], wall.x, wall.y, wall.z);
+  const Eigen::Vector3d between =
+      bitePosition(suture.bites[1], wall.x, wall.y, wall.z) - bitePosition(suture.bites[0], wall.x, wall.y, wall.z);
   suture.length = {(cinched ? 1 : 0.75) * between.norm()};
   suture.tension = {0};
   world.state.procedure.sutures.push_back(suture);

@@ -31,8 +31,8 @@ TEST(PassivityConditions, AreTheFormulas) {
   EXPECT_NEAR(requiredCoulombFriction(config, 0.3F, 2e-3F), 2 * 3.07e-4 * (0.15 + 0.1 * 2), 1e-9);
 }
 
-// The proof of the condition of quantisation: no sequence of positions makes the filtered velocity more wrong. The worst
-// one has its error at one end until the last step, and then at the other.
+// The proof of the condition of quantisation: no sequence of positions makes the filtered velocity more wrong. The
+// worst one has its error at one end until the last step, and then at the other.
 TEST(PassivityConditions, TheErrorOfTheFilteredVelocityIsBounded) {
   for (const double a : {0.0, 0.5, 0.9}) {
     double v = 0;  // at the end

@@ -138,8 +138,7 @@ TEST(PumpSearch, NoHandGainsEnergyFromAcceptedParameters) {
 TEST(PumpSearch, SomeHandGainsEnergyFivePercentOutside) {
   for (const Hardware& axis : hardware())
     for (const float share : shares())
-      EXPECT_GT(largestGain(searchOutside(axis.config, share)), 0)
-          << axis.name << ", B " << share << " of the largest";
+      EXPECT_GT(largestGain(searchOutside(axis.config, share)), 0) << axis.name << ", B " << share << " of the largest";
 }
 
 // The upper bound, too: where 5 % outside is active, it grows less than a hundredth as fast on the boundary.

@@ -7,10 +7,10 @@
 namespace vibe::hardware {
 namespace {
 
-constexpr double kReservedShare = 0.1;   // of the capacity, for damping; design choice
-constexpr double kFilterTime = 5e-3;     // of the velocity [s]; design choice
-constexpr double kDampBelow = 0.75;      // of the capacity: damping is added; design choice
-constexpr double kAllDampBelow = 0.25;   // of the capacity: all of it
+constexpr double kReservedShare = 0.1;  // of the capacity, for damping; design choice
+constexpr double kFilterTime = 5e-3;    // of the velocity [s]; design choice
+constexpr double kDampBelow = 0.75;     // of the capacity: damping is added; design choice
+constexpr double kAllDampBelow = 0.25;  // of the capacity: all of it
 
 double strength(const PortCommand& command) {
   return std::max(std::abs(command.low), std::abs(command.high));

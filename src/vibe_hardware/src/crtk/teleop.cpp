@@ -16,13 +16,14 @@ Eigen::Vector3d turnBetween(const Eigen::Quaterniond& from, const Eigen::Quatern
   Eigen::Quaterniond turn = to * from.conjugate();
   if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
   const double sine = turn.vec().norm();
-  return sine < 1e-12 ? Eigen::Vector3d(2 * turn.vec()) : Eigen::Vector3d(2 * std::atan2(sine, turn.w()) / sine * turn.vec());
+  return sine < 1e-12 ? Eigen::Vector3d(2 * turn.vec())
+                      : Eigen::Vector3d(2 * std::atan2(sine, turn.w()) / sine * turn.vec());
 }
 
 bool isJump(const TeleopMapping& mapping, const std::array<double, kHandCoordinates>& motion, double dt) {
   return std::any_of(mapping.joints.begin(), mapping.joints.end(), [&](const HandJoint& joint) {
-    return joint.coordinate >= 0 &&
-           std::abs(motion[static_cast<std::size_t>(joint.coordinate)]) > kJump * joint.port.speed_limit * std::max(dt, 1e-3);
+    return joint.coordinate >= 0 && std::abs(motion[static_cast<std::size_t>(joint.coordinate)]) >
+                                        kJump * joint.port.speed_limit * std::max(dt, 1e-3);
   });
 }
 
@@ -40,8 +41,7 @@ bool follow(const TeleopMapping& mapping, const ArmSample& sample, TeleopState& 
   if (!first && !(dt > 0)) return true;  // an old one
   if (!first) {
     const Eigen::Vector3d way = mapping.hand.transpose() * (sample.position - state.last->position);
-    const Eigen::Vector3d turn =
-        mapping.hand.transpose() * turnBetween(state.last->orientation, sample.orientation);
+    const Eigen::Vector3d turn = mapping.hand.transpose() * turnBetween(state.last->orientation, sample.orientation);
     for (int i = 0; i < 3; ++i) motion[i] = way[i], motion[i + 3] = turn[i];
   }
   state.last = sample;
@@ -127,8 +127,8 @@ void sendForces(const TeleopMapping& mapping, double now, TeleopState& state, Te
     const double spring = state.engaged ? fresh * springForce(state.springs[j], at) + state.blends[j] : 0;
     const double damping = state.engaged ? fresh * state.springs[j].damping : 0;
     const bool silent = !state.engaged || mapping.force_scale == 0;
-    const double sent = silent ? release(now, state.ports[j])
-                               : command(joint.port, now, spring, damping, state.ports[j]);
+    const double sent =
+        silent ? release(now, state.ports[j]) : command(joint.port, now, spring, damping, state.ports[j]);
     output.passivity_acts |= state.ports[j].acts;
     (joint.coordinate < HandRoll ? force : torque)[joint.coordinate % 3] += sent;
   }
@@ -154,7 +154,8 @@ TeleopOutput step(const TeleopMapping& mapping, const ToolLimits& limits, double
   const bool was_engaged = state.engaged;
   if (input.sample && !follow(mapping, *input.sample, state)) {
     letGo(state);
-    output.sentence = "The arm has jumped, faster than a hand moves it; the scope stays and the arm takes it up from here.";
+    output.sentence =
+        "The arm has jumped, faster than a hand moves it; the scope stays and the arm takes it up from here.";
   }
   const bool silent = !state.last || now - state.last->time > mapping.timeout;
   if (was_engaged && silent && output.sentence.empty())

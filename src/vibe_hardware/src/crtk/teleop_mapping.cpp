@@ -31,8 +31,9 @@ class ArmReader {
   ArmReader(const YamlSource& source, const ToolLimits& limits) : source_(source), limits_(limits) {}
 
   TeleopMapping read() {
-    const Fields fields = mapOf(source_.root(), {"name", "hand", "joints", "arm", "forces", "clutch", "buttons",
-                                                 "gripper"}, {"name", "hand", "joints"});
+    const Fields fields =
+        mapOf(source_.root(), {"name", "hand", "joints", "arm", "forces", "clutch", "buttons", "gripper"},
+              {"name", "hand", "joints"});
     mapping_.name = source_.text(fields.at("name"));
     readHand(fields.at("hand"));
     if (fields.count("arm") > 0) readArm(fields.at("arm"));
@@ -50,7 +51,7 @@ class ArmReader {
   const YamlSource& source_;
   const ToolLimits& limits_;
   TeleopMapping mapping_;
-  PortConfig way_, turn_{};  // of coordinates along and about an axis
+  PortConfig way_, turn_{};          // of coordinates along and about an axis
   std::map<int, std::string> used_;  // coordinates
 
   Fields mapOf(const YamlField& field, const std::vector<std::string>& known,
@@ -84,9 +85,10 @@ class ArmReader {
   }
 
   void readArm(const YamlField& field) {
-    const Fields fields =
-        mapOf(field, {"delay", "timeout", "energy", "speed_limit", "turn_limit", "force_limit", "torque_limit",
-                      "damping_limit", "turn_damping_limit", "resolution"}, {});
+    const Fields fields = mapOf(field,
+                                {"delay", "timeout", "energy", "speed_limit", "turn_limit", "force_limit",
+                                 "torque_limit", "damping_limit", "turn_damping_limit", "resolution"},
+                                {});
     readIf(fields, "timeout", "s", 0.02, 2, mapping_.timeout);
     readIf(fields, "delay", "s", 0, 0.5, way_.delay);
     readIf(fields, "energy", "J", 1e-4, 1, way_.capacity);
@@ -148,9 +150,8 @@ class ArmReader {
   }
 
   void readGripper(const YamlField& field) {
-    const Fields fields =
-        mapOf(field, {"joint", "closed", "open", "at_closed", "at_open"}, {"joint", "closed", "open", "at_closed",
-                                                                           "at_open"});
+    const Fields fields = mapOf(field, {"joint", "closed", "open", "at_closed", "at_open"},
+                                {"joint", "closed", "open", "at_closed", "at_open"});
     const std::vector<std::string> names(kJointNames.begin() + kScopeJointCount, kJointNames.end());
     const std::string name = source_.choice(fields.at("joint"), names);
     ArmGripper gripper;

@@ -254,9 +254,10 @@ void PadMappingReader::readJoy(const YamlField& field) {
 }
 
 JoyNames::JoyNames()
-    : axes{ABS_X, ABS_Y, ABS_Z, ABS_RX, ABS_RY, ABS_RZ, ABS_HAT0X, ABS_HAT0Y},
-      buttons{BTN_SOUTH, BTN_EAST,  BTN_NORTH, BTN_WEST,   BTN_TL,    BTN_TR,
-              BTN_SELECT, BTN_START, BTN_MODE,  BTN_THUMBL, BTN_THUMBR} {}
+    : axes{ABS_X, ABS_Y, ABS_Z, ABS_RX, ABS_RY, ABS_RZ, ABS_HAT0X, ABS_HAT0Y}, buttons{BTN_SOUTH,  BTN_EAST,  BTN_NORTH,
+                                                                                       BTN_WEST,   BTN_TL,    BTN_TR,
+                                                                                       BTN_SELECT, BTN_START, BTN_MODE,
+                                                                                       BTN_THUMBL, BTN_THUMBR} {}
 
 namespace {
 

@@ -15,7 +15,7 @@
 namespace vibe::hardware::port_passivity_test {
 namespace {
 
-constexpr double kFine = 1e-4;   // step of the true motion [s]
+constexpr double kFine = 1e-4;    // step of the true motion [s]
 constexpr int kFinePerTick = 10;  // the arm measures at 1 kHz
 
 /// The hand: its next position, given time, position, velocity and the force that acts on it now.
@@ -49,14 +49,14 @@ HandModel yielding(double range) {
 }
 
 struct Link {
-  double measure_delay = 0;                 // from measuring to the controller [s]
-  std::function<double(int)> force_delay;   // of the command with this number [s]
-  double quantum = 0;                       // of the measurement [m]
+  double measure_delay = 0;                // from measuring to the controller [s]
+  std::function<double(int)> force_delay;  // of the command with this number [s]
+  double quantum = 0;                      // of the measurement [m]
 };
 
 struct Given {
-  double most = 0;        // energy within any interval [J]
-  double error = 0;       // root mean square of force sent less force of the spring [N]
+  double most = 0;   // energy within any interval [J]
+  double error = 0;  // root mean square of force sent less force of the spring [N]
   double least_balance = 1;
 };
 
@@ -127,8 +127,14 @@ Tissue hostile(unsigned seed) {
 }
 
 std::vector<HandModel> hands() {
-  return {sine(0.01, 1), sine(0.01, 5), sine(2e-3, 20), yielding(0.02), yielding(1e-3),
-          massOf(0.1, 0.5, 0, 0, 1), massOf(0.1, 1, 100, 0.02, 1), massOf(0.3, 10, 500, 0.02, 2),
+  return {sine(0.01, 1),
+          sine(0.01, 5),
+          sine(2e-3, 20),
+          yielding(0.02),
+          yielding(1e-3),
+          massOf(0.1, 0.5, 0, 0, 1),
+          massOf(0.1, 1, 100, 0.02, 1),
+          massOf(0.3, 10, 500, 0.02, 2),
           massOf(0.05, 0.2, 50, 0.01, 4)};
 }
 
@@ -153,8 +159,8 @@ TEST(PortPassivity, NoDelayNoStiffnessAndNoHandGetsMoreThanTheCapacity) {
             ++cases;
           }
   }
-  std::printf("%d cases: at most %.1f mJ, least balance %.2f mJ; without controller %d exceed, at most %.0f mJ\n", cases,
-              1e3 * most, 1e3 * least, exceeded_without, 1e3 * most_without);
+  std::printf("%d cases: at most %.1f mJ, least balance %.2f mJ; without controller %d exceed, at most %.0f mJ\n",
+              cases, 1e3 * most, 1e3 * least, exceeded_without, 1e3 * most_without);
   EXPECT_GT(exceeded_without, cases / 4);  // negative control: the cases are hard enough
 }
 

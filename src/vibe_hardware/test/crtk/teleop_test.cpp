@@ -18,7 +18,8 @@ TeleopMapping mappingOf(const std::string& extra = "") {
   return parseTeleopMapping(
       "name: test\nhand: {away: -z, up: y}\njoints:\n"
       "  insertion: {along: x, scale: 1}\n  rotation: {about: x, scale: 2}\n"
-      "  tip_up_down: {along: z, scale: 10 deg/cm}\n" + extra,
+      "  tip_up_down: {along: z, scale: 10 deg/cm}\n" +
+          extra,
       "my_arm.yaml", toolLimits());
 }
 
@@ -44,7 +45,8 @@ struct Session {
   Session() { input.ready = true; }
 
   /// One millisecond in which the arm goes somewhere.
-  void tick(const Eigen::Vector3d& way = Eigen::Vector3d::Zero(), const Eigen::Vector3d& turn = Eigen::Vector3d::Zero()) {
+  void tick(const Eigen::Vector3d& way = Eigen::Vector3d::Zero(),
+            const Eigen::Vector3d& turn = Eigen::Vector3d::Zero()) {
     time += 1e-3;
     arm.time = time;
     arm.position += way;
@@ -243,7 +245,8 @@ TEST(TeleopMapping, MistakesAreNamedWithPlaceAndRemedy) {
            {head + "joints:\n  insertion: {along: x, scale: .nan}\n", "insertion.scale"},
            {head + "joints:\n  insertion: {along: x, scale: 1}\narm: {delay: -1 ms}\n", "arm.delay"},
            {head + "joints:\n  insertion: {along: x, scale: 1}\ngripper: {joint: needle_driver, closed: 1, open: 1, "
-                   "at_closed: 0, at_open: 0}\n", "differ"}}) {
+                   "at_closed: 0, at_open: 0}\n",
+            "differ"}}) {
     const std::string error = errorOf(text);
     EXPECT_NE(error.find(part), std::string::npos) << error;
     EXPECT_EQ(error.find("my_arm.yaml:"), 0U) << error;

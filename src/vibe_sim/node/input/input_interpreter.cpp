@@ -24,7 +24,9 @@ std::string nameOf(const InputSample& sample) {
   const bool scope = sample.channel == InputChannel::Scope;
   const bool twist = sample.target == ScopeTarget::VelocityInWorld || sample.target == ScopeTarget::VelocityInBase;
   return std::string(scope ? "scope/" : "overstitch/") + (sample.move ? "move_" : "servo_") +
-         (sample.target == ScopeTarget::Joints ? "jp" : twist ? "cv" : "cp");
+         (sample.target == ScopeTarget::Joints ? "jp"
+          : twist                              ? "cv"
+                                               : "cp");
 }
 
 std::string beyondReach(const std::string& topic, const Eigen::Vector3d& target, const Model& model,

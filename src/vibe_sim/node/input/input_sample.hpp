@@ -28,7 +28,7 @@ struct InputSample {
   bool move = false;  ///< joints or pose are the goal of a JointMove from where the hand is; else where it is to be now
   std::array<std::uint8_t, kButtonCount> buttons{};
   ScopeTarget target = ScopeTarget::Joints;
-  Eigen::Isometry3d tip_pose = Eigen::Isometry3d::Identity();  ///< in world or in the tool's root link
+  Eigen::Isometry3d tip_pose = Eigen::Isometry3d::Identity();                   ///< in world or in the tool's root link
   Eigen::Matrix<double, 6, 1> tip_twist = Eigen::Matrix<double, 6, 1>::Zero();  ///< linear, angular [m/s], [rad/s]
   int pull_particle = -1;
   Eigen::Vector3d pull_target = Eigen::Vector3d::Zero();  ///< in world [m]

@@ -8,9 +8,9 @@
 namespace vibe::sim {
 namespace {
 
-constexpr double kDifference = 1e-6;     // of a joint, for the Jacobian [m], [rad]
-constexpr double kPlaceDamping = 1e-8;   // of squares of singular values [m^2]: a motion of 0.1 mm per unit is none
-constexpr double kTurnDamping = 1e-3;    // [rad^2]
+constexpr double kDifference = 1e-6;    // of a joint, for the Jacobian [m], [rad]
+constexpr double kPlaceDamping = 1e-8;  // of squares of singular values [m^2]: a motion of 0.1 mm per unit is none
+constexpr double kTurnDamping = 1e-3;   // [rad^2]
 
 using Jacobian = Eigen::Matrix<double, 6, kScopeJointCount>;
 

@@ -8,8 +8,8 @@ namespace vibe::sim {
 
 namespace {
 
-constexpr double kOwnerPatience = 2;          // a source that is silent for longer has given the topic up [s]
-constexpr double kOrphanPeriod = 0.1;         // between looks whether the source of a velocity is still there [s]
+constexpr double kOwnerPatience = 2;   // a source that is silent for longer has given the topic up [s]
+constexpr double kOrphanPeriod = 0.1;  // between looks whether the source of a velocity is still there [s]
 const char* const kVelocity = "scope/servo_cv";
 constexpr std::uint32_t kInputQueue = 10000;  // none may be lost in lock-step; the queue bounds what really waits
 

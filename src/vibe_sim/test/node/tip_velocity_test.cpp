@@ -27,8 +27,8 @@ class TipVelocityTest : public testing::Test {
 };
 
 TEST_F(TipVelocityTest, TheTipGoesWhereTheVelocityPoints) {
-  for (const Eigen::Vector3d& v : {Eigen::Vector3d(1e-3, 0, 0), Eigen::Vector3d(0, 2e-3, 0), Eigen::Vector3d(0, 0, -5e-3),
-                                   Eigen::Vector3d(2e-3, -3e-3, 4e-3)}) {
+  for (const Eigen::Vector3d& v : {Eigen::Vector3d(1e-3, 0, 0), Eigen::Vector3d(0, 2e-3, 0),
+                                   Eigen::Vector3d(0, 0, -5e-3), Eigen::Vector3d(2e-3, -3e-3, 4e-3)}) {
     joints = {0.06, 0.2, 0.3, -0.2, 0, 0, 0};
     const Eigen::Vector3d start = tip().translation();
     Eigen::Matrix<double, 6, 1> twist;

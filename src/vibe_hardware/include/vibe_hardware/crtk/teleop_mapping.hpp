@@ -30,8 +30,8 @@ struct ArmButton {
 
 /// What the gripper of the arm does: its angle sets a joint of the suturing device.
 struct ArmGripper {
-  int joint = NeedleDriver;       ///< HelixAdvance to NeedleDriver
-  double closed = 0, open = 1;    ///< angles of the gripper [rad], different
+  int joint = NeedleDriver;           ///< HelixAdvance to NeedleDriver
+  double closed = 0, open = 1;        ///< angles of the gripper [rad], different
   double at_closed = 0, at_open = 0;  ///< positions of the joint there [m], [rad]
 };
 
@@ -47,12 +47,12 @@ struct TeleopMapping {
   Eigen::Matrix3d hand = Eigen::Matrix3d::Identity();  ///< axes of the hand's frame, as columns in the arm's base
   std::array<HandJoint, kScopeJointCount> joints;
   std::array<ArmButton, kButtonCount> buttons;
-  ArmButton clutch;           ///< while it is pressed, the scope stays and the arm is free
+  ArmButton clutch;  ///< while it is pressed, the scope stays and the arm is free
   std::optional<ArmGripper> gripper;
-  double force_scale = 1;     ///< of the forces of the tissue; 0: no forces
+  double force_scale = 1;                ///< of the forces of the tissue; 0: no forces
   std::string force_topic = "servo_cf";  ///< relative to the arm
   ForceFrame force_frame = ForceFrame::Base;
-  double timeout = 0.1;       ///< without a measurement after which the arm lets go of the scope [s]
+  double timeout = 0.1;  ///< without a measurement after which the arm lets go of the scope [s]
 };
 
 /// Reads a mapping file.

@@ -7,12 +7,12 @@ namespace vibe::hardware {
 /// An arm with a handle that a hand holds, as far as its CRTK interface shows it: a mass that forces push and that a
 /// spring and a damper pull to where the person intends; about each axis the same with an inertia.
 struct EmulatedArmConfig {
-  double mass = 0.25;              ///< of handle and hand [kg]
-  double inertia = 2e-4;           ///< [kg m^2]
-  double hand_stiffness = 200;     ///< [N/m]
-  double hand_damping = 10;        ///< [N s/m]
-  double turn_stiffness = 0.5;     ///< [N m/rad]
-  double turn_damping = 0.01;      ///< [N m s/rad]
+  double mass = 0.25;           ///< of handle and hand [kg]
+  double inertia = 2e-4;        ///< [kg m^2]
+  double hand_stiffness = 200;  ///< [N/m]
+  double hand_damping = 10;     ///< [N s/m]
+  double turn_stiffness = 0.5;  ///< [N m/rad]
+  double turn_damping = 0.01;   ///< [N m s/rad]
 };
 
 struct EmulatedArmState {
