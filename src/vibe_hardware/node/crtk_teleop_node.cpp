@@ -85,8 +85,11 @@ CrtkTeleopNode::CrtkTeleopNode(ros::NodeHandle handle, const CrtkParameters& par
   timer_ = handle.createWallTimer(ros::WallDuration(kForcePeriod), &CrtkTeleopNode::tick, this);
 }
 
-CrtkTeleopNode::~CrtkTeleopNode() {
-  publishForce(TeleopOutput(), ros::Time::now());
+void CrtkTeleopNode::release() {
+  timer_.stop();
+  const ros::Time stamp = ros::Time::now();
+  publishForce(TeleopOutput(), stamp);
+  button_publisher_.publish(buttonCommand(DriveState(), stamp));
 }
 
 std::string CrtkTeleopNode::nameOf(const std::string& topic) const {

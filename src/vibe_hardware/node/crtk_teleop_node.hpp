@@ -34,7 +34,8 @@ class CrtkTeleopNode {
  public:
   /// @throws Error for a wrong mapping or URDF
   CrtkTeleopNode(ros::NodeHandle handle, const CrtkParameters& parameters);
-  ~CrtkTeleopNode();  ///< the arm is left without force
+  /// At the end, when no callback runs any more: leaves the arm without force and the buttons released.
+  void release();
 
  private:
   CrtkParameters parameters_;

@@ -300,8 +300,8 @@ TEST(Haptic, RendersATractionBetweenFramesBetterThanTheLastForce) {
   EXPECT_LT(errors.rendered, 0.02 * errors.change);
 }
 
-/// A thread through the wall on both sides of what the helix holds, 45 mm apart at rest, with T-tag: a quarter shorter
-/// than that, or `cinched`, which draws it until it is tight.
+/// A thread through the wall on both sides of what the helix holds, 45 mm apart at rest, with T-tag.
+/// @param cinched  drawn until it is tight, and cut; else the cinch has drawn it for a second and goes on
 void sew(World& world, bool cinched) {
   const State& state = world.state;
   const auto& triangles = world.model->organ.surface.triangles;
@@ -322,17 +322,17 @@ void sew(World& world, bool cinched) {
   }
   const Eigen::Vector3d between =
       bitePosition(suture.bites[1], wall.x, wall.y, wall.z) - bitePosition(suture.bites[0], wall.x, wall.y, wall.z);
-  suture.length = {(cinched ? 1 : 0.75) * between.norm()};
+  suture.length = {between.norm()};
   suture.tension = {0};
   world.state.procedure.sutures.push_back(suture);
   StepInput input = scopeAt(0.1, 0.028, true);
-  for (const Button button : {TTag, Cinch}) {
-    if (button == Cinch && !cinched) break;
-    input.buttons[button] = 1;
-    world.run(button == Cinch ? 4 : kFrame, input);
-    input.buttons[button] = 0;
-    world.run(0.5, input);
-  }
+  input.buttons[TTag] = 1;
+  world.run(kFrame, input);
+  input.buttons[TTag] = 0;
+  input.buttons[Cinch] = 1;
+  world.run(cinched ? 4 : 1, input);
+  input.buttons[Cinch] = 0;
+  if (cinched) world.run(0.5, input);
   ASSERT_EQ(world.state.procedure.sutures.size(), 1U);
   ASSERT_FALSE(world.state.grip.empty());
 }
@@ -344,10 +344,13 @@ TEST(Haptic, RendersATractionOfSewnTissueBetterThanTheLastForce) {
     sew(frames, cinched);
     const double tension = frames.state.procedure.sutures[0].tension[0];
     EXPECT_GT(tension, 0.2);
-    std::printf("%s, tension %.2f N: ", cinched ? "cinched" : "thread", tension);
-    const Errors errors = renderBetweenFrames(
-        std::move(frames), 3, [](double t) { return scopeAt(0.1 - 4e-3 * (1 - std::cos(2 * M_PI * t)), 0.028, true); },
-        1);
+    std::printf("%s, tension %.2f N: ", cinched ? "cinched" : "drawing", tension);
+    const auto pull = [cinched](double t) {
+      StepInput input = scopeAt(0.1 - 4e-3 * (1 - std::cos(2 * M_PI * t)), 0.028, true);
+      input.buttons[Cinch] = cinched ? 0 : 1;
+      return input;
+    };
+    const Errors errors = renderBetweenFrames(std::move(frames), 3, pull, 1);
     EXPECT_GT(errors.change, 0.1);
     EXPECT_LT(errors.rendered, errors.held / 4);
     EXPECT_LT(errors.rendered, 0.02 * errors.change);

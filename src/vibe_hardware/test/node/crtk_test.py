@@ -79,7 +79,14 @@ class CrtkTest(unittest.TestCase):
         self.state.publish(StateCommand(string="resume"))
         self.assertTrue(wait_until(lambda: self.node.output().count("drives the scope") >= 3, 20), self.node.output())
 
-    def test_4_an_arm_that_is_gone_leaves_the_scope_where_it_is(self):
+    def test_4_whoever_ends_it_leaves_the_arm_without_force(self):
+        self.assertTrue(wait_until(lambda: abs(self.back()) > 0.02, 20), "pressing")
+        self.assertEqual(self.node.stop(), 0)
+        self.assertTrue(wait_until(lambda: self.back() == 0, 5))
+        type(self).node = Program("vibe_hardware", "crtk_teleop")
+        self.assertTrue(wait_until(lambda: "drives the scope" in self.node.output(), 20), self.node.output())
+
+    def test_5_an_arm_that_is_gone_leaves_the_scope_where_it_is(self):
         self.arm.stop()
         self.assertTrue(wait_until(lambda: "fallen silent" in self.node.output(), 20), self.node.output())
         self.assertEqual(self.back(), 0)
