@@ -11,8 +11,11 @@
 #include <vibe_msgs/OperatingState.h>
 #include <vibe_msgs/StateCommand.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include "vibe_hardware/emulator/emulated_arm.hpp"
 #include "vibe_node/parameter_reader.hpp"

@@ -1,8 +1,7 @@
 #pragma once
 
 #include <array>
-#include <map>
-#include <optional>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -46,12 +45,11 @@ class CrtkTeleopNode {
 
   bool scope_known_ = false, overstitch_known_ = false;
   bool arm_ready_ = true;  // an arm without operating_state may be used
-  std::string arm_state_, base_frame_, body_frame_;
+  std::string arm_state_, base_frame_;
   double worst_age_ = 0;  // of a measurement at its arrival, since the last diagnostics [s]
   std::uint64_t samples_ = 0, samples_before_ = 0, invalid_ = 0;
   double last_buttons_ = -1e9, last_joints_ = -1e9;  // published [s]
   std::array<std::uint8_t, kButtonCount> buttons_{}, sent_buttons_{};
-  bool clutch_sent_ = false;
 
   ros::Publisher force_, scope_, overstitch_, button_publisher_, absolute_, gravity_;
   std::vector<ros::Subscriber> subscribers_;

@@ -1,8 +1,6 @@
 #include "joy_pad.hpp"
 
-#include <linux/input-event-codes.h>
-
-#include <cmath>
+#include <functional>
 #include <utility>
 
 #include <ros/ros.h>
