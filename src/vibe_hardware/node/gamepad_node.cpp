@@ -6,6 +6,8 @@
 #include <linux/input-event-codes.h>
 
 #include "hardware_messages.hpp"
+#include "joy_pad.hpp"
+#include "vibe_core/common/error.hpp"
 #include "vibe_core/common/files.hpp"
 #include "vibe_core/common/step_timer.hpp"
 #include "vibe_hardware/gamepad/pad_recording.hpp"
@@ -19,6 +21,7 @@ GamepadParameters readGamepadParameters(const ros::NodeHandle& private_handle) {
   GamepadParameters parameters;
   reader.read("mapping", parameters.mapping);
   reader.read("pad", parameters.pad);
+  reader.read("joy", parameters.joy);
   reader.read("replay", parameters.replay);
   reader.read("record", parameters.record);
   reader.read("rate", parameters.rate, 60, 100, "Hz");
@@ -35,7 +38,10 @@ ToolLimits toolLimitsOf(const ros::NodeHandle& handle) {
   return loadToolLimits("package://vibe_description/urdf/scope.urdf");
 }
 
-PadLink makePadLink(const GamepadParameters& parameters) {
+PadLink makePadLink(const ros::NodeHandle& handle, const GamepadParameters& parameters, const JoyNames& names) {
+  if (!parameters.joy.empty() && !(parameters.replay.empty() && parameters.pad.empty()))
+    throw Error("The parameter joy goes without pad and replay, which name other sources; set one of them.");
+  if (!parameters.joy.empty()) return PadLink(joyPad(handle, parameters.joy, names));
   if (parameters.replay.empty())
     return PadLink([wanted = parameters.pad](std::string& why) { return openPad(wanted, why); });
   const auto recording = std::make_shared<PadRecording>(loadPadRecording(resolveAddress(parameters.replay)));
@@ -75,7 +81,7 @@ GamepadNode::GamepadNode(ros::NodeHandle handle, const GamepadParameters& parame
       limits_(toolLimitsOf(handle)),
       mapping_(loadPadMapping(resolveAddress(parameters.mapping), limits_)),
       feedback_(mapping_),
-      link_(makePadLink(parameters)),
+      link_(makePadLink(handle, parameters, mapping_.joy)),
       scope_(handle.advertise<sensor_msgs::JointState>("scope/servo_jp", kPadQueue)),
       overstitch_(handle.advertise<sensor_msgs::JointState>("overstitch/measured_js", kPadQueue)),
       buttons_(handle.advertise<sensor_msgs::Joy>("scope/buttons", kPadQueue)),

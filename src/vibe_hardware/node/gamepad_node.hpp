@@ -25,6 +25,7 @@ namespace vibe::hardware {
 struct GamepadParameters {
   std::string mapping = "package://vibe_hardware/config/gamepads/two_stick.yaml";
   std::string pad;     ///< path, or part of the name or phys; empty: the first gamepad
+  std::string joy;     ///< topic of sensor_msgs/Joy to read instead of a device; empty: none
   std::string replay;  ///< a recorded pad session to play instead; empty: none
   std::string record;  ///< where to record the pad; empty: nowhere
   double rate = 100;   ///< of the published joints [Hz]
@@ -36,8 +37,8 @@ GamepadParameters readGamepadParameters(const ros::NodeHandle& private_handle);
 /// Limits of the tool from the parameter robot_description, or from the package's URDF if it is not set.
 ToolLimits toolLimitsOf(const ros::NodeHandle& handle);
 
-/// The pad, or the recording, that the parameters ask for. @throws Error for a recording that cannot be read
-PadLink makePadLink(const GamepadParameters& parameters);
+/// The pad, topic or recording that the parameters ask for. @throws Error for a recording that cannot be read
+PadLink makePadLink(const ros::NodeHandle& handle, const GamepadParameters& parameters, const JoyNames& names);
 
 /// A gamepad as topics: docs/interfaces.md. All work is done in the callbacks of one thread.
 class GamepadNode {

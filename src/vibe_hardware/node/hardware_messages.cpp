@@ -27,6 +27,8 @@ void checkFinite(double value, const std::string& what) {
   if (!std::isfinite(value)) throw Error(what + " is not finite; send finite numbers.");
 }
 
+}  // namespace
+
 JointSpring readSpring(const vibe_msgs::HapticParameters& message, const std::string& joint) {
   const std::size_t i = placeOf(message.joint_name, joint);
   if (i >= message.joint_position.size()) throw Error("joint '" + joint + "' has no values; send four joints.");
@@ -46,8 +48,6 @@ JointSpring readSpring(const vibe_msgs::HapticParameters& message, const std::st
   }
   return spring;
 }
-
-}  // namespace
 
 ros::Time StampSource::at(double time) {
   ros::Time stamp = ros::Time::now() - ros::Duration(steadyTime() - time);

@@ -40,6 +40,9 @@ sensor_msgs::Joy makeButtons(const ScopeButtons& buttons, const ros::Time& stamp
 /// @throws Error with one sentence for a value that is not finite, a negative stiffness or unknown joints
 HapticDriver::Targets readHapticParameters(const vibe_msgs::HapticParameters& message, const ScopeJoints& joints);
 
+/// The spring-damper of a joint in the message. @throws Error as above
+JointSpring readSpring(const vibe_msgs::HapticParameters& message, const std::string& joint);
+
 /// @throws Error as in the simulator: unknown, missing or repeated joints, values that are not finite
 OverstitchDrive::Positions readOverstitchJoints(const sensor_msgs::JointState& message);
 

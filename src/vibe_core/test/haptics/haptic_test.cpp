@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <functional>
 
+#include "vibe_core/procedure/stitch.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_core/state/state_fields.hpp"
 #include "vibe_testing/scope_worlds.hpp"
@@ -20,7 +21,8 @@ using test::World;
 constexpr double kRadius = 0.06, kFrame = 1.0 / 60, kMillisecond = 1e-3;
 
 /// A ball full of gas on a foundation, the scope entering at the top and looking down.
-World ballWorld(double step_period, const std::string& model = "shell", int level = 3, double friction = 0.1) {
+World ballWorld(double step_period, const std::string& model = "shell", int level = 3, double friction = 0.1,
+                bool sutures = false) {
   Scene scene;
   scene.step_period = step_period;
   scene.tissue.model = model;
@@ -30,6 +32,7 @@ World ballWorld(double step_period, const std::string& model = "shell", int leve
   scene.scope = test::scopeFromAbove(kRadius);
   scene.scope->friction = friction;
   scene.helix = test::wideHelix();
+  if (sutures) scene.suture = SutureScene{};
   return test::scopeWorld(scene, openBall(kRadius, level, 2.3e-3));
 }
 
@@ -243,7 +246,7 @@ struct Errors {
 // The hand follows `insertion` from the same state in a world of 1 ms, and in one of frames whose responses a device
 // renders in between.
 Errors renderBetweenFrames(World frames, int level, const std::function<StepInput(double)>& pull, double seconds) {
-  World truth = ballWorld(kMillisecond, "shell", level);
+  World truth = ballWorld(kMillisecond, "shell", level, 0.1, frames.model->scene.suture.has_value());
   truth.state = frames.state;
   const Eigen::Vector3d start = forceOn(truth), axis = truth.model->tool_base.linear().col(0);
   Errors errors;
@@ -295,6 +298,63 @@ TEST(Haptic, RendersATractionBetweenFramesBetterThanTheLastForce) {
   EXPECT_LT(errors.rendered, errors.held / 4);  // what is left is the error of the frames' own forces
   EXPECT_LT(errors.axis, errors.held_axis / 4);
   EXPECT_LT(errors.rendered, 0.02 * errors.change);
+}
+
+/// A thread through the wall on both sides of what the helix holds, 45 mm apart at rest, with T-tag.
+/// @param cinched  drawn until it is tight, and cut; else the cinch has drawn it for a second and goes on
+void sew(World& world, bool cinched) {
+  const State& state = world.state;
+  const auto& triangles = world.model->organ.surface.triangles;
+  const SurfaceView wall{triangles, state.x, state.y, state.z};
+  const auto centre = [&](int t) {
+    const auto& [a, b, c] = triangles[static_cast<std::size_t>(t)];
+    return Eigen::Vector3d((wall.position(a) + wall.position(b) + wall.position(c)) / 3);
+  };
+  Suture suture;
+  for (const double side : {-1.0, 1.0}) {
+    const Eigen::Vector3d wanted = kRadius * Eigen::Vector3d(side * std::sin(0.38), 0, -std::cos(0.38));
+    int nearest = 0;
+    for (int t = 1; t < static_cast<int>(triangles.size()); ++t)
+      if ((centre(t) - wanted).norm() < (centre(nearest) - wanted).norm()) nearest = t;
+    suture.bites.push_back(
+        biteAround(*world.model, wall, nearest, centre(nearest), world.model->scene.suture->bite_radius));
+    suture.bites.back().depth = suture.bites.back().thickness;
+  }
+  const Eigen::Vector3d between =
+      bitePosition(suture.bites[1], wall.x, wall.y, wall.z) - bitePosition(suture.bites[0], wall.x, wall.y, wall.z);
+  suture.length = {between.norm()};
+  suture.tension = {0};
+  world.state.procedure.sutures.push_back(suture);
+  StepInput input = scopeAt(0.1, 0.028, true);
+  input.buttons[TTag] = 1;
+  world.run(kFrame, input);
+  input.buttons[TTag] = 0;
+  input.buttons[Cinch] = 1;
+  world.run(cinched ? 4 : 1, input);
+  input.buttons[Cinch] = 0;
+  if (cinched) world.run(0.5, input);
+  ASSERT_EQ(world.state.procedure.sutures.size(), 1U);
+  ASSERT_FALSE(world.state.grip.empty());
+}
+
+TEST(Haptic, RendersATractionOfSewnTissueBetterThanTheLastForce) {
+  for (const bool cinched : {false, true}) {
+    World frames = ballWorld(kFrame, "shell", 3, 0.1, true);
+    takeHold(frames);
+    sew(frames, cinched);
+    const double tension = frames.state.procedure.sutures[0].tension[0];
+    EXPECT_GT(tension, 0.2);
+    std::printf("%s, tension %.2f N: ", cinched ? "cinched" : "drawing", tension);
+    const auto pull = [cinched](double t) {
+      StepInput input = scopeAt(0.1 - 4e-3 * (1 - std::cos(2 * M_PI * t)), 0.028, true);
+      input.buttons[Cinch] = cinched ? 0 : 1;
+      return input;
+    };
+    const Errors errors = renderBetweenFrames(std::move(frames), 3, pull, 1);
+    EXPECT_GT(errors.change, 0.1);
+    EXPECT_LT(errors.rendered, errors.held / 4);
+    EXPECT_LT(errors.rendered, 0.02 * errors.change);
+  }
 }
 
 TEST(Haptic, RendersAContactBetweenFramesBetterThanTheLastForce) {

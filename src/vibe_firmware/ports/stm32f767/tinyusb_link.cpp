@@ -1,6 +1,8 @@
 #include "tinyusb_link.hpp"
 
 #include <tusb.h>
+// after it
+#include <device/usbd_pvt.h>
 
 #include <algorithm>
 #include <cstring>
@@ -101,6 +103,35 @@ void tud_umount_cb() {
   handler->handleBusReset();
 }
 
+void tud_suspend_cb(bool) {
+  handler->handleSuspend();
+}
+
+// TinyUSB's own driver acknowledges every SET_REPORT before it shows it. This one looks at the report first, so that a
+// malformed one stalls (USB 2.0, 8.5.3.4); all else is as there.
+bool controlTransfer(std::uint8_t port, std::uint8_t stage, const tusb_control_request_t* request) {
+  static std::uint8_t bytes[CFG_TUD_HID_EP_BUFSIZE];
+  const bool sets_report = request->bmRequestType == 0x21 && request->bRequest == 9;
+  if (!sets_report) return hidd_control_xfer_cb(port, stage, request);
+  if (stage == CONTROL_STAGE_SETUP)
+    return request->wLength > 0 && request->wLength <= sizeof bytes &&
+           tud_control_xfer(port, request, bytes, request->wLength);
+  if (stage != CONTROL_STAGE_DATA) return true;
+  return handler->handleControl(makeSetup(0x21, 9, request->wValue, request->wLength), bytes, nullptr) >= 0;
+}
+
+const usbd_class_driver_t* usbd_app_driver_get_cb(std::uint8_t* count) {
+  static usbd_class_driver_t driver{};
+  driver.init = hidd_init;
+  driver.deinit = hidd_deinit;
+  driver.reset = hidd_reset;
+  driver.open = hidd_open;
+  driver.control_xfer_cb = controlTransfer;
+  driver.xfer_cb = hidd_xfer_cb;
+  *count = 1;
+  return &driver;
+}
+
 // TinyUSB takes the report id off what is set and puts it before what is read.
 std::uint16_t tud_hid_get_report_cb(std::uint8_t, std::uint8_t id, hid_report_type_t type, std::uint8_t* buffer,
                                     std::uint16_t length) {
@@ -113,12 +144,6 @@ std::uint16_t tud_hid_get_report_cb(std::uint8_t, std::uint8_t id, hid_report_ty
   return content;
 }
 
-void tud_hid_set_report_cb(std::uint8_t, std::uint8_t id, hid_report_type_t type, const std::uint8_t* buffer,
-                           std::uint16_t size) {
-  std::uint8_t bytes[CFG_TUD_HID_EP_BUFSIZE + 1];
-  const std::size_t content = std::min<std::size_t>(size, CFG_TUD_HID_EP_BUFSIZE);
-  bytes[0] = id;
-  std::memcpy(bytes + 1, buffer, content);
-  handler->handleControl(makeSetup(0x21, 9, static_cast<unsigned>(type) << 8 | id, content + 1), bytes, nullptr);
-}
+// For reports of an OUT endpoint, which the device does not have.
+void tud_hid_set_report_cb(std::uint8_t, std::uint8_t, hid_report_type_t, const std::uint8_t*, std::uint16_t) {}
 }

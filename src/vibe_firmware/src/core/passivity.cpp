@@ -25,6 +25,11 @@ float filterFactor(const AxisConfig& config) {
   return (1.0F - config.velocity_pole) / (1.0F + config.velocity_pole);
 }
 
+/// Largest error of the filtered velocity, times T / D: that of a step of the encoder that comes at the worst time.
+float quantisationFactor(const AxisConfig& config) {
+  return 1.0F - config.velocity_pole;
+}
+
 float stepSize(const AxisConfig& config) {
   return std::fabs(config.radians_per_count);
 }
@@ -76,7 +81,7 @@ float requiredViscousFriction(const AxisConfig& config, float stiffness, float d
 
 float requiredCoulombFriction(const AxisConfig& config, float stiffness, float damping) {
   return config.safety_factor * stepSize(config) *
-         (0.5F * stiffness + filterFactor(config) * damping / config.sample_period);
+         (0.5F * stiffness + quantisationFactor(config) * damping / config.sample_period);
 }
 
 float maxStiffness(const AxisConfig& config, float damping) {
@@ -84,15 +89,17 @@ float maxStiffness(const AxisConfig& config, float damping) {
   const float viscous =
       (config.viscous_friction * margin / delayFactor(config) - filterFactor(config) * damping) / holdTime(config);
   const float coulomb = 2.0F * (config.coulomb_friction * margin / stepSize(config) -
-                                filterFactor(config) * damping / config.sample_period);
+                                quantisationFactor(config) * damping / config.sample_period);
   return atLeastZero(smaller(viscous, coulomb));
 }
 
 float maxDamping(const AxisConfig& config, float stiffness) {
   const float margin = kRoundingMargin / config.safety_factor;
-  const float viscous = config.viscous_friction * margin / delayFactor(config) - stiffness * holdTime(config);
-  const float coulomb = (config.coulomb_friction * margin / stepSize(config) - 0.5F * stiffness) * config.sample_period;
-  return atLeastZero(smaller(viscous, coulomb)) / filterFactor(config);
+  const float viscous =
+      (config.viscous_friction * margin / delayFactor(config) - stiffness * holdTime(config)) / filterFactor(config);
+  const float coulomb = (config.coulomb_friction * margin / stepSize(config) - 0.5F * stiffness) *
+                        config.sample_period / quantisationFactor(config);
+  return atLeastZero(smaller(viscous, coulomb));
 }
 
 Verdict validate(const AxisConfig& config, const AxisParameters& parameters) {

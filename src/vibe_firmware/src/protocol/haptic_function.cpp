@@ -1,5 +1,7 @@
 #include "vibe_firmware/protocol/haptic_function.hpp"
 
+#include <algorithm>
+
 #include "protocol/function_parts.hpp"
 #include "vibe_firmware/protocol/descriptors.hpp"
 
@@ -19,6 +21,8 @@ HapticFunction::HapticFunction(const HapticConfig& config, const char* serial)
 std::array<float, kAxisCount> HapticFunction::tick(const HapticSample& sample) {
   ParameterReport parameters;
   if (parameters_.take(parameters)) takeOver(parameters, state_);
+  if (host_gone_.exchange(false, std::memory_order_relaxed))
+    state_.ticks_since_host = std::max(state_.ticks_since_host, config_.host_timeout_ticks);
   const std::array<float, kAxisCount> torque = step(config_, sample, state_);
   flags_.store(state_.status.flags, std::memory_order_relaxed);
   if (ticks_to_report_ == 0) {

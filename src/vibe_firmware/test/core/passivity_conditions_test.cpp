@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -25,9 +26,31 @@ TEST(PassivityConditions, AreTheFormulas) {
   const double g = 0.1 / 1.9;
   const double h = 0.5 + 0.05 + std::sqrt(0.25 + 2 * 0.05);
   EXPECT_NEAR(requiredViscousFriction(config, 0.3F, 2e-3F), 2 * h * (0.3 * 1e-3 / 2 + g * 2e-3), 1e-9);
-  EXPECT_NEAR(requiredCoulombFriction(config, 0.3F, 2e-3F), 2 * 3.07e-4 * (0.15 + g * 2), 1e-9);
+  EXPECT_NEAR(requiredCoulombFriction(config, 0.3F, 2e-3F), 2 * 3.07e-4 * (0.15 + 0.1 * 2), 1e-9);
   config.radians_per_count = -config.radians_per_count;
-  EXPECT_NEAR(requiredCoulombFriction(config, 0.3F, 2e-3F), 2 * 3.07e-4 * (0.15 + g * 2), 1e-9);
+  EXPECT_NEAR(requiredCoulombFriction(config, 0.3F, 2e-3F), 2 * 3.07e-4 * (0.15 + 0.1 * 2), 1e-9);
+}
+
+// The proof of the condition of quantisation: no sequence of positions makes the filtered velocity more wrong. The
+// worst one has its error at one end until the last step, and then at the other.
+TEST(PassivityConditions, TheErrorOfTheFilteredVelocityIsBounded) {
+  for (const double a : {0.0, 0.5, 0.9}) {
+    double v = 0;  // at the end
+    const auto filtered = [a, &v](auto error) {
+      double largest = 0;
+      v = 0;
+      for (int k = 1; k < 400; ++k) {
+        v = a * v + (1 - a) * (error(k) - error(k - 1));  // in steps of the encoder per period
+        largest = std::max(largest, std::abs(v));
+      }
+      return largest;
+    };
+    EXPECT_NEAR(filtered([](int k) { return k < 399 ? -0.5 : 0.5; }), 1 - a, 1e-12);
+    const auto scattered = [](int k) { return 1664525U * static_cast<unsigned>(k * k + k) / 4294967296.0 - 0.5; };
+    EXPECT_LE(filtered(scattered), 1 - a);
+    filtered([](int k) { return k % 2 - 0.5; });
+    EXPECT_NEAR(std::abs(v), (1 - a) / (1 + a), 1e-9) << "the worst motion that is known: it alternates";
+  }
 }
 
 TEST(PassivityConditions, LargestStiffnessAndDampingAreAcceptedAndOnePercentMoreIsNot) {

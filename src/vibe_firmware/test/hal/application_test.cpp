@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <deque>
 #include <vector>
@@ -40,6 +41,8 @@ class FakeLink : public UsbLink {
   void poll(ControlHandler& handler) override {
     if (reset_) handler.handleBusReset();
     reset_ = false;
+    if (suspend_) handler.handleSuspend();
+    suspend_ = false;
     while (!requests_.empty()) {
       std::uint8_t response[ControlHandler::kMaxData];
       result_ = handler.handleControl(requests_.front().setup, requests_.front().data.data(), response);
@@ -56,6 +59,7 @@ class FakeLink : public UsbLink {
 
   std::deque<Request> requests_;
   bool reset_ = false;
+  bool suspend_ = false;
   int result_ = 0;
   std::vector<std::uint8_t> response_;
   std::vector<std::vector<std::uint8_t>> reports_;
@@ -117,6 +121,27 @@ TEST_F(Haptic, SendsNothingAfterABusReset) {
   link_.reset_ = true;
   run(50);
   EXPECT_EQ(link_.reports_.size(), before);
+}
+
+TEST_F(Haptic, TheSpringFadesAtOnceWhenTheHostSleepsOrLeaves) {
+  for (bool* event : {&link_.suspend_, &link_.reset_}) {
+    sendSpring(0.1F);
+    run(2);
+    board_.count_ = 10;
+    run(100);
+    const float held = board_.torques_.back()[0];
+    ASSERT_LT(held, -1e-5F);
+    *event = true;
+    run(25);
+    EXPECT_NEAR(board_.torques_.back()[0], held / 2, 0.05F * std::fabs(held));
+    run(30);
+    EXPECT_EQ(board_.torques_.back()[0], 0);
+    sendSpring(0.1F);
+    run(50);
+    EXPECT_NEAR(board_.torques_.back()[0], held, 1e-7F) << "new parameters bring it back";
+    board_.count_ = 0;
+    run(50);
+  }
 }
 
 TEST_F(Haptic, SendsNothingWhileTheEndpointIsHalted) {

@@ -37,6 +37,22 @@ const std::uint16_t* tud_descriptor_string_cb(std::uint8_t index, std::uint16_t 
 const std::uint8_t* tud_hid_descriptor_report_cb(std::uint8_t instance);
 void tud_mount_cb();
 void tud_umount_cb();
+void tud_suspend_cb(bool remote_wakeup_en);
+
+struct tusb_control_request_t {
+  std::uint8_t bmRequestType, bRequest;
+  std::uint16_t wValue, wIndex, wLength;
+};
+struct tusb_desc_interface_t;
+enum xfer_result_t { XFER_RESULT_SUCCESS };
+enum { CONTROL_STAGE_SETUP, CONTROL_STAGE_DATA, CONTROL_STAGE_ACK };
+bool tud_control_xfer(std::uint8_t rhport, const tusb_control_request_t* request, void* buffer, std::uint16_t len);
+void hidd_init();
+bool hidd_deinit();
+void hidd_reset(std::uint8_t rhport);
+std::uint16_t hidd_open(std::uint8_t rhport, const tusb_desc_interface_t* itf_desc, std::uint16_t max_len);
+bool hidd_control_xfer_cb(std::uint8_t rhport, std::uint8_t stage, const tusb_control_request_t* request);
+bool hidd_xfer_cb(std::uint8_t rhport, std::uint8_t ep_addr, xfer_result_t event, std::uint32_t xferred_bytes);
 std::uint16_t tud_hid_get_report_cb(std::uint8_t instance, std::uint8_t report_id, hid_report_type_t report_type,
                                     std::uint8_t* buffer, std::uint16_t reqlen);
 void tud_hid_set_report_cb(std::uint8_t instance, std::uint8_t report_id, hid_report_type_t report_type,

@@ -191,6 +191,9 @@ RenderingError renderingError(const std::vector<HapticLoopSample>& samples) {
 }
 
 HapticLoopResult runHapticLoop(const Scene& scene, const HapticLoopSettings& settings) {
+  if (!scene.scope)
+    throw Error("The scene '" + scene.name +
+                "' has no scope, so there is no force to render; add the key 'scope' to it.");
   return Loop(scene, settings).run();
 }
 

@@ -35,9 +35,11 @@ class PadMappingReader {
   void readPosition(const YamlField& field, const std::vector<YamlField>& entries, int index, JointMapping& joint);
   void readButtons(const YamlField& field);
   void readFeedback(const YamlField& field);
+  void readJoy(const YamlField& field);
 
   double within(const YamlField& field, const std::string& unit, double low, double high) const;
   int code(const YamlField& field, int type);
+  int named(const YamlField& field, int type) const;
   void readPair(const YamlField& field, int type, JointMapping& joint);
   void checkKeys(const std::vector<YamlField>& entries, const std::vector<std::string>& known) const;
 };
@@ -89,12 +91,13 @@ std::vector<std::string> listOf(const std::array<const char*, N>& names) {
 PadMapping PadMappingReader::read() {
   const YamlField root = source_.root();
   const std::vector<YamlField> fields = source_.map(root);
-  checkKeys(fields, {"name", "joints", "buttons", "feedback"});
+  checkKeys(fields, {"name", "joints", "buttons", "feedback", "joy"});
   if (find(fields, "name") == nullptr) source_.fail(root, "has no name; write 'name: ...'");
   mapping_.name = source_.text(*find(fields, "name"));
   if (const YamlField* joints = find(fields, "joints")) readJoints(*joints);
   if (const YamlField* buttons = find(fields, "buttons")) readButtons(*buttons);
   if (const YamlField* feedback = find(fields, "feedback")) readFeedback(*feedback);
+  if (const YamlField* joy = find(fields, "joy")) readJoy(*joy);
   if (used_.empty()) source_.fail(root, "moves nothing; write at least one joint below 'joints:'");
   return mapping_;
 }
@@ -154,15 +157,19 @@ void PadMappingReader::readPair(const YamlField& field, int type, JointMapping& 
 }
 
 int PadMappingReader::code(const YamlField& field, int type) {
+  const int code = named(field, type);
+  const auto [entry, is_new] = used_.emplace(std::make_pair(type, code), field.path);
+  if (!is_new)
+    source_.fail(field, source_.text(field) + " is used by " + entry->second + " already; use each control once");
+  return code;
+}
+
+int PadMappingReader::named(const YamlField& field, int type) const {
   const std::string name = source_.text(field);
   const int code = eventCodeFromName(type, name);
-  if (code < 0) {
-    const std::string kind = type == EV_ABS ? "an axis (vibe_gamepad shows the names)" : "a button";
-    source_.fail(field, "'" + name + "' is not the name of " + kind + "; " + suggestKey(name, codeNames(type)));
-  }
-  const auto [entry, is_new] = used_.emplace(std::make_pair(type, code), field.path);
-  if (!is_new) source_.fail(field, name + " is used by " + entry->second + " already; use each control once");
-  return code;
+  if (code >= 0) return code;
+  const std::string kind = type == EV_ABS ? "an axis (vibe_gamepad shows the names)" : "a button";
+  source_.fail(field, "'" + name + "' is not the name of " + kind + "; " + suggestKey(name, codeNames(type)));
 }
 
 /// A quantity within limits of the URDF, to kRounding; what is beyond by less becomes the limit.
@@ -232,6 +239,25 @@ void PadMappingReader::readFeedback(const YamlField& field) {
   if (const YamlField* force = find(entries, "rumble_force"))
     mapping_.feedback.rumble_force = source_.quantity(*force, "N", 0, kLargestEffort);
 }
+
+void PadMappingReader::readJoy(const YamlField& field) {
+  const std::vector<YamlField> entries = source_.map(field);
+  checkKeys(entries, {"axes", "buttons"});
+  const auto read = [&](const char* key, int type, std::vector<int>& codes) {
+    const YamlField* list = find(entries, key);
+    if (list == nullptr) return;
+    codes.clear();
+    for (const YamlField& item : source_.list(*list)) codes.push_back(named(item, type));
+  };
+  read("axes", EV_ABS, mapping_.joy.axes);
+  read("buttons", EV_KEY, mapping_.joy.buttons);
+}
+
+JoyNames::JoyNames()
+    : axes{ABS_X, ABS_Y, ABS_Z, ABS_RX, ABS_RY, ABS_RZ, ABS_HAT0X, ABS_HAT0Y}, buttons{BTN_SOUTH,  BTN_EAST,  BTN_NORTH,
+                                                                                       BTN_WEST,   BTN_TL,    BTN_TR,
+                                                                                       BTN_SELECT, BTN_START, BTN_MODE,
+                                                                                       BTN_THUMBL, BTN_THUMBR} {}
 
 namespace {
 

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
+
+#include <linux/input-event-codes.h>
 
 #include "gamepad/evdev_pad.hpp"
 
@@ -13,6 +16,29 @@ namespace {
 constexpr double kRetryPeriod = 0.5;  // [s]
 
 }  // namespace
+
+std::vector<PadEvent> joyEvents(const std::vector<float>& axes, const std::vector<int>& buttons, const JoyNames& names,
+                                PadState& state) {
+  constexpr int kEnd = 32767;
+  std::vector<PadEvent> events;
+  for (std::size_t i = 0; i < std::min(axes.size(), names.axes.size()); ++i) {
+    PadAxis& axis = state.axes.try_emplace(names.axes[i], PadAxis{-kEnd, kEnd, 0, false}).first->second;
+    const float value = std::isfinite(axes[i]) ? std::clamp(axes[i], -1.0F, 1.0F) : 0.0F;
+    const int counts = static_cast<int>(std::lround(-kEnd * value));
+    if (counts == axis.value && (axis.is_known || counts == 0)) continue;
+    events.push_back({0, EV_ABS, names.axes[i], counts});
+  }
+  for (std::size_t i = 0; i < std::min(buttons.size(), names.buttons.size()); ++i) {
+    const bool is_new = state.buttons.count(names.buttons[i]) == 0;
+    PadButton& button = state.buttons[names.buttons[i]];
+    const bool down = buttons[i] != 0;
+    if (is_new)
+      button.down = down;  // counts from its next press on
+    else if (down != button.down)
+      events.push_back({0, EV_KEY, names.buttons[i], down ? 1 : 0});
+  }
+  return events;
+}
 
 std::string PadLink::poll(double now) {
   if (!pad_) return look(now);

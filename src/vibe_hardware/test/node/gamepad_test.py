@@ -125,6 +125,20 @@ class GamepadTest(unittest.TestCase):
             self.assertEqual(node.stop(), 0)
             self.assertEqual(events_of(copy)[-16:], events_of(RECORDING)[-16:])
 
+    def test_messages_of_joy_node_drive_the_scope_until_it_leaves(self):
+        joy = rospy.Publisher("joy", Joy, queue_size=10)
+        node = self.start(joy="joy")
+        self.assertTrue(wait_until(lambda: joy.get_num_connections() > 0, 20), node.lines)
+        joy.publish(Joy(axes=[0] * 8, buttons=[0] * 11))
+        self.assertTrue(wait_until(lambda: node.count("with 8 axes and 11 buttons") == 1, 20), node.lines)
+        self.assertTrue(wait_until(lambda: self.simulator.scope, 20), node.lines)
+        joy.publish(Joy(axes=[0, 1] + [0] * 6, buttons=[1] + [0] * 10))  # forwards, A
+        self.assertTrue(wait_until(lambda: self.simulator.scope[-1].position[0] > START[0] + 0.01, 20))
+        self.assertTrue(wait_until(lambda: self.simulator.buttons[-1].buttons[1] == 1, 20))
+        joy.unregister()
+        self.assertTrue(wait_until(lambda: node.count("is gone") == 1, 20), node.lines)
+        self.assertTrue(wait_until(lambda: self.simulator.buttons[-1].buttons[1] == 0, 20))
+
     def test_without_a_pad_it_says_so_once_and_publishes_nothing(self):
         reports = []
         listener = rospy.Subscriber("/diagnostics", DiagnosticArray, reports.append)
@@ -149,6 +163,7 @@ class GamepadTest(unittest.TestCase):
                 ({"replay": "/nowhere.evemu"}, "nowhere.evemu"),
                 ({"record": "/nowhere/pad.evemu"}, "Cannot write the pad recording '/nowhere/pad.evemu'"),
                 ({"mappping": "x"}, "did you mean 'mapping'?"),
+                ({"joy": "joy", "pad": "x"}, "The parameter joy goes without pad and replay"),
                 ({"rate": 1000}, "Parameter /gamepad_node/rate must be a number from 60 Hz to 100 Hz"),
             ]:
                 node = self.start(**parameters)

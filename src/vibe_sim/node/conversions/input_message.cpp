@@ -102,12 +102,19 @@ InputSample readButtons(const sensor_msgs::Joy& message) {
   return sample;
 }
 
+namespace {
+
+void checkTipFrame(const std::string& frame, const std::string& what) {
+  if (!frame.empty() && frame != kWorldFrame && frame != kScopeBaseFrame)
+    throw Error("its frame is '" + frame + "'; give the " + what + " of scope_tip in frame '" + kWorldFrame + "' or '" +
+                kScopeBaseFrame + "'.");
+}
+
+}  // namespace
+
 InputSample readTipTarget(const geometry_msgs::PoseStamped& message) {
   const std::string& frame = message.header.frame_id;
-  if (!frame.empty() && frame != kWorldFrame && frame != kScopeBaseFrame) {
-    throw Error("its frame is '" + frame + "'; give the pose of scope_tip in frame '" + kWorldFrame + "' or '" +
-                kScopeBaseFrame + "'.");
-  }
+  checkTipFrame(frame, "pose");
   const auto& p = message.pose.position;
   const auto& q = message.pose.orientation;
   const Eigen::Vector3d position(p.x, p.y, p.z);
@@ -129,6 +136,21 @@ InputSample readTipTarget(const geometry_msgs::PoseStamped& message) {
 InputSample readTipMove(const geometry_msgs::PoseStamped& message) {
   InputSample sample = readTipTarget(message);
   sample.move = true;
+  return sample;
+}
+
+InputSample readTipVelocity(const geometry_msgs::TwistStamped& message) {
+  const std::string& frame = message.header.frame_id;
+  checkTipFrame(frame, "velocity");
+  const auto& v = message.twist.linear;
+  const auto& w = message.twist.angular;
+  InputSample sample;
+  sample.channel = InputChannel::Scope;
+  sample.stamp = fromRosTime(message.header.stamp);
+  sample.target = frame == kScopeBaseFrame ? ScopeTarget::VelocityInBase : ScopeTarget::VelocityInWorld;
+  sample.tip_twist << v.x, v.y, v.z, w.x, w.y, w.z;
+  if (!sample.tip_twist.allFinite())
+    throw Error("its twist has a value that is not a finite number; send finite numbers.");
   return sample;
 }
 

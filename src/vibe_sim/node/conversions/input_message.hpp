@@ -1,5 +1,6 @@
 #pragma once
 #include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/TwistStamped.h>
 #include <sensor_msgs/JointState.h>
 #include <sensor_msgs/Joy.h>
 #include <vibe_msgs/StepInput.h>
@@ -44,6 +45,10 @@ InputSample readTipTarget(const geometry_msgs::PoseStamped& message);
 
 /// The goal of a move: the same.
 InputSample readTipMove(const geometry_msgs::PoseStamped& message);
+
+/// Velocity of scope_tip: linear [m/s], of its origin, and angular [rad/s], along the axes of the frame world or
+/// scope_base; without a frame, in world.
+InputSample readTipVelocity(const geometry_msgs::TwistStamped& message);
 
 /// A pull at the tissue, with its target in the frame world or stomach, which are the same.
 /// @throws Error with one sentence if the message cannot be used

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "input/input_queue.hpp"
+#include "input/tip_velocity.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
 #include "vibe_core/state/state.hpp"
 
@@ -11,6 +12,7 @@ namespace vibe::sim {
 namespace {
 
 constexpr double kPeakSpeed = 1.875;  // of the path of least jerk, over its mean speed
+constexpr double kLongestStep = 0.1;  // of a velocity, such as the first step of all [s]
 constexpr double kReached = 5e-3;     // of the tip from its target: close enough to say nothing [m]
 
 /// Share of the way at a share of the time.
@@ -20,8 +22,11 @@ double leastJerk(double s) {
 
 std::string nameOf(const InputSample& sample) {
   const bool scope = sample.channel == InputChannel::Scope;
+  const bool twist = sample.target == ScopeTarget::VelocityInWorld || sample.target == ScopeTarget::VelocityInBase;
   return std::string(scope ? "scope/" : "overstitch/") + (sample.move ? "move_" : "servo_") +
-         (sample.target == ScopeTarget::Joints ? "jp" : "cp");
+         (sample.target == ScopeTarget::Joints ? "jp"
+          : twist                              ? "cv"
+                                               : "cp");
 }
 
 std::string beyondReach(const std::string& topic, const Eigen::Vector3d& target, const Model& model,
@@ -34,14 +39,17 @@ std::string beyondReach(const std::string& topic, const Eigen::Vector3d& target,
          " mm; it goes as near as it can.";
 }
 
+std::string noScope(const InputSample& sample, const Model& model) {
+  return nameOf(sample) + " has no effect because the scene '" + model.scene.name +
+         "' has no scope; load a scene with one.";
+}
+
 std::string reachTip(const InputSample& sample, const Model& model, StepInput& input) {
-  const std::string topic = nameOf(sample);
-  if (!model.tool)
-    return topic + " has no effect because the scene '" + model.scene.name + "' has no scope; load a scene with one.";
+  if (!model.tool) return noScope(sample, model);
   const bool in_world = sample.target == ScopeTarget::TipInWorld;
   const Eigen::Isometry3d pose = in_world ? model.tool_base.inverse() * sample.tip_pose : sample.tip_pose;
   input.joints = model.tool->inverseKinematics(pose, input.joints);
-  return beyondReach(topic, pose.translation(), model, input);
+  return beyondReach(nameOf(sample), pose.translation(), model, input);
 }
 
 // A pull that the model rejects ends the pull in force: the user has asked for another one.
@@ -117,6 +125,7 @@ std::vector<std::string> InputInterpreter::apply(std::int64_t stamp, InputQueue&
                                                  StepInput& input, bool real_time,
                                                  const std::optional<JointArray>& hand) {
   if (stamp < queue.now()) endMoves();
+  const double dt = 1e-9 * static_cast<double>(stamp - queue.now());
   const JointArray start = hand.value_or(input.joints);
   std::vector<std::string> sentences;
   const auto say = [&sentences](std::string sentence) {
@@ -124,6 +133,10 @@ std::vector<std::string> InputInterpreter::apply(std::int64_t stamp, InputQueue&
   };
   queue.takeDue(stamp, [&](const InputSample& sample) { say(applySample(sample, stamp, model, start, input)); });
   applyMoves(stamp, input.joints);
+  if (twist_ && model.tool) {
+    const JointArray joints = afterTwist(model, start, *twist_, std::clamp(dt, 0.0, kLongestStep));
+    std::copy_n(joints.begin(), kScopeJointCount, input.joints.begin());
+  }
   if (queue.isSilent(InputChannel::Pull, kPullTimeout)) say(letGo(input));
   if (real_time && queue.isSilent(InputChannel::Buttons, kButtonTimeout)) say(releaseButtons(input));
   return sentences;
@@ -132,15 +145,16 @@ std::vector<std::string> InputInterpreter::apply(std::int64_t stamp, InputQueue&
 std::string InputInterpreter::applySample(const InputSample& sample, std::int64_t stamp, const Model& model,
                                           const JointArray& hand, StepInput& input) {
   moves_[static_cast<std::size_t>(sample.channel)].reset();
+  if (sample.channel == InputChannel::Scope) twist_.reset();
+  if (sample.target == ScopeTarget::VelocityInWorld || sample.target == ScopeTarget::VelocityInBase)
+    return beginTwist(sample, model);
   return sample.move ? beginMove(sample, stamp, model, hand) : applyValues(sample, model, input);
 }
 
 std::string InputInterpreter::beginMove(const InputSample& sample, std::int64_t stamp, const Model& model,
                                         const JointArray& hand) {
   const bool scope = sample.channel == InputChannel::Scope;
-  if (!model.tool)
-    return nameOf(sample) + " has no effect because the scene '" + model.scene.name +
-           "' has no scope; load a scene with one.";
+  if (!model.tool) return noScope(sample, model);
   StepInput goal;
   goal.joints = sample.target == ScopeTarget::Joints ? sample.joints : hand;
   const std::string sentence = sample.target == ScopeTarget::Joints ? "" : reachTip(sample, model, goal);
@@ -148,6 +162,15 @@ std::string InputInterpreter::beginMove(const InputSample& sample, std::int64_t 
   moves_[static_cast<std::size_t>(sample.channel)].emplace(hand, goal.joints, first, count, model.tool->limits(),
                                                            stamp);
   return sentence;
+}
+
+std::string InputInterpreter::beginTwist(const InputSample& sample, const Model& model) {
+  if (!model.tool) return noScope(sample, model);
+  twist_ = sample.tip_twist;
+  if (sample.target == ScopeTarget::VelocityInWorld) return "";
+  twist_->head<3>() = model.tool_base.linear() * sample.tip_twist.head<3>();
+  twist_->tail<3>() = model.tool_base.linear() * sample.tip_twist.tail<3>();
+  return "";
 }
 
 void InputInterpreter::applyMoves(std::int64_t stamp, JointArray& joints) {

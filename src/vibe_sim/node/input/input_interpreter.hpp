@@ -49,7 +49,7 @@ class InputInterpreter {
   /// Applies to `input` everything that is due at `stamp`, see InputQueue::takeDue(); the last valid values stay in
   /// force. Targets of the tip become joints by the tool's inverse kinematics; a pull without a message for
   /// kPullTimeout ends. A move ends at its goal, when another sample for its joints is applied, or when the clock is
-  /// set back.
+  /// set back; a velocity of the tip ends in the last two ways.
   /// @param real_time  release buttons without a message for kButtonTimeout; false where time does not pass as it does
   ///                   for the publishers
   /// @param hand       where the hand is, from where a move begins; empty: where `input` says
@@ -60,14 +60,16 @@ class InputInterpreter {
   /// Whether a move of the scope or of the suturing device is under way.
   bool moves(InputChannel channel) const { return moves_[static_cast<std::size_t>(channel)].has_value(); }
   /// Ends all moves where they are, because another state has taken over.
-  void endMoves() { moves_ = {}; }
+  void endMoves() { moves_ = {}, twist_.reset(); }
 
  private:
   std::array<std::optional<JointMove>, kInputChannelCount> moves_;
+  std::optional<Eigen::Matrix<double, 6, 1>> twist_;  // of scope_tip in world; empty: it has no velocity of its own
 
   std::string applySample(const InputSample& sample, std::int64_t stamp, const Model& model, const JointArray& hand,
                           StepInput& input);
   std::string beginMove(const InputSample& sample, std::int64_t stamp, const Model& model, const JointArray& hand);
+  std::string beginTwist(const InputSample& sample, const Model& model);
   void applyMoves(std::int64_t stamp, JointArray& joints);
 };
 

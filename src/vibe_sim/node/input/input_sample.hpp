@@ -17,8 +17,8 @@ constexpr int kLockstepChannelCount = 3;  ///< the first ones; a pull is optiona
 
 const char* toString(InputChannel channel);
 
-/// What a sample of the channel Scope says: joint positions, or the pose that scope_tip is to reach.
-enum class ScopeTarget { Joints, TipInWorld, TipInBase };
+/// What a sample of the channel Scope says: joint positions, the pose that scope_tip is to reach, or its velocity.
+enum class ScopeTarget { Joints, TipInWorld, TipInBase, VelocityInWorld, VelocityInBase };
 
 /// One valid message, free of ROS. Only the values of its channel count.
 struct InputSample {
@@ -28,7 +28,8 @@ struct InputSample {
   bool move = false;  ///< joints or pose are the goal of a JointMove from where the hand is; else where it is to be now
   std::array<std::uint8_t, kButtonCount> buttons{};
   ScopeTarget target = ScopeTarget::Joints;
-  Eigen::Isometry3d tip_pose = Eigen::Isometry3d::Identity();  ///< in world or in the tool's root link
+  Eigen::Isometry3d tip_pose = Eigen::Isometry3d::Identity();                   ///< in world or in the tool's root link
+  Eigen::Matrix<double, 6, 1> tip_twist = Eigen::Matrix<double, 6, 1>::Zero();  ///< linear, angular [m/s], [rad/s]
   int pull_particle = -1;
   Eigen::Vector3d pull_target = Eigen::Vector3d::Zero();  ///< in world [m]
 };

@@ -8,7 +8,9 @@ namespace vibe::sim {
 
 namespace {
 
-constexpr double kOwnerPatience = 2;          // a source that is silent for longer has given the topic up [s]
+constexpr double kOwnerPatience = 2;   // a source that is silent for longer has given the topic up [s]
+constexpr double kOrphanPeriod = 0.1;  // between looks whether the source of a velocity is still there [s]
+const char* const kVelocity = "scope/servo_cv";
 constexpr std::uint32_t kInputQueue = 10000;  // none may be lost in lock-step; the queue bounds what really waits
 
 }  // namespace
@@ -30,6 +32,7 @@ Inputs::Inputs(const ros::NodeHandle& handle, InputQueue& queue, Publishers& pub
     return readJoints(message, InputChannel::Scope, JointSource::Commanded);
   });
   listen<geometry_msgs::PoseStamped>("scope/servo_cp", readTipTarget);
+  listen<geometry_msgs::TwistStamped>(kVelocity, readTipVelocity);
   listen<JointState>("overstitch/measured_js", [](const JointState& message) {
     return readJoints(message, InputChannel::Overstitch, JointSource::Measured);
   });
@@ -42,6 +45,7 @@ Inputs::Inputs(const ros::NodeHandle& handle, InputQueue& queue, Publishers& pub
                      [](const JointState& message) { return readMove(message, InputChannel::Overstitch); });
   listen<sensor_msgs::Joy>("scope/buttons", readButtons);
   listen<vibe_msgs::TissuePull>("tissue/pull", readPull);
+  orphan_timer_ = handle_.createWallTimer(ros::WallDuration(kOrphanPeriod), &Inputs::stopOrphan, this);
   spinner_ = std::make_unique<ros::AsyncSpinner>(1, &callbacks_);
   spinner_->start();
 }
@@ -96,6 +100,15 @@ bool Inputs::obeys(const std::string& name, Topic& topic, const std::string& pub
     return false;
   }
   return true;
+}
+
+void Inputs::stopOrphan(const ros::WallTimerEvent&) {
+  Topic& topic = topics_.at(kVelocity);
+  if (topic.owner.empty() || topic.subscriber.getNumPublishers() > 0) return;
+  topic.owner.clear();
+  InputSample stop;
+  stop.target = ScopeTarget::VelocityInWorld;
+  if (queue_.push(stop)) arrived_(stop.channel);
 }
 
 void Inputs::complain(Topic& topic, const std::string& sentence) {

@@ -167,6 +167,24 @@ class CrtkTest(unittest.TestCase):
         self.assertTrue(wait_until(lambda: not self.state.messages[-1].is_busy))
         numpy.testing.assert_allclose(place(self.setpoint.messages[-1]), place(goal), atol=1e-3)
 
+    def test_a_velocity_moves_the_tip_until_its_publisher_leaves(self):
+        self.send("scope/servo_jp", [0.03, 0, 0.2, 0])
+        self.step(60)
+        velocity = rospy.Publisher("scope/servo_cv", TwistStamped, queue_size=10)
+        self.assertTrue(wait_until(lambda: velocity.get_num_connections() > 0, 20))
+        message = TwistStamped()  # CRTK clients give no frame
+        message.twist.linear.x, message.twist.linear.z = 2e-3, -1e-3
+        velocity.publish(message)
+        rospy.rostime.wallsleep(0.15)
+        self.step(61)
+        first, last = self.setpoint.messages[-61], self.setpoint.messages[-1]
+        numpy.testing.assert_allclose(place(last) - place(first), numpy.array([2e-3, 0, -1e-3]) * 60 * PERIOD, atol=3e-5)
+        velocity.unregister()
+        rospy.rostime.wallsleep(1)
+        self.step(2)
+        self.step(10)
+        numpy.testing.assert_allclose(place(self.setpoint.messages[-1]), place(self.setpoint.messages[0]), atol=1e-9)
+
     def test_the_state_is_commanded(self):
         command = self.to["overstitch/state_command"]
         self.state.clear()

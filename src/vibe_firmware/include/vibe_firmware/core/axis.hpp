@@ -50,7 +50,7 @@ enum class Refusal : std::uint8_t {
   Negative,         ///< stiffness, damping or torque limit below 0
   TorqueLimit,      ///< torque limit or torque above that of the axis
   ViscousFriction,  ///< b > h (K T/2 + g B) fails: stiffness or damping too high for the viscous friction
-  CoulombFriction,  ///< f_c >= D (K/2 + g B/T) fails: too high for the Coulomb friction
+  CoulombFriction,  ///< f_c >= D (K/2 + (1 - a) B/T) fails: too high for the Coulomb friction
   Position,         ///< beyond kMaxCount encoder counts
 };
 

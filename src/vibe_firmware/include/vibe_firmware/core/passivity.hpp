@@ -20,13 +20,13 @@ struct EnergyAccount {
 // reading the encoder to the torque (t_d <= T), and the pole a of the velocity filter:
 //
 //   b   > s h (K T/2 + g B)      sampling; Colgate and Schenkel, J. Robotic Systems 14(1), 1997, without delay
-//   f_c >= s D (K/2 + g B/T)     quantisation; Abbott and Okamura, T-RO 21(5), 2005, for B = 0
+//   f_c >= s D (K/2 + (1 - a) B/T)  quantisation; Abbott and Okamura, T-RO 21(5), 2005, for B = 0
 //
 //   g = (1 - a) / (1 + a),  h = 1/2 + t_d/T + sqrt(1/4 + 2 t_d/T)
 //
 // s is the safety factor. h is 1 without delay and at least 1 + 2 t_d/T, so that b > K T (1/2 + t_d/T) + g B holds too;
-// that alone is too little for a delay shorter than the period. Both conditions are sufficient, not necessary; g and h
-// are derived in docs/hardware.md.
+// that alone is too little for a delay shorter than the period. Both conditions are sufficient, not necessary; g, h and
+// the error of the filtered velocity are derived in docs/hardware.md.
 
 /// Viscous friction that the hardware needs [N m s/rad], safety factor included.
 float requiredViscousFriction(const AxisConfig& config, float stiffness, float damping);

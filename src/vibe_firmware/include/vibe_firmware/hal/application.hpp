@@ -61,7 +61,11 @@ class Application final : private ControlHandler {
   int handleControl(const UsbSetup& setup, const std::uint8_t* data, std::uint8_t* response) override {
     return endpoint_.handle(setup, data, response, kMaxData);
   }
-  void handleBusReset() override { endpoint_.reset(); }
+  void handleBusReset() override {
+    endpoint_.reset();
+    function_.hostGone();
+  }
+  void handleSuspend() override { function_.hostGone(); }
 
   Board& board_;
   UsbLink& link_;

@@ -43,6 +43,9 @@ class ControlHandler {
   /// The host has reset the bus: the device is no longer configured.
   virtual void handleBusReset() = 0;
 
+  /// The host has suspended the bus, as a computer that sleeps does: it sends no parameters and reads no reports.
+  virtual void handleSuspend() = 0;
+
  protected:
   ~ControlHandler() = default;
 };

@@ -23,6 +23,9 @@ class HapticFunction final : public HidFunction {
   /// A tick began more than 10 % of the period too late. Control interrupt.
   void countLateTick() { late_ticks_.fetch_add(1, std::memory_order_relaxed); }
 
+  /// The host sleeps or has left: the spring fades now instead of after the timeout; new parameters bring it back.
+  void hostGone() { host_gone_.store(true, std::memory_order_relaxed); }
+
   /// The input report, once each HapticConfig::report_ticks: to be called in the main loop as often as possible. If it
   /// is called too rarely, reports are left out, and the sequence number shows it.
   /// @return whether there is one that was not returned yet
@@ -57,6 +60,7 @@ class HapticFunction final : public HidFunction {
   Published<InputReport> report_;
   std::atomic<std::uint8_t> flags_{0};  // of the last tick
   std::atomic<std::uint32_t> late_ticks_{0};
+  std::atomic<bool> host_gone_{false};
 };
 
 }  // namespace vibe_firmware

@@ -20,6 +20,8 @@ class InputFunction final : public HidFunction {
   /// A tick began more than 10 % of the period too late. Sampling interrupt.
   void countLateTick() { late_ticks_.fetch_add(1, std::memory_order_relaxed); }
 
+  void hostGone() {}  ///< nothing moves by itself
+
   /// As HapticFunction::nextReport().
   bool nextReport(std::uint8_t (&bytes)[kInputReportSize]);
 

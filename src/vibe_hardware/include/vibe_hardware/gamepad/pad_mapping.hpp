@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <string>
+#include <vector>
 
 #include "vibe_core/contact/tool_model.hpp"
 #include "vibe_core/input/step_input.hpp"
@@ -49,12 +50,20 @@ struct FeedbackMapping {
   double rumble_force = 5;  ///< force on the tool at which the strong motor runs at its greatest [N]; 0: no rumble
 };
 
+/// Which controls of a pad the numbers of a sensor_msgs/Joy are: event codes in the order of its axes and buttons. The
+/// default is what joy_node publishes of a pad with two sticks, two triggers that are axes, and a cross.
+struct JoyNames {
+  std::vector<int> axes, buttons;
+  JoyNames();
+};
+
 /// How axes and buttons of a pad become joints and buttons of the simulator. Format: docs/tutorials/drive_by_hand.md.
 struct PadMapping {
   std::string name;
   std::array<JointMapping, kJointCount> joints;
   std::array<ButtonMapping, kButtonCount> buttons;
   FeedbackMapping feedback;
+  JoyNames joy;
 };
 
 /// Reads a mapping file.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "vibe_hardware/gamepad/pad_mapping.hpp"
 #include "vibe_hardware/gamepad/pad_state.hpp"
 
 namespace vibe::hardware {
@@ -48,6 +49,13 @@ class PadSource {
   /// Called with every event, for a recording.
   virtual void setListener(std::function<void(const PadEvent&)> listener) = 0;
 };
+
+/// What has changed between a state and the axes (-1 to 1, left, up and a trigger at rest are 1, as joy_node has them)
+/// and buttons of a sensor_msgs/Joy. Controls that the state does not have yet are added to it: axes at rest, and
+/// unknown until their first value other than 0, because joy_node gives 0 for what has not moved yet. Values that are
+/// not finite count as 0; numbers without a name are left out.
+std::vector<PadEvent> joyEvents(const std::vector<float>& axes, const std::vector<int>& buttons, const JoyNames& names,
+                                PadState& state);
 
 /// Looks for a pad until there is one, and again when it is gone.
 class PadLink {

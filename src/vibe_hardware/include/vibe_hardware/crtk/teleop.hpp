@@ -1,0 +1,69 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <optional>
+#include <string>
+
+#include "vibe_hardware/crtk/teleop_mapping.hpp"
+#include "vibe_hardware/driver/joint_scale.hpp"
+
+namespace vibe::hardware {
+
+/// What an arm measures at one time: measured_cp.
+struct ArmSample {
+  double time = 0;                                                  ///< [s]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();               ///< in the base [m]
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< of the moving frame in the base
+};
+
+/// How the tissue answers to motions of the scope's joints, from haptic/parameters.
+struct TissueResponse {
+  double time = 0;  ///< of arrival [s]
+  std::array<JointSpring, kScopeJointCount> joints{};
+};
+
+/// What a step sees.
+struct TeleopInput {
+  std::optional<ArmSample> sample;           ///< that has come since the last step
+  std::array<double, kJointCount> joints{};  ///< where the hand of the simulator has the joints [m], [rad]
+  bool ready = false;                        ///< those are known, and the arm may be used (ENABLED and homed)
+  bool clutch = false;                       ///< is pressed
+  std::optional<double> gripper;             ///< angle [rad]
+  std::optional<TissueResponse> tissue;      ///< the newest one; empty: nothing is touched
+};
+
+/// Everything that lasts from step to step.
+struct TeleopState {
+  std::array<double, kJointCount> joints{};           ///< commanded
+  std::array<double, kHandCoordinates> hand{};        ///< coordinates
+  std::array<JointScale, kScopeJointCount> scales{};  ///< joint = offset + scale * coordinate, while engaged
+  std::array<PortState, kScopeJointCount> ports{};
+  std::array<JointSpring, kScopeJointCount> springs{};  ///< that are rendered
+  std::array<double, kScopeJointCount> blends{};        ///< what is left of the springs before, fading [N], [N m]
+  std::optional<ArmSample> last;
+  double tissue_time = -1e9;  ///< of the springs [s]
+  double time = 0;            ///< of the last step [s]
+  bool engaged = false;
+};
+
+/// What a step sends.
+struct TeleopOutput {
+  std::array<double, kJointCount> joints{};
+  Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = Eigen::Vector3d::Zero();  ///< in the mapping's frame
+  bool engaged = false;
+  bool passivity_acts = false;
+  std::string sentence;  ///< one when something has changed that a person should know; else empty
+};
+
+TeleopState startTeleop(const TeleopMapping& mapping, double now);
+
+/// One step: a function of its arguments. No clock, no graph, no memory but for sentences.
+///   joint = where it was when the arm engaged + scale * motion of the hand since, within the limits of the joint.
+/// The arm engages when it may be used, measures, and the clutch is up; it lets go when one of these ends. Then forces
+/// are 0 and the joints stay. A force of the tissue at a joint becomes scale times that on the coordinate (virtual
+/// work) times force_scale; new springs do not jump, and without a message for 0.1 s they fade within 0.05 s.
+/// @param now  not before the last one [s]
+TeleopOutput step(const TeleopMapping& mapping, const ToolLimits& limits, double now, const TeleopInput& input,
+                  TeleopState& state);
+
+}  // namespace vibe::hardware

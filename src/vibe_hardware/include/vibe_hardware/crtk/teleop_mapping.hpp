@@ -1,0 +1,64 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+
+#include "vibe_core/input/step_input.hpp"
+#include "vibe_hardware/crtk/port_passivity.hpp"
+#include "vibe_hardware/gamepad/pad_mapping.hpp"
+
+namespace vibe::hardware {
+
+/// Coordinates of the hand that holds the arm, along and about the axes of its own frame: x away from the person, y to
+/// the left, z up. They are the integrals of its linear and angular velocity, so that force times motion is power.
+enum HandCoordinate : int { HandX, HandY, HandZ, HandRoll, HandPitch, HandYaw };
+constexpr int kHandCoordinates = 6;
+
+/// How a coordinate of the hand moves a joint of the scope.
+struct HandJoint {
+  int coordinate = -1;  ///< HandCoordinate; -1: the joint stays where it is
+  double scale = 0;     ///< joint per coordinate [m/m], [m/rad], [rad/m] or [rad/rad], not 0; its sign is the direction
+  PortConfig port;      ///< of the coordinate
+};
+
+/// A button of sensor_msgs/Joy on some topic, as CRTK drivers publish pedals and buttons.
+struct ArmButton {
+  std::string topic;  ///< relative to the arm, or absolute; empty: none
+  int index = 0;      ///< in Joy::buttons
+};
+
+/// What the gripper of the arm does: its angle sets a joint of the suturing device.
+struct ArmGripper {
+  int joint = NeedleDriver;           ///< HelixAdvance to NeedleDriver
+  double closed = 0, open = 1;        ///< angles of the gripper [rad], different
+  double at_closed = 0, at_open = 0;  ///< positions of the joint there [m], [rad]
+};
+
+/// Which way the forces go back.
+enum class ForceFrame {
+  Base,  ///< the wrench has the axes of the arm's base (frame_id of measured_cp)
+  Body   ///< the wrench has the axes of the moving frame
+};
+
+/// How an arm with a CRTK interface drives the scope. Format: docs/hardware.md, "CRTK arms".
+struct TeleopMapping {
+  std::string name;
+  Eigen::Matrix3d hand = Eigen::Matrix3d::Identity();  ///< axes of the hand's frame, as columns in the arm's base
+  std::array<HandJoint, kScopeJointCount> joints;
+  std::array<ArmButton, kButtonCount> buttons;
+  ArmButton clutch;  ///< while it is pressed, the scope stays and the arm is free
+  std::optional<ArmGripper> gripper;
+  double force_scale = 1;                ///< of the forces of the tissue; 0: no forces
+  std::string force_topic = "servo_cf";  ///< relative to the arm
+  ForceFrame force_frame = ForceFrame::Base;
+  double timeout = 0.1;  ///< without a measurement after which the arm lets go of the scope [s]
+};
+
+/// Reads a mapping file.
+/// @throws Error "file:line: key: what is wrong; remedy"
+TeleopMapping loadTeleopMapping(const std::string& file, const ToolLimits& limits);
+/// The same from text. @param place  name used in errors
+TeleopMapping parseTeleopMapping(const std::string& text, const std::string& place, const ToolLimits& limits);
+
+}  // namespace vibe::hardware

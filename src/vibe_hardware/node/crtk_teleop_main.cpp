@@ -1,0 +1,51 @@
+// crtk_teleop: an arm with a CRTK interface drives the scope and feels the tissue.
+
+#include <ros/ros.h>
+
+#include <csignal>
+#include <cstdio>
+
+#include "crtk_teleop_node.hpp"
+#include "vibe_node/startup.hpp"
+
+namespace {
+
+constexpr int kUsage = 2;
+constexpr double kMasterPatience = 10;  // [s]
+constexpr double kDelivery = 0.2;       // for the arm to receive that there is no force [s]
+
+volatile sig_atomic_t stop_signal = 0;
+
+void onSignal(int number) {
+  stop_signal = number;
+}
+
+void run() {
+  ros::NodeHandle handle;
+  const vibe::hardware::CrtkParameters parameters = vibe::hardware::readCrtkParameters(ros::NodeHandle("~"));
+  vibe::hardware::CrtkTeleopNode node(handle, parameters);
+  ros::AsyncSpinner spinner(1);
+  spinner.start();
+  while (ros::ok() && !stop_signal) ros::WallDuration(0.02).sleep();
+  spinner.stop();
+  node.release();
+  ros::WallDuration(kDelivery).sleep();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    // roscpp's own handler would close the topics before the arm is told that there is no force
+    vibe::node::init(argc, argv, "crtk_teleop", ros::init_options::NoSigintHandler);
+    signal(SIGINT, onSignal);
+    signal(SIGTERM, onSignal);
+    if (!vibe::node::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return 0;
+    run();
+    ros::shutdown();
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "crtk_teleop: %s\n", error.what());
+    return kUsage;
+  }
+}

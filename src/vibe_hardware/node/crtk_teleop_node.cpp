@@ -1,0 +1,280 @@
+#include "crtk_teleop_node.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <geometry_msgs/WrenchStamped.h>
+#include <std_msgs/Bool.h>
+
+#include "gamepad_node.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/common/files.hpp"
+#include "vibe_node/parameter_reader.hpp"
+
+namespace vibe::hardware {
+namespace {
+
+constexpr double kForcePeriod = 0.005;      // without measurements the arm gets a force after so long [s]
+constexpr double kJointInterval = 0.004;    // between commands to the scope, at least [s]
+constexpr double kArmButtonInterval = 0.1;  // between messages that change nothing [s]
+constexpr double kOldest = 0.5;             // a measurement that claims to be older has the stamp of another clock [s]
+constexpr std::uint32_t kArmQueue = 10;
+
+/// Values of a message in the order of vibe::Joint from `first` on. @return whether all are there and finite
+bool readJointsInto(const sensor_msgs::JointState& message, int first, int count,
+                    std::array<double, kJointCount>& joints) {
+  std::array<double, kJointCount> read = joints;
+  int found = 0;
+  for (std::size_t i = 0; i < message.name.size() && i < message.position.size(); ++i)
+    for (int j = first; j < first + count; ++j)
+      if (message.name[i] == kJointNames[static_cast<std::size_t>(j)] && std::isfinite(message.position[i]))
+        read[static_cast<std::size_t>(j)] = message.position[i], ++found;
+  if (found != count) return false;
+  joints = read;
+  return true;
+}
+
+bool isFinite(const geometry_msgs::Pose& pose) {
+  const auto& p = pose.position;
+  const auto& q = pose.orientation;
+  const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  return std::isfinite(p.x + p.y + p.z) && std::abs(norm - 1) < 1e-2;
+}
+
+}  // namespace
+
+CrtkParameters readCrtkParameters(const ros::NodeHandle& private_handle) {
+  node::ParameterReader reader(private_handle);
+  CrtkParameters parameters;
+  reader.read("mapping", parameters.mapping);
+  reader.read("arm", parameters.arm);
+  double diagnostic_period = 1;  // diagnostic_updater reads it itself
+  reader.read("diagnostic_period", diagnostic_period, 0.1, 60, "s");
+  reader.finish();
+  return parameters;
+}
+
+namespace {
+
+/// @throws Error with simulated time
+void checkClock() {
+  bool use_sim_time = false;
+  ros::param::get("/use_sim_time", use_sim_time);
+  if (use_sim_time)
+    throw Error(
+        "An arm is sampled in wall time, but /use_sim_time is true; run 'rosparam delete /use_sim_time' before any "
+        "node "
+        "starts.");
+}
+
+}  // namespace
+
+CrtkTeleopNode::CrtkTeleopNode(ros::NodeHandle handle, const CrtkParameters& parameters)
+    : parameters_(parameters),
+      limits_(toolLimitsOf(handle)),
+      mapping_(loadTeleopMapping(resolveAddress(parameters.mapping), limits_)),
+      state_(startTeleop(mapping_, ros::WallTime::now().toSec())),
+      updater_(handle) {
+  checkClock();
+  advertise(handle);
+  subscribe(handle);
+  updater_.setHardwareID("none");
+  updater_.add("crtk_teleop", this, &CrtkTeleopNode::fillDiagnostics);
+  ROS_INFO_STREAM("Mapping '" << mapping_.name << "'; waiting for " << nameOf("measured_cp") << ".");
+  timer_ = handle.createWallTimer(ros::WallDuration(kForcePeriod), &CrtkTeleopNode::tick, this);
+}
+
+void CrtkTeleopNode::release() {
+  timer_.stop();
+  const ros::Time stamp = ros::Time::now();
+  publishForce(TeleopOutput(), stamp);
+  button_publisher_.publish(buttonCommand(DriveState(), stamp));
+}
+
+std::string CrtkTeleopNode::nameOf(const std::string& topic) const {
+  return topic.front() == '/' ? topic : parameters_.arm + "/" + topic;
+}
+
+void CrtkTeleopNode::advertise(ros::NodeHandle& handle) {
+  scope_ = handle.advertise<sensor_msgs::JointState>("scope/servo_jp", kArmQueue);
+  if (mapping_.gripper) overstitch_ = handle.advertise<sensor_msgs::JointState>("overstitch/servo_jp", kArmQueue);
+  button_publisher_ = handle.advertise<sensor_msgs::Joy>("scope/buttons", kArmQueue);
+  if (mapping_.force_scale == 0) return;
+  force_ = handle.advertise<geometry_msgs::WrenchStamped>(nameOf(mapping_.force_topic), kArmQueue);
+  // what the drivers of dVRK and Force Dimension want to be told before they take forces
+  std_msgs::Bool yes, no;
+  yes.data = true;
+  gravity_ = handle.advertise<std_msgs::Bool>(nameOf("use_gravity_compensation"), 1, true);
+  gravity_.publish(yes);
+  absolute_ = handle.advertise<std_msgs::Bool>(nameOf("body/set_cf_orientation_absolute"), 1, true);
+  absolute_.publish(mapping_.force_frame == ForceFrame::Body ? no : yes);
+}
+
+void CrtkTeleopNode::subscribe(ros::NodeHandle& handle) {
+  const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
+  subscribers_ = {
+      handle.subscribe(nameOf("measured_cp"), kArmQueue, &CrtkTeleopNode::onPose, this, hints),
+      handle.subscribe(nameOf("operating_state"), kArmQueue, &CrtkTeleopNode::onState, this, hints),
+      handle.subscribe("scope/setpoint_js", kArmQueue, &CrtkTeleopNode::onScope, this, hints),
+      handle.subscribe("overstitch/simulated/measured_js", kArmQueue, &CrtkTeleopNode::onOverstitch, this, hints),
+      handle.subscribe("haptic/parameters", kArmQueue, &CrtkTeleopNode::onParameters, this, hints)};
+  if (mapping_.gripper)
+    subscribers_.push_back(
+        handle.subscribe(nameOf("gripper/measured_js"), kArmQueue, &CrtkTeleopNode::onGripper, this, hints));
+  if (!mapping_.clutch.topic.empty())
+    listenToButton(handle, mapping_.clutch, [this](bool pressed) { input_.clutch = pressed; });
+  for (std::size_t b = 0; b < mapping_.buttons.size(); ++b)
+    if (!mapping_.buttons[b].topic.empty())
+      listenToButton(handle, mapping_.buttons[b], [this, b](bool pressed) { buttons_[b] = pressed ? 1 : 0; });
+}
+
+void CrtkTeleopNode::listenToButton(ros::NodeHandle& handle, const ArmButton& button,
+                                    std::function<void(bool)> pressed) {
+  const boost::function<void(const sensor_msgs::Joy&)> callback = [button, pressed](const sensor_msgs::Joy& message) {
+    const auto index = static_cast<std::size_t>(button.index);
+    if (index >= message.buttons.size()) {
+      ROS_WARN_STREAM_THROTTLE(10, "A message on " << button.topic << " has " << message.buttons.size()
+                                                   << " buttons, and the mapping names the one with index "
+                                                   << button.index << "; correct the mapping.");
+      return;
+    }
+    pressed(message.buttons[index] != 0);
+  };
+  subscribers_.push_back(handle.subscribe<sensor_msgs::Joy>(nameOf(button.topic), kArmQueue, callback));
+}
+
+void CrtkTeleopNode::onPose(const geometry_msgs::PoseStamped& message) {
+  const double now = ros::WallTime::now().toSec();
+  double time = message.header.stamp.toSec();
+  if (message.header.stamp.isZero() || !isFinite(message.pose)) {  // CRTK: invalid
+    ++invalid_;
+    return;
+  }
+  if (time > now || now - time > kOldest) {
+    ROS_WARN_STREAM_THROTTLE(10, "The stamps of " << nameOf("measured_cp") << " are " << time - now
+                                                  << " s off the clock of this computer, so the times of arrival are "
+                                                     "used; synchronise the clocks.");
+    time = now;
+  }
+  worst_age_ = std::max(worst_age_, now - time);
+  ++samples_;
+  base_frame_ = message.header.frame_id;
+  const auto& p = message.pose.position;
+  const auto& q = message.pose.orientation;
+  input_.sample = ArmSample{time, {p.x, p.y, p.z}, Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized()};
+  advance(now);
+}
+
+void CrtkTeleopNode::onGripper(const sensor_msgs::JointState& message) {
+  if (!message.header.stamp.isZero() && !message.position.empty() && std::isfinite(message.position[0]))
+    input_.gripper = message.position[0];
+}
+
+void CrtkTeleopNode::onState(const vibe_msgs::OperatingState& message) {
+  arm_ready_ = message.state == "ENABLED" && message.is_homed;
+  const std::string state = message.state + (message.is_homed ? "" : ", not homed");
+  if (state != arm_state_)
+    ROS_INFO_STREAM("The arm is " << state << (arm_ready_ ? "." : "; it drives when it is ENABLED and homed."));
+  arm_state_ = state;
+}
+
+void CrtkTeleopNode::onScope(const sensor_msgs::JointState& message) {
+  scope_known_ |= readJointsInto(message, 0, kScopeJointCount, input_.joints);
+}
+
+void CrtkTeleopNode::onOverstitch(const sensor_msgs::JointState& message) {
+  overstitch_known_ |= readJointsInto(message, kScopeJointCount, kOverstitchJointCount, input_.joints);
+}
+
+void CrtkTeleopNode::onParameters(const vibe_msgs::HapticParameters& message) {
+  input_.tissue.reset();
+  if (!message.touching) return;
+  try {
+    TissueResponse tissue;
+    tissue.time = ros::WallTime::now().toSec();
+    for (std::size_t j = 0; j < kScopeJointCount; ++j) tissue.joints[j] = readSpring(message, kJointNames[j]);
+    input_.tissue = tissue;
+  } catch (const Error& error) {
+    ROS_WARN_STREAM_THROTTLE(10, "A message on haptic/parameters is ignored: " << error.what());
+  }
+}
+
+void CrtkTeleopNode::tick(const ros::WallTimerEvent&) {
+  updater_.update();
+  const double now = ros::WallTime::now().toSec();
+  if (now - state_.time >= kForcePeriod) advance(now);
+}
+
+void CrtkTeleopNode::advance(double now) {
+  input_.ready = scope_known_ && overstitch_known_ && arm_ready_;
+  const bool was_engaged = state_.engaged;
+  const TeleopOutput output = step(mapping_, limits_, std::max(now, state_.time), input_, state_);
+  input_.sample.reset();
+  if (!output.sentence.empty()) ROS_WARN_STREAM(output.sentence);
+  if (output.engaged != was_engaged)
+    ROS_INFO_STREAM((output.engaged ? "The arm drives the scope." : "The arm has let go of the scope."));
+  const ros::Time stamp = ros::Time::now();
+  if (stamp.isZero()) return;  // simulated time has not begun; stamp 0 would mark invalid data
+  if (state_.last || was_engaged) publishForce(output, stamp);
+  publishCommands(output, now, stamp);
+}
+
+void CrtkTeleopNode::publishForce(const TeleopOutput& output, const ros::Time& stamp) {
+  if (!force_) return;
+  geometry_msgs::WrenchStamped message;
+  message.header.stamp = stamp;
+  message.header.frame_id = base_frame_;
+  message.wrench.force.x = output.force.x();
+  message.wrench.force.y = output.force.y();
+  message.wrench.force.z = output.force.z();
+  message.wrench.torque.x = output.torque.x();
+  message.wrench.torque.y = output.torque.y();
+  message.wrench.torque.z = output.torque.z();
+  force_.publish(message);
+}
+
+void CrtkTeleopNode::publishCommands(const TeleopOutput& output, double now, const ros::Time& stamp) {
+  if (output.engaged && now - last_joints_ >= kJointInterval) {
+    last_joints_ = now;
+    DriveState drive;
+    drive.joints = output.joints;
+    scope_.publish(scopeCommand(drive, stamp));
+    if (mapping_.gripper) overstitch_.publish(overstitchCommand(drive, stamp));
+  }
+  const auto buttons = state_.last ? buttons_ : std::array<std::uint8_t, kButtonCount>{};
+  if (buttons == sent_buttons_ && now - last_buttons_ < kArmButtonInterval) return;
+  DriveState drive;
+  drive.buttons = buttons;
+  button_publisher_.publish(buttonCommand(drive, stamp));
+  sent_buttons_ = buttons;
+  last_buttons_ = now;
+}
+
+void CrtkTeleopNode::fillDiagnostics(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using diagnostic_msgs::DiagnosticStatus;
+  if (!state_.last)
+    status.summary(DiagnosticStatus::WARN, "the arm is silent");
+  else
+    status.summary(DiagnosticStatus::OK, state_.engaged ? "driving" : "waiting");
+  if (!scope_known_) status.mergeSummary(DiagnosticStatus::WARN, "no simulator");
+  if (!arm_ready_) status.mergeSummary(DiagnosticStatus::WARN, "the arm is not ready");
+  double balance = 1;
+  bool acts = false;
+  for (std::size_t j = 0; j < state_.ports.size(); ++j) {
+    if (mapping_.joints[j].coordinate < 0) continue;
+    balance = std::min(balance, state_.ports[j].balance / mapping_.joints[j].port.capacity);
+    acts |= state_.ports[j].acts;
+  }
+  status.add("mapping", mapping_.name);
+  status.add("state of the arm", arm_state_);
+  status.add("measurements since the last message", samples_ - samples_before_);
+  status.add("invalid measurements", invalid_);
+  status.add("oldest measurement at its arrival [s]", worst_age_);
+  status.add("least share of the energy that is left", balance);
+  status.add("passivity controller acts", acts);
+  samples_before_ = samples_;
+  worst_age_ = 0;
+}
+
+}  // namespace vibe::hardware

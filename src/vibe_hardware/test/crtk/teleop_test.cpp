@@ -1,0 +1,257 @@
+// An emulated arm drives joints through the pure step, with delays both ways, and feels a wall.
+#include "vibe_hardware/crtk/teleop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "gamepad/pads.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_hardware/emulator/emulated_arm.hpp"
+
+namespace vibe::hardware::teleop_test {
+namespace {
+
+TeleopMapping mappingOf(const std::string& extra = "") {
+  return parseTeleopMapping(
+      "name: test\nhand: {away: -z, up: y}\njoints:\n"
+      "  insertion: {along: x, scale: 1}\n  rotation: {about: x, scale: 2}\n"
+      "  tip_up_down: {along: z, scale: 10 deg/cm}\n" +
+          extra,
+      "my_arm.yaml", toolLimits());
+}
+
+std::string errorOf(const std::string& text) {
+  try {
+    parseTeleopMapping(text, "my_arm.yaml", toolLimits());
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+/// A teleoperation in virtual time.
+struct Session {
+  TeleopMapping mapping = mappingOf();
+  ToolLimits limits = toolLimits();
+  TeleopState state = startTeleop(mapping, 0);
+  TeleopInput input;
+  TeleopOutput output;
+  double time = 0;
+  ArmSample arm;
+
+  Session() { input.ready = true; }
+
+  /// One millisecond in which the arm goes somewhere.
+  void tick(const Eigen::Vector3d& way = Eigen::Vector3d::Zero(),
+            const Eigen::Vector3d& turn = Eigen::Vector3d::Zero()) {
+    time += 1e-3;
+    arm.time = time;
+    arm.position += way;
+    if (turn.norm() > 0) arm.orientation = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * arm.orientation;
+    input.sample = arm;
+    output = step(mapping, limits, time, input, state);
+    input.sample.reset();
+  }
+  void silence(double seconds) {
+    for (const double end = time + seconds; time < end;) {
+      time += 5e-3;
+      output = step(mapping, limits, time, input, state);
+    }
+  }
+};
+
+TEST(Teleop, MotionsOfTheHandMoveTheJoints) {
+  Session s;
+  s.input.joints = {0.05, 0.1, 0.2, 0.3, 0.001, 0.002, 0.003};
+  s.tick();
+  EXPECT_TRUE(s.output.engaged);
+  EXPECT_EQ(s.output.joints, s.input.joints);
+  for (int i = 0; i < 100; ++i) s.tick({0, 1e-4, -2e-4}, {0, 0, -1e-3});  // up, away, and clockwise for the person
+  EXPECT_NEAR(s.output.joints[Insertion], 0.05 + 0.02, 1e-9);
+  EXPECT_NEAR(s.output.joints[Rotation], 0.1 + 2 * 0.1, 1e-9);
+  EXPECT_NEAR(s.output.joints[TipUpDown], 0.2 + 10 * M_PI / 180, 1e-9);
+  EXPECT_EQ(s.output.joints[TipLeftRight], 0.3);  // nothing moves it
+  EXPECT_EQ(s.output.joints[HelixAdvance], 0.001);
+}
+
+TEST(Teleop, JointsStayWithinTheirLimits) {
+  Session s;
+  for (int i = 0; i < 2000; ++i) s.tick({0, 0, -4e-4});
+  EXPECT_EQ(s.output.joints[Insertion], s.limits[Insertion].upper);
+}
+
+TEST(Teleop, WithTheClutchTheHandComesBackAndTheScopeStays) {
+  Session s;
+  s.tick();
+  for (int i = 0; i < 100; ++i) s.tick({0, 0, -1e-4});
+  s.input.joints = s.output.joints;
+  s.input.clutch = true;
+  for (int i = 0; i < 100; ++i) s.tick({0, 0, 1e-4});
+  EXPECT_FALSE(s.output.engaged);
+  EXPECT_NEAR(s.output.joints[Insertion], 0.01, 1e-9);
+  s.input.clutch = false;
+  for (int i = 0; i < 100; ++i) s.tick({0, 0, -1e-4});
+  EXPECT_NEAR(s.output.joints[Insertion], 0.02 - 1e-4, 2e-4);
+}
+
+TissueResponse wallAt(double time, double insertion, double effort, double stiffness) {
+  TissueResponse tissue;
+  tissue.time = time;
+  tissue.joints[Insertion] = {insertion, effort, stiffness, 0, 0};
+  return tissue;
+}
+
+TEST(Teleop, AForceGoesBackByVirtualWorkAndWithoutAJump) {
+  Session s;
+  s.mapping = mappingOf("arm: {torque_limit: 0.1 N*m}\n");
+  s.tick();
+  s.input.tissue = wallAt(s.time, 0, -1, 0);
+  s.input.tissue->joints[Rotation].effort = 0.01;
+  s.tick();
+  EXPECT_LT(s.output.force.norm(), 0.1);
+  double largest_change = 0, before = 0;
+  for (int i = 0; i < 200; ++i) {
+    s.input.tissue->time = s.time;
+    s.tick();
+    largest_change = std::max(largest_change, std::abs(s.output.force.norm() - before));
+    before = s.output.force.norm();
+  }
+  EXPECT_LT(largest_change, 0.06);
+  EXPECT_NEAR(s.output.force.z(), 1, 1e-3);  // the wall pushes back to the person
+  EXPECT_NEAR(s.output.torque.z(), -2 * 0.01, 1e-5);
+  s.mapping.force_frame = ForceFrame::Body;
+  s.arm.orientation = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX());
+  s.state.last->orientation = s.arm.orientation;
+  s.tick();
+  EXPECT_NEAR(s.output.force.y(), 1, 1e-2);
+}
+
+TEST(Teleop, WithoutNewsOfTheTissueTheForceFades) {
+  Session s;
+  s.tick();
+  for (int i = 0; i < 200; ++i) s.input.tissue = wallAt(s.time, 0, -1, 0), s.tick();
+  EXPECT_NEAR(s.output.force.norm(), 1, 1e-2);
+  for (int i = 0; i < 160; ++i) s.tick();
+  EXPECT_LT(s.output.force.norm(), 1e-3);
+}
+
+TEST(Teleop, AnArmThatIsSilentJumpsOrIsNotReadyGetsNoForce) {
+  const auto pressing = [] {
+    Session s;
+    s.tick();
+    for (int i = 0; i < 200; ++i) s.input.tissue = wallAt(s.time, 0, -1, 0), s.tick();
+    EXPECT_GT(s.output.force.norm(), 0.9);
+    return s;
+  };
+  Session silent = pressing();
+  silent.silence(0.15);
+  EXPECT_EQ(silent.output.force.norm(), 0);
+  EXPECT_FALSE(silent.output.engaged);
+  silent.tick({0, 0, -0.2});  // it was elsewhere meanwhile
+  EXPECT_TRUE(silent.output.engaged);
+  EXPECT_EQ(silent.output.joints, silent.input.joints);
+
+  Session jumping = pressing();
+  jumping.tick({0, 0, -0.2});
+  EXPECT_EQ(jumping.output.force.norm(), 0);
+  EXPECT_NE(jumping.output.sentence.find("jumped"), std::string::npos);
+  jumping.tick();
+  EXPECT_LT(jumping.output.joints[Insertion], 1e-3);
+
+  Session disabled = pressing();
+  disabled.input.ready = false;
+  disabled.tick();
+  EXPECT_EQ(disabled.output.force.norm(), 0);
+}
+
+TEST(Teleop, EqualInputsGiveEqualOutputs) {
+  Session a, b;
+  for (int i = 0; i < 300; ++i)
+    for (Session* s : {&a, &b}) s->input.tissue = wallAt(s->time, 0, -1, 200), s->tick({0, 1e-5, -1e-4});
+  EXPECT_EQ(a.output.force, b.output.force);
+  EXPECT_EQ(a.output.joints, b.output.joints);
+}
+
+/// A hand presses an arm into a wall of this stiffness at 1 cm, whose news come every 16 ms; all ways have delays.
+/// @return energy that the arm has given to the hand at most, within any interval [J]
+double pressWall(double stiffness, double delay, bool controlled) {
+  Session s;
+  if (!controlled)
+    for (HandJoint& joint : s.mapping.joints) joint.port.capacity = 1e9, joint.port.resolution = 0;
+  s.state = startTeleop(s.mapping, 0);
+  EmulatedArmConfig config;
+  config.hand_stiffness = 50, config.hand_damping = 1;
+  EmulatedArmState arm;
+  std::deque<ArmSample> measured;
+  std::deque<Eigen::Vector3d> forces;
+  double lowest = 0, most = 0, news = -1;
+  const auto late = static_cast<std::size_t>(delay / 1e-3);
+  for (int i = 0; i < 5000; ++i) {
+    HandIntent intent;
+    intent.position.z() = -0.02;
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    if (forces.size() > late) force = forces.front(), forces.pop_front();
+    for (int k = 0; k < 10; ++k) stepArm(config, 1e-4, force, Eigen::Vector3d::Zero(), intent, arm);
+    lowest = std::min(lowest, arm.given);
+    most = std::max(most, arm.given - lowest);
+    s.time += 1e-3;
+    measured.push_back({s.time, arm.position, orientationOf(arm)});
+    if (measured.size() > late) s.input.sample = measured.front(), measured.pop_front();
+    if (s.time - news > 0.016) {
+      news = s.time;
+      const double depth = s.state.joints[Insertion] - 0.01;
+      s.input.tissue.reset();
+      if (depth > 0) s.input.tissue = wallAt(s.time, s.state.joints[Insertion], -stiffness * depth, stiffness);
+    }
+    s.output = step(s.mapping, s.limits, s.time, s.input, s.state);
+    s.input.sample.reset();
+    forces.push_back(s.output.force);
+  }
+  return most;
+}
+
+TEST(Teleop, AWallGivesNoMoreThanTheCapacityWhateverItsStiffness) {
+  int exceeded_without = 0;
+  for (const double stiffness : {100., 500., 2000.})
+    for (const double delay : {0.0, 0.005, 0.01}) {
+      EXPECT_LE(pressWall(stiffness, delay, true), 0.05) << stiffness << " N/m, " << delay << " s";
+      exceeded_without += pressWall(stiffness, delay, false) > 0.05 ? 1 : 0;
+    }
+  EXPECT_GT(exceeded_without, 1);  // negative control
+}
+
+TEST(TeleopMapping, ShippedMappingsMoveEveryJointOfTheScope) {
+  for (const char* name : {"touch", "dvrk_mtm"}) {
+    const TeleopMapping mapping = loadTeleopMapping(std::string("../config/arms/") + name + ".yaml", toolLimits());
+    for (const HandJoint& joint : mapping.joints) EXPECT_GE(joint.coordinate, 0) << name;
+    EXPECT_NEAR(mapping.hand.determinant(), 1, 1e-12) << name;
+    EXPECT_FALSE(mapping.clutch.topic.empty()) << name;
+  }
+}
+
+TEST(TeleopMapping, MistakesAreNamedWithPlaceAndRemedy) {
+  const std::string head = "name: a\nhand: {away: x, up: z}\n";
+  for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{
+           {"name: a\nhand: {away: x, up: -x}\njoints:\n  insertion: {along: x, scale: 1}\n", "same axis"},
+           {head + "joints: {}\n", "moves nothing"},
+           {head + "joints:\n  insertion: {along: x}\n", "lacks the key 'scale'"},
+           {head + "joints:\n  insertion: {along: x, about: y, scale: 1}\n", "exactly one"},
+           {head + "joints:\n  insertion: {along: x, scale: 1}\n  rotation: {along: x, scale: 1 rad/m}\n", "already"},
+           {head + "joints:\n  insertion: {along: x, scale: 0}\n", "is 0"},
+           {head + "joints:\n  insertion: {along: x, scale: 2 rad/m}\n", "insertion.scale"},
+           {head + "joints:\n  insertion: {along: x, scale: .nan}\n", "insertion.scale"},
+           {head + "joints:\n  insertion: {along: x, scale: 1}\narm: {delay: -1 ms}\n", "arm.delay"},
+           {head + "joints:\n  insertion: {along: x, scale: 1}\ngripper: {joint: needle_driver, closed: 1, open: 1, "
+                   "at_closed: 0, at_open: 0}\n",
+            "differ"}}) {
+    const std::string error = errorOf(text);
+    EXPECT_NE(error.find(part), std::string::npos) << error;
+    EXPECT_EQ(error.find("my_arm.yaml:"), 0U) << error;
+  }
+}
+
+}  // namespace
+}  // namespace vibe::hardware::teleop_test
