@@ -5,6 +5,8 @@
     learn.py clone reach.hdf5 cloned.npz     a policy that imitates them
     learn.py evaluate random expert cloned.npz    all of them on 100 seeds and organs that nobody trained on, as a table
 
+ppo.py goes on from there by reinforcement.
+
 Actions are the tip's velocity. evaluate keeps every episode in a file and goes on where it was stopped."""
 
 import argparse
@@ -15,7 +17,7 @@ import sys
 
 import numpy as np
 
-from vibe.env import HELD_OUT, TRAINING, Environment, Expert, demonstrations
+from vibe.env import BREATHING, HELD_OUT, TRAINING, Environment, Expert, demonstrations
 
 INPUTS = ("to_goal", "wrench")
 
@@ -125,7 +127,7 @@ def clone(options):
 
 
 def evaluate(options):
-    environment = Environment("Reach", organs=HELD_OUT, action="tip")
+    environment = Environment("Reach", organs=HELD_OUT, action="tip", breathing=options.breathing)
     known = {}
     if os.path.exists(options.episodes):
         with open(options.episodes) as file:
@@ -138,6 +140,7 @@ def evaluate(options):
             policy = Cloned(name)
             with open(name, "rb") as file:
                 key = hashlib.sha1(file.read()).hexdigest()
+        key += f" {options.breathing}" if options.breathing else ""
         rows = []
         for seed in range(options.first, options.first + options.seeds):
             if (key, seed) not in known:
@@ -184,9 +187,10 @@ def main():
     one.add_argument("--epochs", type=int, default=60)
     one.set_defaults(run=clone)
     one = commands.add_parser("evaluate", help="prints the table")
-    one.add_argument("policies", nargs="+", metavar="policy", help="random, expert, or a file of clone")
+    one.add_argument("policies", nargs="+", metavar="policy", help="random, expert, or a file of clone or ppo.py")
     one.add_argument("--seeds", type=int, default=100)
     one.add_argument("--first", type=int, default=0)
+    one.add_argument("--breathing", choices=tuple(BREATHING), help="of the stomachs (default: still)")
     one.add_argument("--episodes", default="episodes.jsonl", help="file that keeps them (default: %(default)s)")
     one.set_defaults(run=evaluate)
     options = parser.parse_args()
