@@ -20,6 +20,7 @@ import numpy as np
 from vibe.env import BREATHING, HELD_OUT, TRAINING, Environment, Expert, demonstrations
 
 INPUTS = ("to_goal", "wrench")
+FAR = 5.0  # standard deviations of the demonstrations, beyond which an input is not told apart: they hardly touch the wall
 
 
 class Random:
@@ -63,7 +64,7 @@ class Cloned:
 
 def forward(parts, rows):
     """The values of every layer. parts: mean and scale of the inputs, then weights and offsets of each layer."""
-    values = [(rows - parts[0]) / parts[1]]
+    values = [np.clip((rows - parts[0]) / parts[1], -FAR, FAR)]
     for k in range(2, len(parts), 2):
         sums = values[-1] @ parts[k] + parts[k + 1]
         values.append(np.tanh(sums) if k + 2 < len(parts) else sums)
@@ -126,41 +127,66 @@ def clone(options):
     print(f"\n{len(demos)} episodes, {len(rows)} actions: {options.policy}")
 
 
+def policy_of(name):
+    """What a worker needs of a policy, and the words by which its episodes are kept."""
+    if name in ("random", "expert"):
+        return name, name
+    with open(name, "rb") as file:
+        return Cloned(name), hashlib.sha1(file.read()).hexdigest()
+
+
+def episode(policy, breathing, seed):
+    """The outcome of one episode on the organs that nobody trained on."""
+    environment = Environment("Reach", organs=HELD_OUT, action="tip", breathing=breathing)
+    acting = {"random": Random, "expert": Scripted}[policy](environment) if isinstance(policy, str) else policy
+    observation, info = environment.reset(seed=seed)
+    acting.reset(seed)
+    over = False
+    while not over:
+        observation, _, terminated, truncated, info = environment.step(acting.action(observation))
+        over = terminated or truncated
+    environment.close()  # the simulation serves the next one
+    return {name: info[name] for name in ("is_success", "time", "max_force", "distance", "organ")}
+
+
+def on_workers(address, policy, breathing, seeds):
+    """(seed, outcome) from the workers of a Dask scheduler, in the order in which episodes end. They need vibe."""
+    try:
+        from distributed import as_completed
+        from vibe_sessions.cohort_dask import connect
+        from vibe_sessions.headless import SessionError
+    except ImportError as error:
+        sys.exit(f"--scheduler needs python3-distributed and the workspace: {error}.")
+    try:
+        client = connect(address)
+    except SessionError as error:
+        sys.exit(str(error))
+    with client:
+        futures = {client.submit(episode, policy, breathing, seed, pure=False): seed for seed in seeds}
+        for future in as_completed(futures, loop=client.loop):
+            yield futures[future], future.result()
+
+
 def evaluate(options):
-    environment = Environment("Reach", organs=HELD_OUT, action="tip", breathing=options.breathing)
     known = {}
     if os.path.exists(options.episodes):
         with open(options.episodes) as file:
             known = {(row["policy"], row["seed"]): row for row in map(json.loads, file)}
     print("| policy | success | 95 % | time [s] | greatest force [N], median |\n|---|---|---|---|---|")
     for name in options.policies:
-        if name in ("random", "expert"):
-            policy, key = (Random if name == "random" else Scripted)(environment), name
-        else:
-            policy = Cloned(name)
-            with open(name, "rb") as file:
-                key = hashlib.sha1(file.read()).hexdigest()
+        policy, key = policy_of(name)
         key += f" {options.breathing}" if options.breathing else ""
-        rows = []
-        for seed in range(options.first, options.first + options.seeds):
-            if (key, seed) not in known:
-                known[key, seed] = {"policy": key, "seed": seed, **episode(environment, policy, seed)}
-                with open(options.episodes, "a") as file:
-                    file.write(json.dumps(known[key, seed]) + "\n")
-            rows.append(known[key, seed])
-            show(f"{name}: {len(rows)} of {options.seeds} episodes")
+        seeds = range(options.first, options.first + options.seeds)
+        missing = [seed for seed in seeds if (key, seed) not in known]
+        found = on_workers(options.scheduler, policy, options.breathing, missing) if options.scheduler else \
+            ((seed, episode(policy, options.breathing, seed)) for seed in missing)
+        for done, (seed, outcome) in enumerate(found):
+            known[key, seed] = {"policy": key, "seed": seed, **outcome}
+            with open(options.episodes, "a") as file:
+                file.write(json.dumps(known[key, seed]) + "\n")
+            show(f"{name}: {done + 1} of {len(missing)} episodes")
         show(f"{'':60}\r")
-        print(table_row(os.path.basename(name), rows), flush=True)
-
-
-def episode(environment, policy, seed):
-    observation, info = environment.reset(seed=seed)
-    policy.reset(seed)
-    over = False
-    while not over:
-        observation, _, terminated, truncated, info = environment.step(policy.action(observation))
-        over = terminated or truncated
-    return {name: info[name] for name in ("is_success", "time", "max_force", "distance", "organ")}
+        print(table_row(os.path.basename(name), [known[key, seed] for seed in seeds]), flush=True)
 
 
 def table_row(name, rows):
@@ -191,6 +217,7 @@ def main():
     one.add_argument("--seeds", type=int, default=100)
     one.add_argument("--first", type=int, default=0)
     one.add_argument("--breathing", choices=tuple(BREATHING), help="of the stomachs (default: still)")
+    one.add_argument("--scheduler", metavar="HOST:PORT", help="let the workers of this Dask scheduler perform the episodes")
     one.add_argument("--episodes", default="episodes.jsonl", help="file that keeps them (default: %(default)s)")
     one.set_defaults(run=evaluate)
     options = parser.parse_args()

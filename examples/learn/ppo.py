@@ -59,7 +59,8 @@ class Learner:
 
     def rows(self, observation):
         rows = np.concatenate([observation[name] for name in learn.INPUTS], axis=-1)
-        return self.torch.tensor((rows - self.scaling[0]) / self.scaling[1], dtype=self.torch.float32)
+        scaled = np.clip((rows - self.scaling[0]) / self.scaling[1], -learn.FAR, learn.FAR)
+        return self.torch.tensor(scaled, dtype=self.torch.float32)
 
     def policy(self, rows):
         for k in range(0, len(self.mean), 2):
