@@ -20,7 +20,8 @@ import numpy as np
 from vibe.env import BREATHING, HELD_OUT, TRAINING, Environment, Expert, demonstrations
 
 INPUTS = ("to_goal", "wrench")
-FAR = 5.0  # standard deviations of the demonstrations, beyond which an input is not told apart: they hardly touch the wall
+# What counts as one, at least: demonstrations hardly touch the wall, and by their own deviation a touch would be far away
+SCALE = np.array([0.01] * 3 + [1.0] * 3 + [0.05] * 3)  # [m], [N], [N m]
 
 
 class Random:
@@ -64,7 +65,7 @@ class Cloned:
 
 def forward(parts, rows):
     """The values of every layer. parts: mean and scale of the inputs, then weights and offsets of each layer."""
-    values = [np.clip((rows - parts[0]) / parts[1], -FAR, FAR)]
+    values = [(rows - parts[0]) / parts[1]]
     for k in range(2, len(parts), 2):
         sums = values[-1] @ parts[k] + parts[k + 1]
         values.append(np.tanh(sums) if k + 2 < len(parts) else sums)
@@ -81,11 +82,11 @@ def gradients(parts, values, error):
     return found
 
 
-def fit(rows, wanted, epochs, seed=0, batch=256, rate=1e-3):
-    """Adam (Kingma and Ba 2015) on the mean square error."""
+def fit(rows, wanted, epochs, seed=0, batch=256, rate=1e-3, least=1e-9):
+    """Adam (Kingma and Ba 2015) on the mean square error. least: scale of each input, at least"""
     random = np.random.default_rng(seed)
     sizes = [rows.shape[1], 64, 64, wanted.shape[1]]
-    parts = [rows.mean(0), rows.std(0) + 1e-9]
+    parts = [rows.mean(0), np.maximum(rows.std(0), least)]
     for inner, outer in zip(sizes, sizes[1:]):
         parts += [random.normal(0, inner**-0.5, (inner, outer)), np.zeros(outer)]
     first, second, step = [0.0] * (len(parts) - 2), [0.0] * (len(parts) - 2), 0
@@ -123,7 +124,7 @@ def clone(options):
         demos = list(file["data"].values())
         rows = np.concatenate([np.hstack([demo["obs"][name] for name in INPUTS]) for demo in demos]).astype(float)
         wanted = np.concatenate([demo["actions"] for demo in demos]).astype(float)
-    np.savez(options.policy, *fit(rows, wanted, options.epochs))
+    np.savez(options.policy, *fit(rows, wanted, options.epochs, least=SCALE))
     print(f"\n{len(demos)} episodes, {len(rows)} actions: {options.policy}")
 
 

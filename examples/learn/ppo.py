@@ -45,8 +45,8 @@ class Learner:
         if start:
             parts = learn.Cloned(start).parts
         else:
-            size, parts = sum((3, 6)), [np.zeros(9), np.array([0.03] * 3 + [1.0] * 3 + [0.05] * 3)]
-            for inner, outer, gain in ((size, 64, 1.0), (64, 64, 1.0), (64, 3, 0.01)):
+            parts = [np.zeros(9), learn.SCALE]
+            for inner, outer, gain in ((9, 64, 1.0), (64, 64, 1.0), (64, 3, 0.01)):
                 parts += [np.random.default_rng(seed).normal(0, gain * inner**-0.5, (inner, outer)), np.zeros(outer)]
         self.scaling = parts[:2]
         self.mean = [torch.tensor(part, dtype=torch.float32, requires_grad=True) for part in parts[2:]]
@@ -59,8 +59,7 @@ class Learner:
 
     def rows(self, observation):
         rows = np.concatenate([observation[name] for name in learn.INPUTS], axis=-1)
-        scaled = np.clip((rows - self.scaling[0]) / self.scaling[1], -learn.FAR, learn.FAR)
-        return self.torch.tensor(scaled, dtype=self.torch.float32)
+        return self.torch.tensor((rows - self.scaling[0]) / self.scaling[1], dtype=self.torch.float32)
 
     def policy(self, rows):
         for k in range(0, len(self.mean), 2):

@@ -19,9 +19,9 @@ constexpr std::size_t kLongest = 40;  // of a value in a sentence [bytes]
 constexpr std::size_t kMost = 8;      // arguments that a sentence names
 
 struct Signature {
-  std::string name;       // "Simulation.run"
-  std::string arguments;  // "(steps: int, **kwargs)"
-  bool method = false;    // the first argument is the object
+  std::string name;          // "Simulation.run"
+  std::string arguments;     // "(steps: int, **kwargs)"
+  PyObject* type = nullptr;  // of a method, whose first argument is the object; borrowed
 };
 
 PyCFunctionWithKeywords pybind_dispatcher = nullptr;
@@ -70,19 +70,48 @@ std::string shownArguments(const py::handle& given, const py::handle& keywords, 
   return list.empty() ? "nothing" : list;
 }
 
+bool isCalledOnAnother(const Signature& function, const py::tuple& given) {
+  return function.type != nullptr && !given.empty() && PyObject_IsInstance(given[0].ptr(), function.type) == 0;
+}
+
 void explain(const Signature& function, PyObject* given, PyObject* keywords) {
   py::error_already_set refused;  // takes the error
   if (std::string(refused.what()).find("incompatible") == std::string::npos) return refused.restore();
-  const std::string sentence = function.name + "() cannot be called with " +
-                               shownArguments(given, keywords, function.method) + "; it takes " + function.arguments +
-                               ", see help(vibe." + function.name + ").";
+  const auto list = py::reinterpret_borrow<py::tuple>(given);
+  const std::string called = isCalledOnAnother(function, list)
+                                 ? "() cannot be called on " + shownValue(list[0]) + "; its object is no such thing"
+                                 : "() cannot be called with " +
+                                       shownArguments(given, keywords, function.type != nullptr) + "; it takes " +
+                                       function.arguments;
+  const std::string sentence = function.name + called + ", see help(vibe." + function.name + ").";
   PyErr_SetString(PyExc_TypeError, sentence.c_str());
 }
 
+// Sentences about names with the character 0 would end there, and bytes pass as text with any characters.
+bool isNoText(PyObject* value, bool takes_bytes) {
+  if (PyUnicode_Check(value)) return PyUnicode_FindChar(value, 0, 0, PyUnicode_GET_LENGTH(value), 1) >= 0;
+  return PyBytes_Check(value) && !takes_bytes;
+}
+
+bool holdsNoText(PyObject* given, PyObject* keywords, bool takes_bytes) {
+  bool found = false;
+  for (Py_ssize_t k = 0; k < PyTuple_GET_SIZE(given); ++k)
+    found = found || isNoText(PyTuple_GET_ITEM(given, k), takes_bytes);
+  PyObject *key = nullptr, *value = nullptr;
+  for (Py_ssize_t at = 0; keywords != nullptr && PyDict_Next(keywords, &at, &key, &value);)
+    found = found || isNoText(key, takes_bytes) || isNoText(value, takes_bytes);
+  return found;
+}
+
 PyObject* callOrExplain(PyObject* self, PyObject* given, PyObject* keywords) {
+  const auto known = signatures().find(self);
+  const bool takes_bytes = known != signatures().end() && known->second.arguments.find("bytes") != std::string::npos;
+  if (holdsNoText(given, keywords, takes_bytes)) {
+    PyErr_SetString(PyExc_ValueError, "A text is given as bytes or holds the character 0; give a text without it.");
+    return nullptr;
+  }
   PyObject* const result = pybind_dispatcher(self, given, keywords);
   if (result != nullptr || !PyErr_ExceptionMatches(PyExc_TypeError)) return result;
-  const auto known = signatures().find(self);
   if (known != signatures().end()) try {
       explain(known->second, given, keywords);
     } catch (const std::exception& error) {
@@ -102,7 +131,7 @@ std::string argumentsOf(const std::string& documentation) {
   return list.empty() ? "no arguments" : "(" + list + ")";
 }
 
-void watch(PyObject* function, const std::string& name, bool method) {
+void watch(PyObject* function, const std::string& name, PyObject* type) {
   if (PyInstanceMethod_Check(function)) function = PyInstanceMethod_GET_FUNCTION(function);
   if (!PyCFunction_Check(function)) return;
   PyMethodDef* const definition = reinterpret_cast<PyCFunctionObject*>(function)->m_ml;
@@ -110,7 +139,7 @@ void watch(PyObject* function, const std::string& name, bool method) {
   if (pybind_dispatcher == nullptr) pybind_dispatcher = current;
   if (current != pybind_dispatcher) return;
   const std::string documentation = definition->ml_doc == nullptr ? "" : definition->ml_doc;
-  signatures()[PyCFunction_GET_SELF(function)] = {name, argumentsOf(documentation), method};
+  signatures()[PyCFunction_GET_SELF(function)] = {name, argumentsOf(documentation), type};
   definition->ml_meth = reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&callOrExplain));
 }
 
@@ -119,8 +148,8 @@ void watchClass(const py::handle& type, const std::string& name) {
   for (const py::handle member : py::list(members.attr("items")())) {
     const auto [key, value] = py::cast<std::pair<std::string, py::object>>(member);
     const std::string full = key == "__init__" ? name : name + "." + key;
-    watch(value.ptr(), full, true);
-    if (PyObject_HasAttrString(value.ptr(), "fget")) watch(value.attr("fget").ptr(), full, true);
+    watch(value.ptr(), full, type.ptr());
+    if (PyObject_HasAttrString(value.ptr(), "fget")) watch(value.attr("fget").ptr(), full, type.ptr());
   }
 }
 
@@ -132,7 +161,7 @@ void explainRefusals(py::module_& module) {
     if (PyType_Check(value.ptr()))
       watchClass(value, name);
     else
-      watch(value.ptr(), name, false);
+      watch(value.ptr(), name, nullptr);
   }
 }
 
