@@ -20,8 +20,8 @@ from gymnasium.utils.env_checker import check_env
 from gymnasium.wrappers.vector import RecordEpisodeStatistics
 from vibe.env import TASKS, Environment, VectorEnvironment
 small = {"particles": 300, "organs": [("sthenic", 1.0)]}
-warnings.filterwarnings("ignore", message=".*infinity.*")  # what is measured in metres and newtons has no bound
 warnings.simplefilter("error", UserWarning)
+warnings.filterwarnings("ignore", message=".*infinity.*")  # what is measured in metres and newtons has no bound
 for name in TASKS:
     check_env(gymnasium.make(f"vibe/{name}-v0", disable_env_checker=True, breathing="slight", **small).unwrapped,
               skip_render_check=True)
