@@ -5,6 +5,8 @@
     learn.py clone reach.hdf5 cloned.npz     a policy that imitates them
     learn.py evaluate random expert cloned.npz    all of them on 100 seeds and organs that nobody trained on, as a table
 
+ppo.py goes on from there by reinforcement.
+
 Actions are the tip's velocity. evaluate keeps every episode in a file and goes on where it was stopped."""
 
 import argparse
@@ -15,9 +17,11 @@ import sys
 
 import numpy as np
 
-from vibe.env import HELD_OUT, TRAINING, Environment, Expert, demonstrations
+from vibe.env import BREATHING, HELD_OUT, TRAINING, Environment, Expert, demonstrations
 
 INPUTS = ("to_goal", "wrench")
+# What counts as one, at least: demonstrations hardly touch the wall, and by their own deviation a touch would be far away
+SCALE = np.array([0.01] * 3 + [1.0] * 3 + [0.05] * 3)  # [m], [N], [N m]
 
 
 class Random:
@@ -78,11 +82,11 @@ def gradients(parts, values, error):
     return found
 
 
-def fit(rows, wanted, epochs, seed=0, batch=256, rate=1e-3):
-    """Adam (Kingma and Ba 2015) on the mean square error."""
+def fit(rows, wanted, epochs, seed=0, batch=256, rate=1e-3, least=1e-9):
+    """Adam (Kingma and Ba 2015) on the mean square error. least: scale of each input, at least"""
     random = np.random.default_rng(seed)
     sizes = [rows.shape[1], 64, 64, wanted.shape[1]]
-    parts = [rows.mean(0), rows.std(0) + 1e-9]
+    parts = [rows.mean(0), np.maximum(rows.std(0), least)]
     for inner, outer in zip(sizes, sizes[1:]):
         parts += [random.normal(0, inner**-0.5, (inner, outer)), np.zeros(outer)]
     first, second, step = [0.0] * (len(parts) - 2), [0.0] * (len(parts) - 2), 0
@@ -120,44 +124,70 @@ def clone(options):
         demos = list(file["data"].values())
         rows = np.concatenate([np.hstack([demo["obs"][name] for name in INPUTS]) for demo in demos]).astype(float)
         wanted = np.concatenate([demo["actions"] for demo in demos]).astype(float)
-    np.savez(options.policy, *fit(rows, wanted, options.epochs))
+    np.savez(options.policy, *fit(rows, wanted, options.epochs, least=SCALE))
     print(f"\n{len(demos)} episodes, {len(rows)} actions: {options.policy}")
 
 
+def policy_of(name):
+    """What a worker needs of a policy, and the words by which its episodes are kept."""
+    if name in ("random", "expert"):
+        return name, name
+    with open(name, "rb") as file:
+        return Cloned(name), hashlib.sha1(file.read()).hexdigest()
+
+
+def episode(policy, breathing, seed):
+    """The outcome of one episode on the organs that nobody trained on."""
+    environment = Environment("Reach", organs=HELD_OUT, action="tip", breathing=breathing)
+    acting = {"random": Random, "expert": Scripted}[policy](environment) if isinstance(policy, str) else policy
+    observation, info = environment.reset(seed=seed)
+    acting.reset(seed)
+    over = False
+    while not over:
+        observation, _, terminated, truncated, info = environment.step(acting.action(observation))
+        over = terminated or truncated
+    environment.close()  # the simulation serves the next one
+    return {name: info[name] for name in ("is_success", "time", "max_force", "distance", "organ")}
+
+
+def on_workers(address, policy, breathing, seeds):
+    """(seed, outcome) from the workers of a Dask scheduler, in the order in which episodes end. They need vibe."""
+    try:
+        from distributed import as_completed
+        from vibe_sessions.cohort_dask import connect
+        from vibe_sessions.headless import SessionError
+    except ImportError as error:
+        sys.exit(f"--scheduler needs python3-distributed and the workspace: {error}.")
+    try:
+        client = connect(address)
+    except SessionError as error:
+        sys.exit(str(error))
+    with client:
+        futures = {client.submit(episode, policy, breathing, seed, pure=False): seed for seed in seeds}
+        for future in as_completed(futures, loop=client.loop):
+            yield futures[future], future.result()
+
+
 def evaluate(options):
-    environment = Environment("Reach", organs=HELD_OUT, action="tip")
     known = {}
     if os.path.exists(options.episodes):
         with open(options.episodes) as file:
             known = {(row["policy"], row["seed"]): row for row in map(json.loads, file)}
     print("| policy | success | 95 % | time [s] | greatest force [N], median |\n|---|---|---|---|---|")
     for name in options.policies:
-        if name in ("random", "expert"):
-            policy, key = (Random if name == "random" else Scripted)(environment), name
-        else:
-            policy = Cloned(name)
-            with open(name, "rb") as file:
-                key = hashlib.sha1(file.read()).hexdigest()
-        rows = []
-        for seed in range(options.first, options.first + options.seeds):
-            if (key, seed) not in known:
-                known[key, seed] = {"policy": key, "seed": seed, **episode(environment, policy, seed)}
-                with open(options.episodes, "a") as file:
-                    file.write(json.dumps(known[key, seed]) + "\n")
-            rows.append(known[key, seed])
-            show(f"{name}: {len(rows)} of {options.seeds} episodes")
+        policy, key = policy_of(name)
+        key += f" {options.breathing}" if options.breathing else ""
+        seeds = range(options.first, options.first + options.seeds)
+        missing = [seed for seed in seeds if (key, seed) not in known]
+        found = on_workers(options.scheduler, policy, options.breathing, missing) if options.scheduler else \
+            ((seed, episode(policy, options.breathing, seed)) for seed in missing)
+        for done, (seed, outcome) in enumerate(found):
+            known[key, seed] = {"policy": key, "seed": seed, **outcome}
+            with open(options.episodes, "a") as file:
+                file.write(json.dumps(known[key, seed]) + "\n")
+            show(f"{name}: {done + 1} of {len(missing)} episodes")
         show(f"{'':60}\r")
-        print(table_row(os.path.basename(name), rows), flush=True)
-
-
-def episode(environment, policy, seed):
-    observation, info = environment.reset(seed=seed)
-    policy.reset(seed)
-    over = False
-    while not over:
-        observation, _, terminated, truncated, info = environment.step(policy.action(observation))
-        over = terminated or truncated
-    return {name: info[name] for name in ("is_success", "time", "max_force", "distance", "organ")}
+        print(table_row(os.path.basename(name), [known[key, seed] for seed in seeds]), flush=True)
 
 
 def table_row(name, rows):
@@ -184,9 +214,11 @@ def main():
     one.add_argument("--epochs", type=int, default=60)
     one.set_defaults(run=clone)
     one = commands.add_parser("evaluate", help="prints the table")
-    one.add_argument("policies", nargs="+", metavar="policy", help="random, expert, or a file of clone")
+    one.add_argument("policies", nargs="+", metavar="policy", help="random, expert, or a file of clone or ppo.py")
     one.add_argument("--seeds", type=int, default=100)
     one.add_argument("--first", type=int, default=0)
+    one.add_argument("--breathing", choices=tuple(BREATHING), help="of the stomachs (default: still)")
+    one.add_argument("--scheduler", metavar="HOST:PORT", help="let the workers of this Dask scheduler perform the episodes")
     one.add_argument("--episodes", default="episodes.jsonl", help="file that keeps them (default: %(default)s)")
     one.set_defaults(run=evaluate)
     options = parser.parse_args()

@@ -5,6 +5,7 @@ import os
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import numpy as np
 
@@ -64,6 +65,17 @@ class Evaluation(unittest.TestCase):
                     learn.main()
             finally:
                 learn.episode, sys.argv = run, before
+
+    def test_workers_find_what_is_found_here(self):
+        try:
+            from distributed import LocalCluster
+            from vibe_sessions import cohort_dask  # noqa: F401
+        except ImportError:
+            self.skipTest("python3-distributed or vibe_sessions is not installed")
+        with LocalCluster(n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None) as cluster, \
+                mock.patch.object(learn, "episode", lambda policy, breathing, seed: {"seen": [policy, breathing, seed]}):
+            found = dict(learn.on_workers(cluster.scheduler_address, "random", "slight", [3, 5]))
+        self.assertEqual(found, {seed: {"seen": ["random", "slight", seed]} for seed in (3, 5)})
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "bindings.hpp"
+#include "vibe_core/common/error.hpp"
 #include "vibe_core/events/event.hpp"
 
 namespace vibe::python {
@@ -11,6 +12,10 @@ namespace py = pybind11;
 
 void bindEvents(py::module_& module) {
   py::class_<Event>(module, "Event", "Something that happened in a step.")
+      .def(py::init([](const py::args&, const py::kwargs&) -> Event {
+             throw Error("An Event is not made directly; Simulation.step() returns them.");
+           }),
+           "Made by Simulation.step().")
       .def_property_readonly(
           "kind", [](const Event& e) { return toString(e.kind); }, "'grab', 'bite missed', ...")
       .def_property_readonly(

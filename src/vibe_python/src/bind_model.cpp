@@ -93,6 +93,10 @@ void bindModel(py::module_& module) {
   py::class_<ModelHandle> model(
       module, "Model", "Everything that is constant during a simulation. Shared between simulations and threads.");
   model
+      .def(py::init([](const py::args&, const py::kwargs&) -> ModelHandle {
+             throw Error("A Model is not made directly; call vibe.load().");
+           }),
+           "Made by vibe.load().")
       .def_property_readonly(
           "particles", [](const ModelHandle& m) { return m.model->particle_count; }, "Number of particles of the wall.")
       .def_property_readonly(

@@ -68,7 +68,7 @@ std::vector<Event> run(SimulationHandle& handle, std::int64_t steps, const py::k
 }
 
 std::vector<Event> follow(SimulationHandle& handle, TraineeHandle& trainee, std::optional<double> seconds) {
-  if (seconds && !(*seconds >= 0)) throw Error("'seconds' is negative; give simulated time.");
+  if (seconds && !(*seconds >= 0)) throw Error("'seconds' is negative or not a number; give simulated time.");
   const Use use(handle);
   const TraineeHandle::Turn turn(trainee);
   trainee.checkModel(use.model());

@@ -62,6 +62,7 @@ class ScriptedTrainee : public TraineeHandle {
   TraineeScript script_;
 };
 
+// One line without a colon is the name of a file.
 bool isText(const std::string& source) {
   return source.find('\n') != std::string::npos || source.find(": ") != std::string::npos;
 }
@@ -99,6 +100,10 @@ std::vector<py::dict> results(const LookingTrainee& handle) {
 void bindTrainee(py::module_& module) {
   py::class_<TraineeHandle, std::shared_ptr<TraineeHandle>>(module, "InputSource",
                                                             "What gives the input of each step: Trainee or Script.")
+      .def(py::init([](const py::args&, const py::kwargs&) -> std::shared_ptr<TraineeHandle> {
+             throw Error("An InputSource is not made directly; make a vibe.Trainee or a vibe.Script.");
+           }),
+           "Made as Trainee or Script.")
       .def("next", &nextInput, py::arg("simulation"),
            "The input of the next step, as keywords of Simulation.step(). To be called once before every step.");
   py::class_<LookingTrainee, TraineeHandle, std::shared_ptr<LookingTrainee>>(

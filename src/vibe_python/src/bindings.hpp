@@ -18,6 +18,10 @@ void bindAnatomy(pybind11::module_& module);
 void bindTechnique(pybind11::module_& module);
 void bindBatch(pybind11::module_& module);
 
+/// A call that fits no function raises TypeError with one sentence: what was given, and what it takes. To be called
+/// once everything is bound.
+void explainRefusals(pybind11::module_& module);
+
 void bindStepping(SimulationClass& simulation);
 void bindState(SimulationClass& simulation);
 void bindTool(SimulationClass& simulation);

@@ -48,6 +48,7 @@ PYBIND11_MODULE(_core, module) {
   bindAnatomy(module);
   bindTechnique(module);
   bindBatch(module);
+  explainRefusals(module);
   observeTouches();
 }
 

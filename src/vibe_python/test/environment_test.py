@@ -1,14 +1,48 @@
 #!/usr/bin/env python3
 """Environments: the same bits alone and side by side, resets as Gymnasium defines them, experts, and what is refused."""
 import os
+import subprocess
+import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import numpy as np
 
 import vibe
-from vibe.env import TASKS, Environment, Expert, VectorEnvironment, api, demonstrations, organs
+from vibe.env import BREATHING, TASKS, Environment, Expert, VectorEnvironment, api, demonstrations, organs
 
+CHECK = """
+import warnings
+import numpy as np
+import gymnasium
+from gymnasium.utils.env_checker import check_env
+from gymnasium.wrappers.vector import RecordEpisodeStatistics
+from vibe.env import TASKS, Environment, VectorEnvironment
+small = {"particles": 300, "organs": [("sthenic", 1.0)]}
+warnings.simplefilter("error", UserWarning)
+warnings.filterwarnings("ignore", message=".*infinity.*")  # what is measured in metres and newtons has no bound
+for name in TASKS:
+    check_env(gymnasium.make(f"vibe/{name}-v0", disable_env_checker=True, breathing="slight", **small).unwrapped,
+              skip_render_check=True)
+    print(name)
+
+class Astray(Environment):  # control
+    def reset(self, **keywords):
+        seen, info = super().reset(**keywords)
+        return {**seen, "tip": seen["tip"][:2]}, info
+
+try:
+    check_env(Astray(**small), skip_render_check=True)
+except AssertionError:
+    print("refused")
+wrapped = RecordEpisodeStatistics(VectorEnvironment("Reach", 2, threads=1, **small))
+wrapped.reset(seed=1)
+for _ in range(201):
+    *_, info = wrapped.step(np.zeros((2, 4), np.float32))
+    if "episode" in info and info["episode"]["l"].max() == 200:
+        print("wrapped")
+"""
 SMALL = {"particles": 300, "organs": [("sthenic", 1.0)]}
 
 
@@ -66,6 +100,26 @@ class EnvironmentTest(unittest.TestCase):
                     self.assertEqual(list(rewards), [alone[slot][1][k] for slot in range(3)])
             together.close()
 
+    def test_breathing_moves_the_goal_as_the_diaphragm_and_episodes_begin_in_different_phases(self):
+        rate, amplitude = BREATHING["strong"]
+        for breathing in ("strong", None):
+            environment = Environment("Reach", breathing=breathing, **SMALL)
+            goals, first = [], environment.reset(seed=2)[0]["goal"]
+            for _ in range(round(20 / rate)):
+                goals.append(environment.task.look()["goal"][0])
+                environment.task.advance(np.zeros((1, 4)))
+            moved = np.ptp(np.array(goals), axis=0)
+            if breathing is None:  # control
+                self.assertLess(moved.max(), 1e-4)
+                continue
+            self.assertGreater(moved[2], 0.6 * amplitude)
+            self.assertLess(moved[2], 1.1 * amplitude)
+            np.testing.assert_allclose(goals[0], environment.task.look()["goal"][0], atol=5e-4)  # a breath later
+            np.testing.assert_array_equal(first, environment.reset(seed=2)[0]["goal"])
+            phases = {(environment.reset(seed=seed), round(environment.simulation.time * rate % 1, 3))[1]
+                      for seed in range(20)}
+            self.assertGreater(len(phases), 4)
+
     def test_autoreset(self):
         class Short(TASKS["Reach"]):
             seconds = 0.1
@@ -87,6 +141,14 @@ class EnvironmentTest(unittest.TestCase):
                 self.assertEqual(list(reward), [0, 0])
                 self.assertEqual(list(info["time"]), [0, 0])
             environment.close()
+
+    def test_random_actions_give_finite_numbers(self):
+        sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../scripts"))
+        import random_actions
+
+        with mock.patch.object(random_actions, "ORGANS", SMALL["organs"]):
+            self.assertEqual(random_actions.one_round(0, 300, 40), (5 * 2 * 40, []))
+        self.assertEqual(random_actions.faults("seen", {"a": np.ones(3), "b": np.array([1, np.nan])}), ["seen.b"])  # control
 
     def test_experts_reach(self):
         for mode in ("joints", "tip"):
@@ -136,12 +198,18 @@ class EnvironmentTest(unittest.TestCase):
                 call()
 
     def test_the_checker_of_gymnasium(self):
-        if not api.REAL:
-            self.skipTest("gymnasium is not installed")
-        from gymnasium.utils.env_checker import check_env
-
-        for name in TASKS:
-            check_env(Environment(name, **SMALL), skip_render_check=True)
+        """With the package that is installed, or that of Debian where apt has it, unpacked for the test only."""
+        with tempfile.TemporaryDirectory() as folder:
+            if not api.REAL:
+                subprocess.run("apt-get download python3-gymnasium && dpkg -x python3-gymnasium_*.deb .", shell=True,
+                               cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+                if not os.path.isdir(os.path.join(folder, "usr")):
+                    self.skipTest("gymnasium is not installed, and apt has no python3-gymnasium")
+            path = os.pathsep.join([*sys.path, os.path.join(folder, "usr/lib/python3/dist-packages")])
+            checked = subprocess.run([sys.executable, "-B", "-c", CHECK], env={**os.environ, "PYTHONPATH": path},
+                                     stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+        self.assertEqual(checked.returncode, 0, checked.stdout)
+        self.assertEqual(checked.stdout.split(), [*TASKS, "refused", "wrapped"], checked.stdout)
 
 
 if __name__ == "__main__":

@@ -129,6 +129,9 @@ void finishModel(const std::string& tool_urdf, Model& model, const Progress& pro
   model.solver = made.solver;
   model.substeps = made.substeps;
   if (model.solver->usesSubsteps()) checkSubstepsForGas(model.substeps, for_gas);
+  if (model.solver->usesSubsteps() && model.scene.breathing)
+    throw Error(
+        "The section 'breathing' needs the implicit solver; choose tissue.model: shell, or remove the section.");
   if (model.scene.scope) addTool(tool_urdf, model);
   if (model.scene.marking) model.dose_law.emplace(model.scene.marking->apc);
   if (model.scene.suture) {

@@ -23,6 +23,11 @@ std::unique_ptr<ConstraintBlock> makeThreadBlock(const Model& model);
 /// Parts of the wall that meet, see SelfContact. Null without tissue.self_contact.
 std::unique_ptr<ConstraintBlock> makeSelfContactBlock(const Model& model);
 
+/// The diaphragm, see breathingShift(): a force on every particle that is held by the foundation, and the place of the
+/// end of the oesophagus if it is attached. What it does to the tissue counts as pull_work; the work at the oesophagus,
+/// which no force tells, is in numerical_loss. Null in a scene that does not breathe.
+std::unique_ptr<ConstraintBlock> makeBreathingBlock(const Model& model);
+
 /// The gas in the lumen, isothermal, and the insufflator. Null in a scene without gas.
 std::unique_ptr<ConstraintBlock> makeGasBlock(const Model& model);
 

@@ -91,6 +91,7 @@ Scene completeScene(const Scene& scene) {
   if (!full.gas) full.gas.emplace();
   if (!full.gravity) full.gravity.emplace();
   if (!full.foundation) full.foundation.emplace();
+  if (!full.breathing) full.breathing.emplace();
   if (!full.scope) full.scope.emplace();
   if (!full.scope->compliance) full.scope->compliance.emplace();
   if (!full.helix) full.helix.emplace();
@@ -152,6 +153,13 @@ const std::vector<SchemaSection>& sceneSections() {
        [](const Scene& s) { return s.gravity.has_value(); }},
       {"foundation", "Neighbouring organs, modelled as springs from every particle to its position at rest.",
        [](Scene& s) { s.foundation.emplace(); }, [](const Scene& s) { return s.foundation.has_value(); }},
+      {"breathing",
+       "The diaphragm moves the foundation and the attached end of the oesophagus towards the feet (-z) and back, by "
+       "amplitude (1 - cos(2 pi rate t)) / 2; the duodenum and the hand that holds the scope stay. Of model shell; "
+       "needs "
+       "`foundation`. Without this section nothing breathes.",
+       [](Scene& s) { s.breathing.emplace(); }, [](const Scene& s) { return s.breathing.has_value(); }, "foundation",
+       "which the diaphragm moves"},
       {"scope", "The endoscope with its suturing device.", [](Scene& s) { s.scope.emplace(); },
        [](const Scene& s) { return s.scope.has_value(); }},
       {"scope.base", "Pose of the root link. Without this section the scope enters at the oesophagus.",

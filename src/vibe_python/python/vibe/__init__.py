@@ -51,6 +51,12 @@ __all__ = [
 DEFAULT_SCENE = "package://vibe_core/scenes/stomach.yaml"
 
 
+def _shown(value):
+    """A value in the sentence of an error: as Python writes it, or its type where that is long."""
+    text = ascii(value)
+    return text if len(text) <= 60 and "<" not in text else type(value).__name__
+
+
 def _plain(value):
     """What json does not know: numbers and arrays of numpy, and paths."""
     if hasattr(value, "tolist"):
@@ -64,7 +70,16 @@ def _overrides(sections):
     try:
         return _json.dumps(sections, default=_plain, allow_nan=False) if sections else ""
     except ValueError:
-        raise Error("An override holds a number that is not finite; give numbers in SI units.") from None
+        raise Error("An override holds a number that is not finite, or itself; give numbers in SI units.") from None
+    except TypeError:
+        raise Error("An override has a key that is not a text; give the names of keys.") from None
+
+
+def _file(name, value):
+    path = value if isinstance(value, str) else getattr(value, "__fspath__", lambda: None)()
+    if not isinstance(path, str) or not path or "\0" in path:
+        raise Error(f"'{name}' is {_shown(value)}; give the name of a file or package://PACKAGE/file.")
+    return path
 
 
 def load(scene=DEFAULT_SCENE, *, mesh=None, **sections):
@@ -78,4 +93,4 @@ def load(scene=DEFAULT_SCENE, *, mesh=None, **sections):
 
     Takes 0.2 to 1 s, tens of seconds for a mesh. Raises Error for an unknown key or a value outside of its range.
     """
-    return _build_model(_os.fspath(scene), _overrides(sections), "" if mesh is None else _os.fspath(mesh))
+    return _build_model(_file("scene", scene), _overrides(sections), "" if mesh is None else _file("mesh", mesh))

@@ -31,6 +31,8 @@ class Anatomy:
 
 class Event:
     """Something that happened in a step."""
+    def __init__(self, *args, **kwargs: Any) -> None:
+        """Made by Simulation.step()."""
     @property
     def amount(self) -> float:
         """A second number."""
@@ -71,12 +73,16 @@ class Event:
 
 class InputSource:
     """What gives the input of each step: Trainee or Script."""
+    def __init__(self, *args, **kwargs: Any) -> None:
+        """Made as Trainee or Script."""
     def next(self, simulation: Simulation) -> dict:
         """The input of the next step, as keywords of Simulation.step(). To be called once before every step."""
 
 
 class Model:
     """Everything that is constant during a simulation. Shared between simulations and threads."""
+    def __init__(self, *args, **kwargs: Any) -> None:
+        """Made by vibe.load()."""
     @property
     def area(self) -> ndarray:
         """View (particles,): wall at rest [m^2]."""

@@ -79,6 +79,12 @@ struct FoundationScene {
   bool carries_weight = true;  ///< the foundation balances the weight, so that the organ is at rest in its given shape
 };
 
+/// The diaphragm moves the foundation and the entry up and down; see breathingShift().
+struct BreathingScene {
+  double rate = 16.0 / 60;   ///< breaths [1/s]
+  double amplitude = 20e-3;  ///< from the end of an expiration to that of an inspiration [m]
+};
+
 /// An endoscope that gives way under load, see ScopeSprings.
 struct ScopeComplianceScene {
   double shaft_rigidity = 0.027;     ///< flexural, of the insertion tube [N m^2]
@@ -158,6 +164,7 @@ struct Scene {
   std::optional<GasScene> gas;
   std::optional<GravityScene> gravity;
   std::optional<FoundationScene> foundation;
+  std::optional<BreathingScene> breathing;
   std::optional<ScopeScene> scope;
   std::optional<HelixScene> helix;
   std::optional<SutureScene> suture;

@@ -57,7 +57,7 @@ struct EnergyAccount {
   double scope_loss = 0;
   double gas_work = 0;         ///< done by the gas on the wall
   double thread_work = 0;      ///< done by threads on the tissue
-  double pull_work = 0;        ///< done by the pull spring on the tissue
+  double pull_work = 0;        ///< done by the pull spring and by breathing on the tissue
   double friction_loss = 0;    ///< tool_work that does not reach the tissue: dissipated where the tool slides
   double damping_loss = 0;     ///< dissipated by mass damping
   double viscous_loss = 0;     ///< dissipated by stiffness damping

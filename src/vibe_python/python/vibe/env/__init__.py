@@ -15,10 +15,10 @@ from -1 to 1 of the joint speeds, and buttons. What is rewarded: the docstring o
 from . import api
 from .environment import Environment, VectorEnvironment
 from .expert import Expert
-from .organs import HELD_OUT, TRAINING
+from .organs import BREATHING, HELD_OUT, TRAINING
 from .tasks import Bite, Inspect, Mark, Reach, SutureSet, TASKS
 
-__all__ = ["Bite", "Environment", "Expert", "HELD_OUT", "Inspect", "Mark", "Reach", "SutureSet", "TASKS", "TRAINING",
+__all__ = ["BREATHING", "Bite", "Environment", "Expert", "HELD_OUT", "Inspect", "Mark", "Reach", "SutureSet", "TASKS", "TRAINING",
            "VectorEnvironment"]
 
 if api.REAL:

@@ -7,10 +7,13 @@ import numpy as np
 import vibe
 
 from . import api
+from .episodes import numbers, whole
 from .tasks import task_of
 
 
 def _generator(seed):
+    if seed is not None:
+        whole("seed", seed, 0, 2**64 - 1)
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed)))
 
 
@@ -23,6 +26,7 @@ class Environment(api.Env):
     action     'joints': shares of the greatest joint speeds, then the buttons; 'tip': of the tip's velocity (Reach,
                Inspect)
     camera     (width, height, field of view [rad]): adds depth and label to the observation
+    breathing  None (still), 'slight', 'moderate' or 'strong': the diaphragm moves the stomach (vibe.env.BREATHING)
 
     reset(seed) draws stomach, start and goal; the same seed gives the same episode, to the bit. Steps after an episode
     has ended raise vibe.Error.
@@ -48,10 +52,10 @@ class Environment(api.Env):
         return {name: value[0] for name, value in parts.items()}
 
     def reset(self, *, seed=None, options=None):
-        if api.REAL:
-            super().reset(seed=seed)
         if seed is not None or self._random is None:
             self._random = _generator(seed)
+        if api.REAL:
+            super().reset(seed=seed)
         self.task.begin(0, self._random)
         self._ended = False
         return self._row(self.task.observe()), self.task.measures(0)
@@ -61,7 +65,7 @@ class Environment(api.Env):
             raise vibe.Error("The environment is closed; make another one.")
         if self._ended:
             raise vibe.Error("The episode has ended, or none has begun; call reset().")
-        reward, success, truncated = self.task.advance(np.asarray(action)[None])
+        reward, success, truncated = self.task.advance(numbers(action)[None])
         self._ended = bool(success[0] or truncated[0])
         info = {**self.task.measures(0), "is_success": bool(success[0])}
         return self._row(self.task.observe()), float(reward[0]), bool(success[0]), bool(truncated[0]), info
@@ -84,9 +88,10 @@ class VectorEnvironment(api.VectorEnv):
     metadata = {"render_modes": []}
 
     def __init__(self, task="Reach", count=8, *, threads=None, autoreset="next_step", **settings):
-        if autoreset not in ("next_step", "same_step", "disabled"):
-            raise vibe.Error(f"'autoreset' is '{autoreset}'; use 'next_step', 'same_step' or 'disabled'.")
-        self.task = task_of(task)(count, threads=threads or len(os.sched_getaffinity(0)), **settings)
+        if not isinstance(autoreset, str) or autoreset not in ("next_step", "same_step", "disabled"):
+            raise vibe.Error(f"'autoreset' is {vibe._shown(autoreset)}; use 'next_step', 'same_step' or 'disabled'.")
+        threads = len(os.sched_getaffinity(0)) if threads is None else threads
+        self.task = task_of(task)(count, threads=threads, **settings)
         self.num_envs, self.autoreset, self.render_mode = count, autoreset, None
         self.single_observation_space, self.single_action_space = self.task.observation_space, self.task.action_space
         self.observation_space = api.batched(self.single_observation_space, count)
@@ -99,10 +104,15 @@ class VectorEnvironment(api.VectorEnv):
     def reset(self, *, seed=None, options=None):
         """seed: one number, from which slot k gets seed + k; a list of one per slot; None."""
         seeds = [None] * self.num_envs if seed is None else \
-            [seed + k for k in range(self.num_envs)] if np.isscalar(seed) else list(seed)
+            list(seed) if isinstance(seed, (list, tuple, np.ndarray)) and np.ndim(seed) == 1 else \
+            [whole("seed", seed, 0, 2**63) + k for k in range(self.num_envs)]
         if len(seeds) != self.num_envs:
             raise vibe.Error(f"There are {len(seeds)} seeds for {self.num_envs} episodes; give one each.")
-        mask = np.ones(self.num_envs, bool) if not options else np.asarray(options.get("reset_mask", True), bool)
+        if options is not None and not isinstance(options, dict):
+            raise vibe.Error(f"'options' is {vibe._shown(options)}; give a dictionary, or None.")
+        mask = np.asarray((options or {}).get("reset_mask", True))
+        if mask.dtype != bool or mask.shape not in ((), (self.num_envs,)):
+            raise vibe.Error(f"'reset_mask' has the shape {mask.shape}; give {self.num_envs} times True or False.")
         for slot in np.flatnonzero(np.broadcast_to(mask, self.num_envs)):
             if seeds[slot] is not None or self._random[slot] is None:
                 self._random[slot] = _generator(seeds[slot])
@@ -123,7 +133,7 @@ class VectorEnvironment(api.VectorEnv):
         ended = self._ended.copy()
         if ended.any() and self.autoreset != "next_step":
             raise vibe.Error("An episode has ended, or none has begun; call reset() first.")
-        actions = np.array(actions, float)
+        actions = numbers(actions).copy()
         if ended.any() and actions.shape == (self.num_envs,) + self.single_action_space.shape:
             actions[ended] = 0
         reward, success, truncated = self.task.advance(actions)

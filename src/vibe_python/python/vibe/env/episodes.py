@@ -16,6 +16,44 @@ GOALS = 64  # per start, drawn once
 WALL_POINTS = 48  # places of the wall that an observation holds
 
 
+def whole(name, value, least, most):
+    """A whole number within a range, or vibe.Error."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
+        raise vibe.Error(f"'{name}' is {vibe._shown(value)}; give a whole number from {least} to {most}.")
+    return int(value)
+
+
+def numbers(action):
+    """An action as an array of float, or vibe.Error."""
+    try:
+        return np.asarray(action, float)
+    except (TypeError, ValueError, OverflowError):
+        raise vibe.Error(f"The action is {vibe._shown(action)}; give an array of numbers from -1 to 1.") from None
+
+
+def _number(value):
+    return isinstance(value, (int, float, np.integer, np.floating)) and np.isfinite(float(value))
+
+
+def _pairs(organs):
+    """Pairs (shape, scale) as a tuple of tuples."""
+    pairs = tuple(organs) if isinstance(organs, (list, tuple)) else ()
+    if not pairs:
+        raise vibe.Error("'organs' is empty or no list; give pairs (shape, scale), such as vibe.env.TRAINING.")
+    for pair in pairs:
+        if not isinstance(pair, (list, tuple)) or len(pair) != 2 or pair[0] not in _organs.SHAPES or not _number(pair[1]):
+            raise vibe.Error(f"'organs' holds {vibe._shown(pair)}; give pairs of a shape ({', '.join(_organs.SHAPES)}) and a scale.")
+    return tuple(tuple(pair) for pair in pairs)
+
+
+def _camera(camera):
+    if camera is None:
+        return None
+    if not isinstance(camera, (list, tuple)) or len(camera) != 3 or not _number(camera[2]) or not 0.01 < camera[2] < 3.1:
+        raise vibe.Error(f"'camera' is {vibe._shown(camera)}; give (width, height, field of view from 0.01 to 3.1 rad), or None.")
+    return whole("camera[0]", camera[0], 1, 4096), whole("camera[1]", camera[1], 1, 4096), float(camera[2])
+
+
 class Task:
     """What an environment asks for. Subclasses say which actions there are, what is observed besides, what is rewarded
     and when an episode ends; an instance holds the episodes of `count` slots as arrays with a row per slot."""
@@ -26,15 +64,17 @@ class Task:
     speeds = np.array([0.05, 1.0, 1.0, 1.0])  #: of the joints at action 1 [m/s], [rad/s]
     along, around = (0.3, 0.72), (-1.2, 1.2)  #: uniform distribution of the goal: axis [1], angle around it [rad]
 
-    def __init__(self, count=1, *, particles=1000, organs=_organs.TRAINING, action="joints", threads=1, camera=None):
-        if action not in ("joints", "tip"):
-            raise vibe.Error(f"'action' is '{action}'; use 'joints' or 'tip'.")
+    def __init__(self, count=1, *, particles=1000, organs=_organs.TRAINING, action="joints", threads=1, camera=None,
+                 breathing=None):
+        if not isinstance(action, str) or action not in ("joints", "tip"):
+            raise vibe.Error(f"'action' is {vibe._shown(action)}; use 'joints' or 'tip'.")
+        if breathing is not None and (not isinstance(breathing, str) or breathing not in _organs.BREATHING):
+            raise vibe.Error(f"'breathing' is {vibe._shown(breathing)}; use {', '.join(_organs.BREATHING)}, or None.")
         if action == "tip" and len(self.speeds) > 4:
             raise vibe.Error(f"The task {self.name} moves more than the tip; use action='joints'.")
-        if not organs:
-            raise vibe.Error("'organs' is empty; give pairs (shape, scale), such as vibe.env.TRAINING.")
-        self.count, self.particles, self.organs = count, particles, tuple(organs)
-        self.mode, self.threads, self.camera = action, threads, camera
+        self.count, self.particles = whole("count", count, 1, 65536), whole("particles", particles, 100, 1000000)
+        self.organs, self.breathing = _pairs(organs), breathing
+        self.mode, self.threads, self.camera = action, whole("threads", threads, 1, 1024), _camera(camera)
         self.simulation = [None] * count
         self.organ = [None] * count
         self.random = [np.random.default_rng(k) for k in range(count)]
@@ -82,13 +122,14 @@ class Task:
         self._check_open()
         self.random[slot] = random
         drawn = self.organs[random.integers(len(self.organs))]
-        organ = _organs.organ(*drawn, self.particles)
+        organ = _organs.organ(*drawn, self.particles, self.breathing)
         if self.organ[slot] is not organ:
             if self.simulation[slot] is not None:
                 self.organ[slot].give(self.simulation[slot])
             self.organ[slot], self.simulation[slot] = organ, organ.take()
         start = int(random.integers(len(organ.starts)))
-        self.simulation[slot].restore(organ.starts[start])
+        phases = organ.starts[start]
+        self.simulation[slot].restore(phases[random.integers(len(phases)) if self.breathing else 0])
         self._set_goal(slot, organ, start, int(random.integers(GOALS)))
         triangles = len(organ.model.triangles)
         self.wall_triangle[slot] = (np.arange(WALL_POINTS) * triangles) // WALL_POINTS

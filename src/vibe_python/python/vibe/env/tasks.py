@@ -161,6 +161,6 @@ TASKS = {task.name: task for task in (Reach, Inspect, Mark, Bite, SutureSet)}
 def task_of(task):
     if isinstance(task, type) and issubclass(task, Task):
         return task
-    if task not in TASKS:
-        raise vibe.Error(f"There is no task '{task}'; use one of {', '.join(TASKS)}.")
+    if not isinstance(task, str) or task not in TASKS:
+        raise vibe.Error(f"There is no task {vibe._shown(task)}; use one of {', '.join(TASKS)}.")
     return TASKS[task]
