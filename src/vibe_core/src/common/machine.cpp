@@ -22,7 +22,8 @@ bool haveFma() {
 
 bool haveAvx512() {
   return haveFma() && __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
-         __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512dq") != 0;
+         __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
+         __builtin_cpu_supports("avx512cd") != 0;
 }
 
 void checkSupport(InstructionSet wanted, const std::string& place) {

@@ -11,7 +11,7 @@ enum class Arithmetic {
   Plain   ///< rounded twice; fast where the processor has no FMA
 };
 
-/// What the kernels are made of. Avx2 needs AVX2 and FMA, Avx512 the parts F, VL, BW and DQ of AVX-512 too.
+/// What the kernels are made of. Avx2 needs AVX2 and FMA, Avx512 the parts F, VL, BW, DQ and CD of AVX-512 too.
 enum class InstructionSet { Sse2, Avx2, Avx512 };
 
 const char* wordFor(Arithmetic arithmetic);           ///< "fused" or "plain"
