@@ -27,6 +27,9 @@ macro(vibe_package)
   add_library(${PROJECT_NAME}_options INTERFACE)
   target_compile_options(${PROJECT_NAME}_options INTERFACE
     -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion $<$<BOOL:${VIBE_WARNINGS_ARE_ERRORS}>:-Werror>
+    # whatever -march a user gives: with wider registers and fused operations Eigen adds up in another order, and it aligns
+    # its types otherwise; vibe_instruction_set() follows and comes before this
+    "$<$<STREQUAL:${CMAKE_SYSTEM_PROCESSOR},x86_64>:-mno-avx;-mno-fma>"
     # clang++ calls it shadowing, too, where a type within a function has the name of one in another file of the folder
     $<$<CXX_COMPILER_ID:GNU>:-Wshadow>)
   if(VIBE_SANITIZE)

@@ -1,9 +1,9 @@
 #include "haptics/impedance_estimator.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "common/symmetric_eigen.hpp"
 #include "vibe_core/common/fnv1a.hpp"
 
 namespace vibe {
@@ -21,12 +21,12 @@ constexpr double kFirm = 1e-5;
 
 // The displacement that relieves the force, in the directions that have a stiffness.
 Eigen::Vector3d solveWhereStiff(const Eigen::Matrix3d& stiffness, const Eigen::Vector3d& force) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(stiffness);
-  const double min = kMinEigenvalue * eigen.eigenvalues().maxCoeff();
+  const SymmetricEigen3 eigen(stiffness);
+  const double min = kMinEigenvalue * eigen.values.maxCoeff();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i)
-    if (eigen.eigenvalues()[i] > min && min > 0)
-      sum += eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(force) / eigen.eigenvalues()[i]);
+    if (eigen.values[i] > min && min > 0)
+      sum += eigen.vectors.col(i) * (eigen.vectors.col(i).dot(force) / eigen.values[i]);
   return sum;
 }
 
