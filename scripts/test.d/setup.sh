@@ -43,10 +43,22 @@ onTrixie() { VIBE_OS_RELEASE=$scratch/trixie "$setup" --list; }
 check 'setup takes the line of the system' bash -c '
   grep -qx qt6-base-dev <<<"$1" && ! grep -qx qtbase5-dev <<<"$1" && grep -qx qtbase5-dev <<<"$2"' - "$(onTrixie)" "$("$setup" --list)"
 
-# --- apt that fails, and one that says nothing; neither runs as root here
-mkdir "$scratch/bin"
-printf '#!/bin/sh\nexit 100\n' >"$scratch/bin/apt-get"
-chmod +x "$scratch/bin/apt-get"
+# --- an apt that gets its lists and then fails
+saysThatAptFailed() {
+  local copy=$scratch/failing said status=0
+  mkdir -p "$copy/bin" "$copy/src/pkg"
+  cp -r "$root/scripts" "$copy/"
+  printf '#!/bin/sh\ncase "$*" in *update*) ;; *) exit 100 ;; esac\n' >"$copy/bin/apt-get"
+  printf '#!/bin/sh\nexec "$@"\n' >"$copy/bin/sudo"
+  chmod +x "$copy/bin/apt-get" "$copy/bin/sudo"
+  sed -i "s#export PATH=#export PATH=$copy/bin:#" "$copy/scripts/lib/common.sh"
+  echo 'odd vibe-no-such-package' >>"$copy/scripts/apt_packages.txt"
+  echo '<package format="2"><name>pkg</name><depend>odd</depend></package>' >"$copy/src/pkg/package.xml"
+  said=$("$copy/scripts/setup" --yes 2>&1) || status=$?
+  printf '%s\n' "$said"
+  [ "$status" -eq 1 ] && grep -q 'apt-get install failed' <<<"$said" && ! grep -q 'apt succeeded' <<<"$said"
+}
+check 'setup says that apt failed' saysThatAptFailed
 
 # --- a ROS that is sourced is used alone, and none of another kind is installed beside it
 for ros in one two; do

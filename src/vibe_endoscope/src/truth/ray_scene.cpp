@@ -54,7 +54,9 @@ class PacketQuery {
     context_.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   }
 
-  void intersect(const int* valid, RTCScene scene, RTCRayHit8& packet) { rtcIntersect8(valid, scene, &context_, &packet); }
+  void intersect(const int* valid, RTCScene scene, RTCRayHit8& packet) {
+    rtcIntersect8(valid, scene, &context_, &packet);
+  }
   void occlude(const int* valid, RTCScene scene, RTCRay8& packet) { rtcOccluded8(valid, scene, &context_, &packet); }
 
  private:
@@ -249,13 +251,12 @@ void RayScene::firstHits(const Eigen::Isometry3d& camera, const std::vector<Came
 void RayScene::areBlocked(const Eigen::Isometry3d& camera, const std::vector<CameraRay>& rays,
                           std::vector<std::uint8_t>& blocked) const {
   blocked.resize(rays.size());
-  forPackets<RTCRay8>(
-      camera, rays,
-      [&](std::size_t first, std::size_t count, const int* valid, PacketQuery& query, RTCRay8& packet) {
-        query.occlude(valid, embree_->scene, packet);
-        // Embree sets the end of a ray that meets something to minus infinity
-        for (std::size_t i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0;
-      });
+  forPackets<RTCRay8>(camera, rays,
+                      [&](std::size_t first, std::size_t count, const int* valid, PacketQuery& query, RTCRay8& packet) {
+                        query.occlude(valid, embree_->scene, packet);
+                        // Embree sets the end of a ray that meets something to minus infinity
+                        for (std::size_t i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0;
+                      });
 }
 
 }  // namespace vibe::endoscope
