@@ -30,7 +30,8 @@ const char* digitsFrom(const char* at, const char* end) {
   return at;
 }
 
-/// The end of the longest number in digits at `begin`; `begin` where there is none. `significant`: one of them is not 0.
+/// The end of the longest number in digits at `begin`; `begin` where there is none. `significant`: one of them is not
+/// 0.
 const char* endOfNumber(const char* begin, const char* end, bool& significant) {
   const char* const whole = begin != end && *begin == '-' ? begin + 1 : begin;
   const char* at = digitsFrom(whole, end);

@@ -81,8 +81,7 @@ struct Tridiagonal {
     for (int k = start; k < end && z != 0; ++k) {
       const Rotation r(x, z);
       const double side = r.s * diagonal[k] + r.c * below[k], next = r.s * below[k] + r.c * diagonal[k + 1];
-      diagonal[k] =
-          r.c * (r.c * diagonal[k] - r.s * below[k]) - r.s * (r.c * below[k] - r.s * diagonal[k + 1]);
+      diagonal[k] = r.c * (r.c * diagonal[k] - r.s * below[k]) - r.s * (r.c * below[k] - r.s * diagonal[k + 1]);
       diagonal[k + 1] = r.s * side + r.c * next;
       below[k] = r.c * side - r.s * next;
       if (k > start) below[k - 1] = r.c * below[k - 1] - r.s * z;

@@ -232,11 +232,11 @@ std::optional<ToolImpedance> ImpedanceEstimator::respond(const ToolContactRows& 
                                                          ImpedanceMemory& memory) {
   present_->stiffness->setRows(rows_);
   factor_.compute(present_->stiffness->compliance());
-  solved_.resize(motion_.rows(), kToolMotions);
-  for (Eigen::Index c = 0; c < kToolMotions; ++c) solved_.col(c) = factor_.solve(motion_.col(c));
+  solved_ = motion_;
+  for (Eigen::Index c = 0; c < kToolMotions; ++c) factor_.solve(solved_.col(c));
   const Motions found = motion_.transpose().lazyProduct(solved_);
   Motions stiffness = 0.5 * (found + found.transpose());
-  if (factor_.info() != Eigen::Success || !factor_.isPositive() || !stiffness.allFinite()) return std::nullopt;
+  if (!factor_.succeeded() || !factor_.isPositive() || !stiffness.allFinite()) return std::nullopt;
 
   nodes_.clear();
   for (const ToolRow& row : touch.rows)

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "common/background_worker.hpp"
+#include "common/ordered_algebra.hpp"
 #include "haptics/static_stiffness.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
 #include "vibe_core/state/impedance_memory.hpp"
@@ -155,9 +155,9 @@ class ImpedanceEstimator {
   Made* present_ = nullptr;     // of the memory's current basis; null: not usable
   ImpedanceBasis next_basis_;   // read by `making_`
   ConstraintRows rows_;
-  Eigen::MatrixXd motion_;               // (rows x kToolMotions)
-  Eigen::MatrixXd solved_;               // force of each row per motion (rows x kToolMotions)
-  Eigen::LDLT<Eigen::MatrixXd> factor_;  // of the rows' compliance
+  Eigen::MatrixXd motion_;  // (rows x kToolMotions)
+  Eigen::MatrixXd solved_;  // force of each row per motion (rows x kToolMotions)
+  OrderedLdlt factor_;      // of the rows' compliance
   std::vector<int> nodes_;
   BackgroundWorker making_;  // of next_; the last member, because it works on the others
 };
