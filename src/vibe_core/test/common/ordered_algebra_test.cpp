@@ -71,7 +71,8 @@ TEST(OrderedAlgebra, EigenvectorsAreOrthogonalAndGiveTheMatrix) {
   }
 }
 
-/// The bits that recordings were made with, those of Eigen 3.4.0: they must not change with compiler, Eigen or processor.
+/// The bits that recordings were made with, those of Eigen 3.4.0: they must not change with compiler, Eigen or
+/// processor.
 TEST(OrderedAlgebra, BitsAreThoseOfRecordings) {
   std::uint64_t state = 3;
   Fnv1a hash;
