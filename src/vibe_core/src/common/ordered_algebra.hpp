@@ -16,6 +16,13 @@ using MatrixView = Eigen::Ref<const Eigen::MatrixXd>;
 /// The sum of the products a[i] b[i].
 double orderedDot(const VectorView& a, const VectorView& b);
 
+/// The same of columns of a fixed size above 3 or in single precision: Eigen's dot() differs between versions, its
+/// sum() of the products does not.
+template <class A, class B>
+typename A::Scalar fixedDot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  return a.cwiseProduct(b).sum();
+}
+
 /// out += factor A x
 void addProduct(const MatrixView& a, const VectorView& x, double factor, Eigen::Ref<Eigen::VectorXd> out);
 

@@ -290,7 +290,7 @@ ToolImpedance ImpedanceEstimator::response(const ToolContactRows& touch, const M
   const Joints turned = joints - joint_slope.lastPlace();
   double row_move = 0;
   for (Eigen::Index r = 0; r < motion_.rows(); ++r)
-    row_move = std::max(row_move, std::abs(motion_.row(r).tail<kScopeJointCount>().dot(turned)));
+    row_move = std::max(row_move, std::abs(fixedDot(motion_.row(r).tail<kScopeJointCount>().transpose(), turned)));
   const bool joints_moved = row_move > kShortestStep;
   slope.observe(k_tip, tip, touch.force.head<3>() + b_tip * v.head<3>(), comparable && tip_moved);
   joint_slope.observe(k_joints, joints, touch.force.tail<kScopeJointCount>() + b_joints * v.tail<kScopeJointCount>(),

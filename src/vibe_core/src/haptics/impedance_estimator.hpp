@@ -47,9 +47,10 @@ class SlopeCorrection {
 
   Matrix corrected(const Matrix& stiffness) const {
     const Vector pulled = stiffness * step_;
-    const double expected = step_.dot(pulled);
+    const double expected = fixedDot(step_, pulled);
     if (!memory_.has_pair || !(expected > 0)) return stiffness;
-    return stiffness - pulled * pulled.transpose() / expected + change_ * change_.transpose() / step_.dot(change_);
+    return stiffness - pulled * pulled.transpose() / expected +
+           change_ * change_.transpose() / fixedDot(step_, change_);
   }
 
   Vector lastPlace() const { return place_; }
@@ -60,7 +61,7 @@ class SlopeCorrection {
 
   void keepPair(const Matrix& stiffness, const Vector& step, const Vector& change) {
     const Vector pulled = stiffness * step;
-    const double expected = step.dot(pulled), observed = step.dot(change);
+    const double expected = fixedDot(step, pulled), observed = fixedDot(step, change);
     if (!(observed >= kMin * expected && observed <= kMax * expected && observed > 0)) return;
     step_ = step;
     change_ = change;

@@ -282,7 +282,7 @@ void ConstraintSchur::eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, do
   pull_.setZero();
   if (yields_) {
     for (int i = 0; i < m; ++i) pull_ += force_[i] * yield_.col(i);
-    for (int i = 0; i < m; ++i) moves_[i] -= given_.col(i).dot(pull_);
+    for (int i = 0; i < m; ++i) moves_[i] -= fixedDot(given_.col(i), pull_);
   }
   if (m > 0) rows_.addForces(*cache_, force_, y);
   gas_force_ = 0;
