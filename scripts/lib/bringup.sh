@@ -10,7 +10,7 @@ export VIBE_WORKSPACE=$vibe_root # where the program writes by default
 # a build.
 checkCall() {
   PYTHONPATH=$vibe_root/src/vibe_bringup/src:$vibe_root/src/vibe_sessions/src ROS_PACKAGE_PATH=$vibe_root/src \
-    /usr/bin/python3 -B "$vibe_root/src/vibe_bringup/programs/$name" --check "$@"
+    "$vibe_python" -B "$vibe_root/src/vibe_bringup/programs/$name" --check "$@"
 }
 
 # useScratchHome: ROS and matplotlib keep logs and caches in the home, which `nobody` and containers may not have.
@@ -21,9 +21,20 @@ useScratchHome() {
   export ROS_HOME MPLCONFIGDIR=$ROS_HOME
 }
 
+# takeForce WORD...: --force means in each of these scripts what it means in setup; the programs do not know it.
+takeForce() {
+  local word
+  arguments=()
+  for word in "$@"; do
+    if [ "$word" = --force ]; then export VIBE_ANY_SYSTEM=true; else arguments+=("$word"); fi
+  done
+}
+
 main() {
-  local said parts part flags=()
-  /usr/bin/python3 -c 'import argparse' 2>/dev/null || installMissing session # a bare Debian has no Python
+  local said parts part flags=() arguments=()
+  takeForce "$@"
+  set -- "${arguments[@]}"
+  "$vibe_python" -c 'import argparse' 2>/dev/null || installMissing session # a bare Debian has no Python
   said=$(checkCall "$@") || exit $?
   if [[ $said != 'needs: '* ]]; then printf '%s\n' "$said"; exit 0; fi
   read -ra parts <<<"${said#needs: }"

@@ -3,11 +3,6 @@
 # the workspace, wherever the caller stands and however the script was reached (a link to it works too)
 vibe_root=$(dirname -- "$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")")
 
-# Debian's ROS is built for /usr/bin/python3; a python3 of pyenv or conda earlier in PATH breaks CMake and every node script
-export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
-# this workspace stands on /usr alone: another one that the caller has sourced must not shine through
-unset PYTHONPATH PYTHONHOME CMAKE_PREFIX_PATH ROS_PACKAGE_PATH
-
 # Ends the script: something went wrong while it ran.
 die() {
   printf '%s: %s\n' "${0##*/}" "$*" >&2
@@ -25,6 +20,32 @@ requireValue() {
   [ "$2" -ge 2 ] || usageError "$1 needs a value"
 }
 
+# useRos: the ROS 1 that the workspace stands on alone. One that the caller has sourced is used (/opt/ros/..., a conda
+# environment: a prefix that contains roscpp), and vibe_ros names it; otherwise it is that of Debian in /usr, which is
+# built for /usr/bin/python3: a python3 of pyenv or conda earlier in PATH breaks CMake and every node script. Other
+# workspaces that the caller has sourced do not shine through.
+useRos() {
+  local prefix prefixes=() found=()
+  IFS=: read -ra prefixes <<<"${CMAKE_PREFIX_PATH:-}"
+  for prefix in "${prefixes[@]}"; do
+    if [ "${prefix%/}" != /usr ] && [ -f "$prefix/share/roscpp/package.xml" ]; then found+=("${prefix%/}"); fi
+  done
+  [ ${#found[@]} -le 1 ] || die "two ROS are sourced, ${found[0]} and ${found[1]}; open a new terminal and source one of them"
+  vibe_ros=${found[0]:-}
+  vibe_python=/usr/bin/python3
+  export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
+  unset PYTHONPATH PYTHONHOME CMAKE_PREFIX_PATH ROS_PACKAGE_PATH
+  [ -n "$vibe_ros" ] || return 0
+  PATH=$vibe_ros/bin:$PATH
+  [ ! -x "$vibe_ros/bin/python3" ] || vibe_python=$vibe_ros/bin/python3
+  [ -f "$vibe_ros/setup.bash" ] || die "the ROS in $vibe_ros has no setup.bash; install its catkin"
+  set +u
+  # shellcheck disable=SC1091
+  source "$vibe_ros/setup.bash"
+  set -u
+}
+useRos
+
 # Brings the workspace's environment into this shell; call it before set -u, which ROS's own files do not survive.
 sourceWorkspace() {
   local devel=$1
@@ -39,7 +60,7 @@ sourceWorkspace() {
 # script begins anew as a child of scripts/lib/guard.py; needs python3, so call it once setup is through.
 runGuarded() {
   [ "${VIBE_GUARDED:-}" != "$PPID" ] || return 0
-  exec /usr/bin/python3 "$vibe_root/scripts/lib/guard.py" "$BASH" "$0" "$@"
+  exec "$vibe_python" "$vibe_root/scripts/lib/guard.py" "$BASH" "$0" "$@"
 }
 
 # scripts/test names the workspace in VIBE_WORKSPACE_IS_BUILT once it has installed and built everything. The scripts that
@@ -49,10 +70,10 @@ isBuilt() {
 }
 
 # installMissing [PART...]: installs what these parts of the workspace need (none: everything) and is missing, without a
-# word and without sudo when nothing is.
+# word and without sudo when nothing is. What a ROS that the caller has sourced needs, rosdep knows and setup does not.
 installMissing() {
   local missing flags=() part
-  ! isBuilt || return 0
+  if isBuilt || [ -n "$vibe_ros" ]; then return 0; fi
   for part in "$@"; do flags+=(--part "$part"); done
   missing=$("$vibe_root/scripts/setup" --missing "${flags[@]}") || exit 1
   [ -z "$missing" ] || "$vibe_root/scripts/setup" "${flags[@]}" || exit 1

@@ -101,8 +101,8 @@ def system(report):
     for name, value in sorted(os.environ.items()):
         if VARIABLES.match(name) and name != "VIBE_WORKSPACE":
             report.fact(name, value)
-    debian = release.get("ID") == "debian" and release.get("VERSION_CODENAME") == "bookworm"
-    report.check(debian, "Debian 12", "this is {}; the packages are those of Debian 12".format(release.get("PRETTY_NAME")))
+    debian = release.get("ID") == "debian" and release.get("VERSION_CODENAME") in ("bookworm", "trixie")
+    report.check(debian, "Debian 12 or 13", "this is {}; the packages are those of Debian 12 and 13".format(release.get("PRETTY_NAME")))
     disk = shutil.disk_usage(WORKSPACE).free
     report.check(disk > 2e9, "room on the disk", "{:.1f} GB are free at {}; a build needs 2".format(disk / 1e9, WORKSPACE))
     busy = os.getloadavg()[0] > len(os.sched_getaffinity(0)) + 0.5

@@ -40,7 +40,7 @@ namesNoRos() {
 
 configures() {
   bare cmake -S "$source" -B "$build" -DCMAKE_INSTALL_PREFIX="$prefix" -DCMAKE_DISABLE_FIND_PACKAGE_catkin=ON \
-    -DCMAKE_CXX_COMPILER=clang++
+    -DCMAKE_CXX_COMPILER=clang++ -DVIBE_WARNINGS_ARE_ERRORS="${VIBE_WARNINGS_ARE_ERRORS:-OFF}"
 }
 
 builds() { bare cmake --build "$build" -j1; }

@@ -32,10 +32,45 @@ check 'setup names an unknown key, its file and the table' \
 mkdir "$scratch/empty"
 check 'setup says when there is no package' refuses 1 'no package.xml' "$setup" --list --source "$scratch/empty"
 
-printf 'ID=debian\nVERSION_CODENAME=trixie\nPRETTY_NAME="Debian 13"\n' >"$scratch/os-release"
-check 'setup refuses another Debian' env VIBE_OS_RELEASE="$scratch/os-release" bash -c \
-  "$(declare -f refuses); refuses 1 'Debian 12 .bookworm.*Debian 13' \"\$1\" --missing" - "$setup"
-check 'setup goes on when forced' env VIBE_OS_RELEASE="$scratch/os-release" "$setup" --force --missing
+printf 'ID=debian\nVERSION_CODENAME=bullseye\nPRETTY_NAME="Debian 11"\n' >"$scratch/os-release"
+printf 'ID=debian\nVERSION_CODENAME=trixie\nPRETTY_NAME="Debian 13"\n' >"$scratch/trixie"
+elsewhere() { env VIBE_OS_RELEASE="$scratch/os-release" "$@"; }
+for script in setup build test run; do
+  check "$script refuses another Debian" refuses 1 'Debian 12 .bookworm. or 13 .trixie.*Debian 11' elsewhere "$root/scripts/$script"
+done
+check 'setup goes on when forced' elsewhere "$setup" --force --missing
+onTrixie() { VIBE_OS_RELEASE=$scratch/trixie "$setup" --list; }
+check 'setup takes the line of the system' bash -c '
+  grep -qx qt6-base-dev <<<"$1" && ! grep -qx qtbase5-dev <<<"$1" && grep -qx qtbase5-dev <<<"$2"' - "$(onTrixie)" "$("$setup" --list)"
+
+# --- an apt that gets its lists and then fails
+saysThatAptFailed() {
+  local copy=$scratch/failing said status=0
+  mkdir -p "$copy/bin" "$copy/src/pkg"
+  cp -r "$root/scripts" "$copy/"
+  printf '#!/bin/sh\ncase "$*" in *update*) ;; *) exit 100 ;; esac\n' >"$copy/bin/apt-get"
+  printf '#!/bin/sh\nexec "$@"\n' >"$copy/bin/sudo"
+  chmod +x "$copy/bin/apt-get" "$copy/bin/sudo"
+  sed -i "s#export PATH=#export PATH=$copy/bin:#" "$copy/scripts/lib/common.sh"
+  echo 'odd vibe-no-such-package' >>"$copy/scripts/apt_packages.txt"
+  echo '<package format="2"><name>pkg</name><depend>odd</depend></package>' >"$copy/src/pkg/package.xml"
+  said=$("$copy/scripts/setup" --yes 2>&1) || status=$?
+  printf '%s\n' "$said"
+  [ "$status" -eq 1 ] && grep -q 'apt-get install failed' <<<"$said" && ! grep -q 'apt succeeded' <<<"$said"
+}
+check 'setup says that apt failed' saysThatAptFailed
+
+# --- a ROS that is sourced is used alone, and none of another kind is installed beside it
+for ros in one two; do
+  mkdir -p "$scratch/$ros/share/roscpp" && touch "$scratch/$ros/share/roscpp/package.xml"
+  printf 'export CMAKE_PREFIX_PATH=%s ROS_PACKAGE_PATH=%s/share\n' "$scratch/$ros" "$scratch/$ros" >"$scratch/$ros/setup.bash"
+done
+mkdir "$scratch/devel"
+withRos() { env CMAKE_PREFIX_PATH="$1" bash -c 'set -u; source "$1/scripts/lib/common.sh"; echo "$vibe_ros:${CMAKE_PREFIX_PATH:-}"' - "$root"; }
+check 'a sourced ROS is used' bash -c '[ "$1" = "$2:$2" ]' - "$(withRos "$scratch/devel:$scratch/one")" "$scratch/one"
+check 'a sourced workspace is hidden' bash -c '[ "$1" = : ]' - "$(withRos "$scratch/devel:/usr")"
+check 'two sourced ROS are refused' refuses 1 'two ROS are sourced' withRos "$scratch/one:$scratch/two"
+check 'setup installs nothing beside a sourced ROS' refuses 1 'rosdep install' env CMAKE_PREFIX_PATH="$scratch/one" "$setup" --yes
 
 check 'nothing is missing once the tests run' bash -c '[ -z "$("$1" --missing)" ]' - "$setup"
 check 'setup has nothing to do twice' bash -c '"$1" --yes | grep -qx "Everything is installed."' - "$setup"

@@ -4,6 +4,7 @@
 set(VIBE_CMAKE_DIR ${CMAKE_CURRENT_LIST_DIR})
 
 # vibe_package(): settings of the package, and the interface library <package>_options with its compiler flags.
+#   VIBE_WARNINGS_ARE_ERRORS=ON  for those who change the code; other compilers than theirs warn of other things
 #   VIBE_SANITIZE=ON      sanitizers, those of VIBE_SANITIZERS
 #   VIBE_UNITY_BUILD=OFF  compiles every source by itself: finds missing includes, takes three times as long
 macro(vibe_package)
@@ -18,13 +19,17 @@ macro(vibe_package)
   if(NOT COMMAND catkin_package)
     enable_testing()  # here: in a function it would be lost
   endif()
+  option(VIBE_WARNINGS_ARE_ERRORS "Stop at compiler warnings" OFF)
   option(VIBE_SANITIZE "Build with sanitizers" OFF)
   set(VIBE_SANITIZERS address,undefined CACHE STRING "What VIBE_SANITIZE builds with; or thread")
   option(VIBE_UNITY_BUILD "Compile the sources of a folder as one file" ON)
 
   add_library(${PROJECT_NAME}_options INTERFACE)
   target_compile_options(${PROJECT_NAME}_options INTERFACE
-    -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion -Werror
+    -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion $<$<BOOL:${VIBE_WARNINGS_ARE_ERRORS}>:-Werror>
+    # whatever -march a user gives: with wider registers and fused operations Eigen adds up in another order, and it aligns
+    # its types otherwise; vibe_instruction_set() follows and comes before this
+    "$<$<STREQUAL:${CMAKE_SYSTEM_PROCESSOR},x86_64>:-mno-avx;-mno-fma>"
     # clang++ calls it shadowing, too, where a type within a function has the name of one in another file of the folder
     $<$<CXX_COMPILER_ID:GNU>:-Wshadow>)
   if(VIBE_SANITIZE)
@@ -32,6 +37,16 @@ macro(vibe_package)
       -fsanitize=${VIBE_SANITIZERS} -fno-sanitize-recover=undefined -fno-omit-frame-pointer -g)
     target_link_options(${PROJECT_NAME}_options INTERFACE -fsanitize=${VIBE_SANITIZERS})
   endif()
+endmacro()
+
+# vibe_rviz_qt(VARIABLE COMPONENT...): finds the Qt that rviz was built with; a plugin with another one crashes when it is
+# loaded. VARIABLE gets Qt5 or Qt6. A macro, because what find_package() sets has to stay.
+macro(vibe_rviz_qt variable)
+  if(NOT rviz_QT_VERSION MATCHES "^[56]\\.")
+    message(FATAL_ERROR "rviz does not say which Qt it was built with (rviz_QT_VERSION is '${rviz_QT_VERSION}', expected 5 or 6); install rviz's development files")
+  endif()
+  string(REGEX REPLACE "\\..*" "" ${variable} "Qt${rviz_QT_VERSION}")
+  find_package(${${variable}} REQUIRED COMPONENTS ${ARGN})
 endmacro()
 
 # vibe_sources(VARIABLE PATTERN...): the sources that match, without those of programs (*_main.cpp).
@@ -78,7 +93,7 @@ function(vibe_library name)
 endfunction()
 
 # vibe_instruction_set(SET SOURCE...): lets these sources use the instructions of a set: sse2 (which every x86-64 has),
-# avx2 (with FMA and F16C), avx512 (F, VL, BW, DQ). fused_sse2 is SSE2 with an emulated fused multiply-add, which is used
+# avx2 (with FMA and F16C), avx512 (F, VL, BW, DQ, CD). fused_sse2 is SSE2 with an emulated fused multiply-add, which is used
 # by the thousand: small code, which compiles in seconds.
 function(vibe_instruction_set set)
   set(options "")
@@ -91,7 +106,7 @@ function(vibe_instruction_set set)
   endif()
   if(set STREQUAL "avx512")
     # GCC 12 warns in its own header for intrinsics (bug 105593)
-    list(APPEND options -mavx512f -mavx512vl -mavx512bw -mavx512dq -Wno-uninitialized
+    list(APPEND options -mavx512f -mavx512vl -mavx512bw -mavx512dq -mavx512cd -Wno-uninitialized
                         $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   endif()
   foreach(source ${ARGN})

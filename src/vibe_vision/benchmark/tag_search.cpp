@@ -91,9 +91,27 @@ namespace {
 
 constexpr int kBits = 4;
 
+#if CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR < 407
 cv::Ptr<cv::aruco::Dictionary> dictionary() {
   return cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50);
 }
+cv::Ptr<cv::aruco::DetectorParameters> defaultParameters() {
+  return cv::aruco::DetectorParameters::create();
+}
+void drawMarker(int id, int side, cv::Mat& picture) {
+  dictionary()->drawMarker(id, side, picture, 1);
+}
+#else
+cv::Ptr<cv::aruco::Dictionary> dictionary() {
+  return cv::makePtr<cv::aruco::Dictionary>(cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50));
+}
+cv::Ptr<cv::aruco::DetectorParameters> defaultParameters() {
+  return cv::makePtr<cv::aruco::DetectorParameters>();
+}
+void drawMarker(int id, int side, cv::Mat& picture) {
+  dictionary()->generateImageMarker(id, side, picture, 1);
+}
+#endif
 
 /// cv::aruco with CORNER_REFINE_SUBPIX, otherwise as it comes. The window of the refinement stays within one cell: a
 /// larger one finds corners of the cells inside.
@@ -127,14 +145,14 @@ class ArucoMethod : public Method {
   }
 
   cv::Ptr<cv::aruco::Dictionary> dictionary_ = dictionary();
-  cv::Ptr<cv::aruco::DetectorParameters> parameters_ = cv::aruco::DetectorParameters::create();
+  cv::Ptr<cv::aruco::DetectorParameters> parameters_ = defaultParameters();
 };
 
 }  // namespace
 
 SyntheticTag arucoTag(double side) {
   cv::Mat picture;
-  dictionary()->drawMarker(kArucoId, kBits + 2, picture, 1);
+  drawMarker(kArucoId, kBits + 2, picture);
   SyntheticTag tag;
   tag.cells = kBits + 2;
   tag.side = side;

@@ -103,7 +103,8 @@ void readSet(const CaseReader& reader, const YamlField& field, BenchMesh& mesh) 
   for (int n = 0; n < static_cast<int>(mesh.nodes.size()); ++n) {
     if (!nearest && (mesh.nodes[n].array() >= low.array()).all() && (mesh.nodes[n].array() <= high.array()).all())
       set.push_back(n);
-    if (nearest && (set.empty() || (mesh.nodes[n] - near).norm() < (mesh.nodes[set[0]] - near).norm())) set = {n};
+    if (nearest && (set.empty() || (mesh.nodes[n] - near).norm() < (mesh.nodes[set[0]] - near).norm()))
+      set.assign(1, n);
   }
   if (set.empty()) reader.source().fail(field, "has no node; widen its box");
 }

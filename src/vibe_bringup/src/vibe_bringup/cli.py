@@ -39,7 +39,7 @@ class Parser(argparse.ArgumentParser):
         prog = "rosrun {} {}".format(package, name)
         if "VIBE_WORKSPACE" in os.environ:
             prog = "scripts/" + name
-            description += "\nInstalls and builds first what is missing."
+            description += "\nInstalls and builds first what is missing; with --force also on other systems than Debian 12 and 13."
         super().__init__(
             prog=prog, usage="{} {}".format(prog, usage), description=description, epilog=epilog, add_help=False,
             allow_abbrev=False, formatter_class=Formatter,

@@ -8,6 +8,8 @@
 
 #include <gnu/libc-version.h>
 
+#include <Eigen/Core>
+
 #include "common/kernel_path.hpp"
 #include "vibe_core/common/error.hpp"
 
@@ -22,7 +24,8 @@ bool haveFma() {
 
 bool haveAvx512() {
   return haveFma() && __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
-         __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512dq") != 0;
+         __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
+         __builtin_cpu_supports("avx512cd") != 0;
 }
 
 void checkSupport(InstructionSet wanted, const std::string& place) {
@@ -122,6 +125,11 @@ std::string valueIn(const char* file, const std::string& key, char separator) {
   return "";
 }
 
+std::string eigenVersion() {
+  return "Eigen " + std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) + "." +
+         std::to_string(EIGEN_MINOR_VERSION);
+}
+
 std::string compilerName() {
 #ifdef __clang__
   return "clang++ " + std::to_string(__clang_major__) + "." + std::to_string(__clang_minor__) + "." +
@@ -137,7 +145,7 @@ std::string compilerName() {
 MachineInfo machineInfo() {
   MachineInfo info;
   info.version = VIBE_CORE_VERSION;
-  info.compiler = compilerName();
+  info.compiler = compilerName() + " with " + eigenVersion();
   info.c_library = std::string("glibc ") + gnu_get_libc_version();
   info.os = valueIn("/etc/os-release", "PRETTY_NAME", '=');
   info.processor = valueIn("/proc/cpuinfo", "model name", ':');

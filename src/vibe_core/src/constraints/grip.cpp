@@ -1,8 +1,7 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
+#include "common/symmetric_eigen.hpp"
 #include "constraints/blocks.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
@@ -46,9 +45,9 @@ class Claws {
     Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
     for (const GripPoint& point : grip)
       square += point.weight * (point.local - middle) * (point.local - middle).transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(square);  // ascending: the last two span the disc
-    const Eigen::Vector3d u = axes.eigenvectors().col(2) / std::sqrt(axes.eigenvalues()[2]);
-    const Eigen::Vector3d v = axes.eigenvectors().col(1) / std::sqrt(axes.eigenvalues()[1]);
+    const SymmetricEigen3 axes(square);  // ascending: the last two span the disc
+    const Eigen::Vector3d u = axes.vectors.col(2) / std::sqrt(axes.values[2]);
+    const Eigen::Vector3d v = axes.vectors.col(1) / std::sqrt(axes.values[1]);
     for (const auto& [along_u, along_v] : kClaws) add(grip, middle, kClawRadius * (along_u * u + along_v * v));
   }
 

@@ -1,8 +1,9 @@
 #include "geometry/text_lines.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <limits>
+
+#include "vibe_core/common/number_text.hpp"
 
 namespace vibe {
 
@@ -27,7 +28,7 @@ std::vector<std::string_view> wordsOf(std::string_view line) {
 std::optional<double> realOf(std::string_view word) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
   double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const auto [end, error] = readReal(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size() || error == std::errc::invalid_argument) return std::nullopt;
   if (error != std::errc::result_out_of_range) return value;
   const bool tiny = word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos;

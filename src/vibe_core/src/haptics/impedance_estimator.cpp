@@ -1,9 +1,9 @@
 #include "haptics/impedance_estimator.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "common/symmetric_eigen.hpp"
 #include "vibe_core/common/fnv1a.hpp"
 
 namespace vibe {
@@ -21,12 +21,12 @@ constexpr double kFirm = 1e-5;
 
 // The displacement that relieves the force, in the directions that have a stiffness.
 Eigen::Vector3d solveWhereStiff(const Eigen::Matrix3d& stiffness, const Eigen::Vector3d& force) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(stiffness);
-  const double min = kMinEigenvalue * eigen.eigenvalues().maxCoeff();
+  const SymmetricEigen3 eigen(stiffness);
+  const double min = kMinEigenvalue * eigen.values.maxCoeff();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i)
-    if (eigen.eigenvalues()[i] > min && min > 0)
-      sum += eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(force) / eigen.eigenvalues()[i]);
+    if (eigen.values[i] > min && min > 0)
+      sum += eigen.vectors.col(i) * (eigen.vectors.col(i).dot(force) / eigen.values[i]);
   return sum;
 }
 
@@ -232,11 +232,11 @@ std::optional<ToolImpedance> ImpedanceEstimator::respond(const ToolContactRows& 
                                                          ImpedanceMemory& memory) {
   present_->stiffness->setRows(rows_);
   factor_.compute(present_->stiffness->compliance());
-  solved_.resize(motion_.rows(), kToolMotions);
-  for (Eigen::Index c = 0; c < kToolMotions; ++c) solved_.col(c) = factor_.solve(motion_.col(c));
+  solved_ = motion_;
+  for (Eigen::Index c = 0; c < kToolMotions; ++c) factor_.solve(solved_.col(c));
   const Motions found = motion_.transpose().lazyProduct(solved_);
   Motions stiffness = 0.5 * (found + found.transpose());
-  if (factor_.info() != Eigen::Success || !factor_.isPositive() || !stiffness.allFinite()) return std::nullopt;
+  if (!factor_.succeeded() || !factor_.isPositive() || !stiffness.allFinite()) return std::nullopt;
 
   nodes_.clear();
   for (const ToolRow& row : touch.rows)
@@ -290,7 +290,7 @@ ToolImpedance ImpedanceEstimator::response(const ToolContactRows& touch, const M
   const Joints turned = joints - joint_slope.lastPlace();
   double row_move = 0;
   for (Eigen::Index r = 0; r < motion_.rows(); ++r)
-    row_move = std::max(row_move, std::abs(motion_.row(r).tail<kScopeJointCount>().dot(turned)));
+    row_move = std::max(row_move, std::abs(fixedDot(motion_.row(r).tail<kScopeJointCount>().transpose(), turned)));
   const bool joints_moved = row_move > kShortestStep;
   slope.observe(k_tip, tip, touch.force.head<3>() + b_tip * v.head<3>(), comparable && tip_moved);
   joint_slope.observe(k_joints, joints, touch.force.tail<kScopeJointCount>() + b_joints * v.tail<kScopeJointCount>(),

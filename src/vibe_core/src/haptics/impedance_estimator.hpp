@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "common/background_worker.hpp"
+#include "common/ordered_algebra.hpp"
 #include "haptics/static_stiffness.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
 #include "vibe_core/state/impedance_memory.hpp"
@@ -47,9 +47,10 @@ class SlopeCorrection {
 
   Matrix corrected(const Matrix& stiffness) const {
     const Vector pulled = stiffness * step_;
-    const double expected = step_.dot(pulled);
+    const double expected = fixedDot(step_, pulled);
     if (!memory_.has_pair || !(expected > 0)) return stiffness;
-    return stiffness - pulled * pulled.transpose() / expected + change_ * change_.transpose() / step_.dot(change_);
+    return stiffness - pulled * pulled.transpose() / expected +
+           change_ * change_.transpose() / fixedDot(step_, change_);
   }
 
   Vector lastPlace() const { return place_; }
@@ -60,7 +61,7 @@ class SlopeCorrection {
 
   void keepPair(const Matrix& stiffness, const Vector& step, const Vector& change) {
     const Vector pulled = stiffness * step;
-    const double expected = step.dot(pulled), observed = step.dot(change);
+    const double expected = fixedDot(step, pulled), observed = fixedDot(step, change);
     if (!(observed >= kMin * expected && observed <= kMax * expected && observed > 0)) return;
     step_ = step;
     change_ = change;
@@ -155,9 +156,9 @@ class ImpedanceEstimator {
   Made* present_ = nullptr;     // of the memory's current basis; null: not usable
   ImpedanceBasis next_basis_;   // read by `making_`
   ConstraintRows rows_;
-  Eigen::MatrixXd motion_;               // (rows x kToolMotions)
-  Eigen::MatrixXd solved_;               // force of each row per motion (rows x kToolMotions)
-  Eigen::LDLT<Eigen::MatrixXd> factor_;  // of the rows' compliance
+  Eigen::MatrixXd motion_;  // (rows x kToolMotions)
+  Eigen::MatrixXd solved_;  // force of each row per motion (rows x kToolMotions)
+  OrderedLdlt factor_;      // of the rows' compliance
   std::vector<int> nodes_;
   BackgroundWorker making_;  // of next_; the last member, because it works on the others
 };

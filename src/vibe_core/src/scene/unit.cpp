@@ -7,6 +7,7 @@
 
 #include "common/turn.hpp"
 #include "scene/yaml_guard.hpp"
+#include "vibe_core/common/number_text.hpp"
 
 namespace vibe {
 namespace {
@@ -182,7 +183,7 @@ const Measure* findMeasure(const Dimension& dimension) {
 std::size_t numberLength(std::string_view text) {
   double value = 0;
   const std::size_t skip = !text.empty() && text.front() == '+' ? 1 : 0;
-  const auto result = std::from_chars(text.data() + skip, text.data() + text.size(), value);
+  const auto result = readReal(text.data() + skip, text.data() + text.size(), value);
   if (result.ec == std::errc::invalid_argument) return 0;
   return static_cast<std::size_t>(result.ptr - text.data());
 }
@@ -232,7 +233,7 @@ Quantity parseNumber(const std::string& text) {
   const std::size_t skip = trimmed.size() > 1 && trimmed.front() == '+' && trimmed[1] != '-' ? 1 : 0;
   double value = 0;
   const char* end = trimmed.data() + trimmed.size();
-  const auto result = std::from_chars(trimmed.data() + skip, end, value);
+  const auto result = readReal(trimmed.data() + skip, end, value);
   if (result.ec == std::errc::result_out_of_range) return {0, "does not fit a double; write a number of sane size"};
   if (result.ec != std::errc() || result.ptr != end) return {0, "is not a number; write digits like 12 or 1.2e-3"};
   if (!std::isfinite(value)) return {0, "is not a finite number; write a finite one"};

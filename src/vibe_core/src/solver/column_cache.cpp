@@ -245,9 +245,11 @@ void HalfRows::values(const ColumnCache& cache, const float* y, Eigen::VectorXd&
   out.resize(count());
   for (int i = 0; i < count(); ++i) {
     double sum = 0;
-    for (int t = first_[static_cast<std::size_t>(i)]; t < end(i); ++t)
-      sum += coefficient_[static_cast<std::size_t>(t)].dot(
-          share_[static_cast<std::size_t>(place_[static_cast<std::size_t>(t)])].cast<double>());
+    for (int t = first_[static_cast<std::size_t>(i)]; t < end(i); ++t) {
+      const Eigen::Vector3d& c = coefficient_[static_cast<std::size_t>(t)];
+      const Eigen::Vector3f& share = share_[static_cast<std::size_t>(place_[static_cast<std::size_t>(t)])];
+      sum += c[0] * share[0] + (c[1] * share[1] + c[2] * share[2]);  // not dot(): its order depends on Eigen's version
+    }
     out[i] = sum;
   }
 }

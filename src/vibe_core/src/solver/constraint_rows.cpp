@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/ordered_algebra.hpp"
 #include "solver/constraint_schur.hpp"
 
 namespace vibe {
@@ -74,7 +75,8 @@ void RowUnknowns::begin(const ConstraintRows& rows) {
 }
 
 double RowUnknowns::product(const Forces& a, const Forces& b) const {
-  double sum = rows_->tool_yields ? a.head<kYieldDofs>().dot(rows_->tool_compliance * b.head<kYieldDofs>()) : 0;
+  double sum =
+      rows_->tool_yields ? fixedDot(a.head<kYieldDofs>(), (rows_->tool_compliance * b.head<kYieldDofs>()).eval()) : 0;
   for (Eigen::Index row = 0; row < compliance_.size(); ++row)
     sum += compliance_[row] * a[kYieldDofs + row] * b[kYieldDofs + row];
   return sum;
@@ -86,7 +88,7 @@ void RowUnknowns::addMotion(double sign, const Forces& forces, Eigen::VectorXd& 
     values[row] += sign * compliance_[row] * forces[kYieldDofs + row];
   if (!rows_->tool_yields) return;
   const YieldVector motion = sign * (rows_->tool_compliance * forces.head<kYieldDofs>());
-  rows_->forEachYield([&](int row, const YieldVector& yield) { values[row] += yield.dot(motion); });
+  rows_->forEachYield([&](int row, const YieldVector& yield) { values[row] += fixedDot(yield, motion); });
 }
 
 void RowUnknowns::setForces(const ConstraintSchur& schur, Forces& forces) const {

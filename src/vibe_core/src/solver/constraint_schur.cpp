@@ -171,11 +171,12 @@ void ConstraintSchur::eliminateEquations(Eigen::Index e, Eigen::Index c) {
   coupling_.resize(e, c);
   for (Eigen::Index j = 0; j < c; ++j) {
     for (Eigen::Index i = 0; i < e; ++i) cross_(i, j) = compliance_(equations_[i], inequalities_[j]);
-    coupling_.col(j) = equation_factor_.solve(cross_.col(j));
+    coupling_.col(j) = cross_.col(j);
+    equation_factor_.solve(coupling_.col(j));
   }
   for (Eigen::Index i = 0; i < c; ++i)
     for (Eigen::Index j = 0; j <= i; ++j) {
-      const double taken = cross_.col(i).dot(coupling_.col(j));
+      const double taken = orderedDot(cross_.col(i), coupling_.col(j));
       contacts_.compliance(static_cast<int>(i), static_cast<int>(j)) -= taken;
       if (i != j) contacts_.compliance(static_cast<int>(j), static_cast<int>(i)) -= taken;
     }
@@ -246,15 +247,16 @@ void ConstraintSchur::solveRows() {
   if (c > 0) {
     contact_residual_.resize(c);
     for (Eigen::Index i = 0; i < c; ++i) contact_residual_[i] = residual_[inequalities_[i]];
-    if (e > 0) contact_residual_.noalias() -= coupling_.transpose() * equation_residual_;
+    if (e > 0) addTransposedProduct(coupling_, equation_residual_, -1, contact_residual_);
     solveContacts();
-    if (e > 0) equation_residual_.noalias() -= cross_ * contact_force_;
+    if (e > 0) addProduct(cross_, contact_force_, -1, equation_residual_);
   }
   if (e > 0) solveEquations();
 }
 
 void ConstraintSchur::solveEquations() {
-  equation_force_ = equation_factor_.solve(equation_residual_);
+  equation_force_ = equation_residual_;
+  equation_factor_.solve(equation_force_);
   for (std::size_t i = 0; i < equations_.size(); ++i)
     force_[equations_[i]] = equation_force_[static_cast<Eigen::Index>(i)];
 }
@@ -280,12 +282,12 @@ void ConstraintSchur::eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, do
   pull_.setZero();
   if (yields_) {
     for (int i = 0; i < m; ++i) pull_ += force_[i] * yield_.col(i);
-    for (int i = 0; i < m; ++i) moves_[i] -= given_.col(i).dot(pull_);
+    for (int i = 0; i < m; ++i) moves_[i] -= fixedDot(given_.col(i), pull_);
   }
   if (m > 0) rows_.addForces(*cache_, force_, y);
   gas_force_ = 0;
   if (gas_stiffness_ != 0) {
-    gas_force_ = (gas_residual - (m > 0 ? gas_row_.dot(force_) : 0.0)) / gas_norm2_;
+    gas_force_ = (gas_residual - (m > 0 ? orderedDot(gas_row_, force_) : 0.0)) / gas_norm2_;
     const auto f = static_cast<float>(gas_force_);
     for (std::size_t i = 0; i < gas_.size(); ++i) y[i] += f * gas_[i];
   }

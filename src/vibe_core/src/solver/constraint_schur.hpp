@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <array>
 #include <vector>
 
+#include "common/ordered_algebra.hpp"
 #include "solver/column_cache.hpp"
 #include "solver/constraint_rows.hpp"
 #include "solver/contact_problem.hpp"
@@ -105,7 +105,7 @@ class ConstraintSchur {
   Eigen::MatrixXd compliance_, block_, cross_, coupling_,
       thread_compliance_;  // of equations, with contacts, of contacts
   Eigen::VectorXd residual_, equation_residual_, contact_residual_, equation_force_, contact_force_, thread_residual_;
-  Eigen::LDLT<Eigen::MatrixXd> equation_factor_;
+  OrderedLdlt equation_factor_;
 };
 
 }  // namespace vibe

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "common/ordered_algebra.hpp"
 #include "solver/couplings.hpp"
 #include "suture/capstan.hpp"
 
@@ -101,7 +102,7 @@ void setTargets(const BodyLoads& loads, const ConstraintRows& rows, Eigen::Vecto
   for (std::size_t t = 0; t < loads.threads.size(); ++t)
     for (int k = 0; k < rows.threads[t].count(); ++k)
       target[rows.threads[t].pullRow(k)] = -std::max(loads.threads[t].length[k], kMinThread);
-  rows.forEachYield([&](int row, const YieldVector& yield) { target[row] += yield.dot(loads.tool_yield.free); });
+  rows.forEachYield([&](int row, const YieldVector& yield) { target[row] += fixedDot(yield, loads.tool_yield.free); });
 }
 
 // A target for z from one for x at the end of the step.

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/elementary.hpp"
+#include "common/ordered_algebra.hpp"
 #include "suture/thread_run.hpp"
 #include "vibe_core/common/error.hpp"
 
@@ -77,7 +78,16 @@ class SlideProblem {
   SegmentVector residualOf(const Run& run) const {
     SegmentVector others = tension_;
     others.segment(run.first, run.size()).setZero();
-    return residual_.segment(run.first, run.size()) - compliance_.middleRows(run.first, run.size()) * others;
+    SegmentVector missing = residual_.segment(run.first, run.size());
+    addProduct(compliance_.middleRows(run.first, run.size()), others, -1, missing);
+    return missing;
+  }
+
+  /// How much the pull of all segments shortens the path of each.
+  SegmentVector shortened() const {
+    SegmentVector sum = SegmentVector::Zero(residual_.size());
+    addProduct(compliance_, tension_, 1, sum);
+    return sum;
   }
 
   bool solveRun(const Run& run) {
@@ -112,7 +122,7 @@ class SlideProblem {
   /// Distributes the thread of slack runs, and computes the remainder.
   void takeUpSlack() {
     const int m = static_cast<int>(residual_.size());
-    slack_ = compliance_ * tension_ - residual_;
+    slack_ = shortened() - residual_;
     for (int r = 0; r < run_count_; ++r)
       if (!tight_[runs_[r].first]) dealOut(runs_[r]);
     for (int k = 0; k + 1 < m; ++k) {
@@ -158,7 +168,7 @@ class SlideProblem {
 
   bool isSolution() const {
     const double max = tension_.cwiseAbs().maxCoeff();
-    const double length = kTolerance * (residual_.cwiseAbs() + (compliance_ * tension_).cwiseAbs()).maxCoeff();
+    const double length = kTolerance * (residual_.cwiseAbs() + shortened().cwiseAbs()).maxCoeff();
     const double force = kTolerance * max;
     for (int k = 0; k < residual_.size(); ++k) {
       if (!(tension_[k] >= -force) || !(slack_[k] >= -length)) return false;

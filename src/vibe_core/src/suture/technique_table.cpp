@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <utility>
 
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/number_text.hpp"
 #include "vibe_core/suture/technique_patterns.hpp"
 
 namespace vibe {
@@ -35,7 +35,7 @@ Fields split(const std::string& row) {
 bool toNumber(const std::string& text, double& value) {
   const char* begin = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
   const char* end = text.data() + text.size();
-  const auto [stop, fault] = std::from_chars(begin, end, value);  // unlike strtod(), independent of the locale
+  const auto [stop, fault] = readReal(begin, end, value);  // unlike strtod(), independent of the locale
   return fault == std::errc() && stop == end;
 }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 
 #include "common/elementary.hpp"
+#include "common/symmetric_eigen.hpp"
 #include "common/turn.hpp"
 
 namespace vibe {
@@ -82,8 +83,8 @@ std::vector<FlatBites> layFlat(const std::vector<Eigen::Vector3d>& bites) {
   Rows rows(bites.size(), 3);
   for (std::size_t k = 0; k < bites.size(); ++k) rows.row(static_cast<Eigen::Index>(k)) = bites[k];
   rows.rowwise() -= rows.colwise().mean().eval();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(rows.transpose() * rows);
-  const Rows own = rows * spread.eigenvectors();  // smallest spread first
+  const SymmetricEigen3 spread(rows.transpose() * rows);
+  const Rows own = rows * spread.vectors;  // smallest spread first
 
   FlatBites plane;
   plane.off_wall = own.col(0).squaredNorm();

@@ -85,6 +85,16 @@ inline double expMinusOne(double x) {
   return math::expm1(x);
 }
 
+/// The bits of a batch as another one. From version 9 on xsimd asks for the type of a lane instead of the batch.
+template <class Out, class T, class A>
+inline Out bitsAs(const xsimd::batch<T, A>& x) {
+#if XSIMD_VERSION_MAJOR < 9
+  return xsimd::bitwise_cast<Out>(x);
+#else
+  return xsimd::bitwise_cast<typename Out::value_type>(x);
+#endif
+}
+
 /// In single precision: x = n ln 2 + r, and the Taylor series of exp(r) - 1 for |r| <= ln(2)/2 (relative error 2e-8).
 /// The version in xsimd uses constants that are not compiled per instruction set.
 template <class A>
@@ -99,8 +109,8 @@ inline xsimd::batch<float, A> expMinusOne(const xsimd::batch<float, A>& x) {
   const F p23 = mulAdd(F(1.0f / 6), r, F(0.5f)), p45 = mulAdd(F(1.0f / 120), r, F(1.0f / 24));
   const F p67 = mulAdd(F(1.0f / 5040), r, F(1.0f / 720));
   const F small = mulAdd(mulAdd(mulAdd(p67, r2, p45), r2, p23), r2, r);
-  const N exponent = xsimd::bitwise_cast<N>(rounded) - N(0x4b400000 - 127);
-  const F scale = xsimd::bitwise_cast<F>(exponent << 23);
+  const N exponent = bitsAs<N>(rounded) - N(0x4b400000 - 127);
+  const F scale = bitsAs<F>(exponent << 23);
   return mulAdd(scale, small, scale - F(1.0f));
 }
 
@@ -116,9 +126,9 @@ inline xsimd::batch<float, A> logGap(const xsimd::batch<float, A>& x) {
   using F = xsimd::batch<float, A>;
   using N = xsimd::batch<std::int32_t, A>;
   const N root_half(0x3f3504f3);
-  const N bits = xsimd::bitwise_cast<N>(F(1.0f) + x) + (N(0x3f800000) - root_half);
+  const N bits = bitsAs<N>(F(1.0f) + x) + (N(0x3f800000) - root_half);
   const F exponent = xsimd::to_float((bits >> 23) - N(127));
-  const F mantissa = xsimd::bitwise_cast<F>((bits & N(0x007fffff)) + root_half);
+  const F mantissa = bitsAs<F>((bits & N(0x007fffff)) + root_half);
   const F t = xsimd::select(exponent == F(0.0f), x, mantissa - F(1.0f));
   // p in pairs of terms, to shorten the dependency chain
   const F t2 = t * t;

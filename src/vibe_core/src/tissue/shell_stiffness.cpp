@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/elementary.hpp"
+#include "common/symmetric_eigen.hpp"
 #include "tissue/shell_fibres.hpp"
 #include "vibe_core/tissue/shell.hpp"
 
@@ -23,8 +24,8 @@ struct WallTangent {
 
 Eigen::Matrix3d withoutNegative(const Eigen::Matrix3d& symmetric) {
   if (symmetric.llt().info() == Eigen::Success) return symmetric;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(symmetric);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
+  const SymmetricEigen3 solver(symmetric);
+  return solver.vectors * solver.values.cwiseMax(0.0).asDiagonal() * solver.vectors.transpose();
 }
 
 // With y eliminated by g(t, D, y) = 2 W_I y + W_J = 0, t = tr C: W_ab - D g_a g_b / g_y, where W_y = D g.

@@ -71,6 +71,7 @@ TEST(Arithmetic, MachineInfoSaysWhatIsInUse) {
   EXPECT_EQ(info.arithmetic, wordFor(arithmetic()));
   EXPECT_EQ(info.instruction_set, wordFor(instructionSet()));
   EXPECT_NE(info.compiler.find("++ "), std::string::npos) << info.compiler;
+  EXPECT_NE(info.compiler.find(" with Eigen "), std::string::npos) << info.compiler;
   EXPECT_EQ(info.c_library.rfind("glibc ", 0), 0U) << info.c_library;
   EXPECT_FALSE(info.version.empty() || info.os.empty() || info.processor.empty());
   EXPECT_GT(info.cores, 0);

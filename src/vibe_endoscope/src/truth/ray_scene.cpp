@@ -1,6 +1,10 @@
 #include "truth/ray_scene.hpp"
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include <algorithm>
 #include <limits>
@@ -19,6 +23,46 @@ namespace {
 
 constexpr std::size_t kPacket = 8;  // rays that are cast together
 constexpr float kOpaque = 127.5F;   // alpha from which a translucent surface is met, of 255
+
+/// Casts packets of coherent rays, with Embree 3 or 4.
+#if RTC_VERSION_MAJOR >= 4
+class PacketQuery {
+ public:
+  PacketQuery() { rtcInitRayQueryContext(&context_); }
+
+  void intersect(const int* valid, RTCScene scene, RTCRayHit8& packet) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &context_, arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect8(valid, scene, &packet, &arguments);
+  }
+  void occlude(const int* valid, RTCScene scene, RTCRay8& packet) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.context = &context_, arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcOccluded8(valid, scene, &packet, &arguments);
+  }
+
+ private:
+  RTCRayQueryContext context_;
+};
+#else
+class PacketQuery {
+ public:
+  PacketQuery() {
+    rtcInitIntersectContext(&context_);
+    context_.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  }
+
+  void intersect(const int* valid, RTCScene scene, RTCRayHit8& packet) {
+    rtcIntersect8(valid, scene, &context_, &packet);
+  }
+  void occlude(const int* valid, RTCScene scene, RTCRay8& packet) { rtcOccluded8(valid, scene, &context_, &packet); }
+
+ private:
+  RTCIntersectContext context_;
+};
+#endif
 
 float alphaAt(const Veil& veil, std::uint32_t triangle, float u, float v) {
   const float weight[3] = {1 - u - v, u, v};
@@ -68,19 +112,17 @@ RTCRay8& raysOf(RTCRayHit8& packet) {
   return packet.ray;
 }
 
-/// Calls `cast(first, count, valid, context, packet)` for all rays, packet by packet.
+/// Calls `cast(first, count, valid, query, packet)` for all rays, packet by packet.
 template <class Packet, class Cast>
 void forPackets(const Eigen::Isometry3d& camera, const std::vector<CameraRay>& rays, Cast cast) {
   const Eigen::Isometry3f single = camera.cast<float>();
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  PacketQuery query;
   alignas(64) Packet packet;
   alignas(64) int valid[kPacket];
   for (std::size_t first = 0; first < rays.size(); first += kPacket) {
     const std::size_t count = std::min(kPacket, rays.size() - first);
     fill(single, &rays[first], count, raysOf(packet), valid);
-    cast(first, count, valid, context, packet);
+    cast(first, count, valid, query, packet);
   }
 }
 
@@ -198,10 +240,10 @@ void RayScene::firstHits(const Eigen::Isometry3d& camera, const std::vector<Came
   hits.resize(rays.size());
   forPackets<RTCRayHit8>(
       camera, rays,
-      [&](std::size_t first, std::size_t count, const int* valid, RTCIntersectContext& context, RTCRayHit8& packet) {
+      [&](std::size_t first, std::size_t count, const int* valid, PacketQuery& query, RTCRayHit8& packet) {
         std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
         std::fill_n(packet.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
-        rtcIntersect8(valid, embree_->scene, &context, &packet);
+        query.intersect(valid, embree_->scene, packet);
         for (std::size_t i = 0; i < count; ++i) hits[first + i] = hitOf(packet.hit, i);
       });
 }
@@ -209,13 +251,12 @@ void RayScene::firstHits(const Eigen::Isometry3d& camera, const std::vector<Came
 void RayScene::areBlocked(const Eigen::Isometry3d& camera, const std::vector<CameraRay>& rays,
                           std::vector<std::uint8_t>& blocked) const {
   blocked.resize(rays.size());
-  forPackets<RTCRay8>(
-      camera, rays,
-      [&](std::size_t first, std::size_t count, const int* valid, RTCIntersectContext& context, RTCRay8& packet) {
-        rtcOccluded8(valid, embree_->scene, &context, &packet);
-        // Embree sets the end of a ray that meets something to minus infinity
-        for (std::size_t i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0;
-      });
+  forPackets<RTCRay8>(camera, rays,
+                      [&](std::size_t first, std::size_t count, const int* valid, PacketQuery& query, RTCRay8& packet) {
+                        query.occlude(valid, embree_->scene, packet);
+                        // Embree sets the end of a ray that meets something to minus infinity
+                        for (std::size_t i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0;
+                      });
 }
 
 }  // namespace vibe::endoscope

@@ -1,7 +1,6 @@
 #include "vibe_hardware/emulator/recorded_hand.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -9,6 +8,7 @@
 
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/files.hpp"
+#include "vibe_core/common/number_text.hpp"
 #include "vibe_core/scene/words.hpp"
 
 namespace vibe::hardware {
@@ -41,11 +41,11 @@ std::vector<std::string_view> cellsOf(std::string_view line) {
   return cells;
 }
 
-/// The whole cell as a number; NaN if it is none. std::from_chars takes no leading plus.
+/// The whole cell as a number; NaN if it is none. readReal() takes no leading plus.
 double numberOf(std::string_view cell) {
   if (cell.size() > 1 && cell[0] == '+' && cell[1] != '-') cell.remove_prefix(1);
   double value = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  const auto [end, error] = readReal(cell.data(), cell.data() + cell.size(), value);
   return error == std::errc() && end == cell.data() + cell.size() ? value : std::nan("");
 }
 

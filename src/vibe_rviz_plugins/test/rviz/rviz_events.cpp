@@ -38,7 +38,7 @@ void RvizEvents::read() {
   const ssize_t count = ::read(STDIN_FILENO, bytes, sizeof bytes);
   if (count <= 0) return notifier_.setEnabled(false);
   unread_.append(bytes, static_cast<int>(count));
-  for (int end = unread_.indexOf('\n'); end >= 0; end = unread_.indexOf('\n')) {
+  for (auto end = unread_.indexOf('\n'); end >= 0; end = unread_.indexOf('\n')) {
     const QString line = QString::fromUtf8(unread_.left(end)).trimmed();
     unread_.remove(0, end + 1);
     act(line.section(' ', 0, 0), line.section(' ', 1));

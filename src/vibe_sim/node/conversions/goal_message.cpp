@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <vector>
 
 #include <yaml-cpp/emitter.h>
 
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/number_text.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
 #include "vibe_core/trainee/protocol.hpp"
 
@@ -38,13 +38,11 @@ const GoalKind* findKind(const std::string& name) {
   return found == kKinds.end() ? nullptr : &*found;
 }
 
-/// The shortest text that reads back as the same number.
+/// The shortest text that YAML reads back as the same number.
 std::string textOf(double value) {
   if (std::isnan(value)) return ".nan";
   if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
+  return shortestText(value);
 }
 
 void add(const char* key, double value, YAML::Emitter& out) {

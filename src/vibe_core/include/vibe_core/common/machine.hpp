@@ -11,7 +11,7 @@ enum class Arithmetic {
   Plain   ///< rounded twice; fast where the processor has no FMA
 };
 
-/// What the kernels are made of. Avx2 needs AVX2 and FMA, Avx512 the parts F, VL, BW and DQ of AVX-512 too.
+/// What the kernels are made of. Avx2 needs AVX2 and FMA, Avx512 the parts F, VL, BW, DQ and CD of AVX-512 too.
 enum class InstructionSet { Sse2, Avx2, Avx512 };
 
 const char* wordFor(Arithmetic arithmetic);           ///< "fused" or "plain"
@@ -41,7 +41,7 @@ InstructionSet widestInstructionSet();
 /// What a session ran on and with, for its records. A text is empty where the system does not tell.
 struct MachineInfo {
   std::string version;          ///< of this library
-  std::string compiler;         ///< of this library, for example "g++ 12.2.0"
+  std::string compiler;         ///< of this library and its Eigen, for example "g++ 12.2.0 with Eigen 3.4.0"
   std::string c_library;        ///< in use, for example "glibc 2.36"
   std::string os;               ///< name and version of the distribution
   std::string processor;        ///< its model name
