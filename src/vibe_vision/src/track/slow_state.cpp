@@ -16,6 +16,7 @@ constexpr double kBlurPrior = 0.5, kBlurDrift = 2e-3;  // [px]
 // that all pictures together tell them apart.
 constexpr double kSlantPrior = 0.2, kSlantDrift = 2e-5;   // [rad]
 constexpr double kLateralDrift = 3e-3;                    // [px]
+constexpr double kLeastSlant = 0.01;                      // [rad]: nobody glues a marker better
 constexpr double kLeastAspect = 0.01;                     // from which the direction of the slant can be told
 constexpr double kSlopePrior = 2e-3, kSlopeDrift = 4e-6;  // of the light [1/px], and per pixel of travel
 
@@ -57,7 +58,7 @@ void SlowState::reset() {
 double SlowState::greatestSlant() const {
   const double deviation = std::sqrt(covariance_(kLogAspect, kLogAspect));
   const double aspect = mean_[kLogAspect] + std::log(std::cos(slant_)) - 2 * deviation;
-  return std::acos(std::exp(std::min(aspect, 0.0))) + std::abs(slant_);
+  return std::max(std::acos(std::exp(std::min(aspect, 0.0))) + std::abs(slant_), kLeastSlant);
 }
 
 /// Random walk, but never less certain than at the beginning. The camera sees a slanted marker from another side after
