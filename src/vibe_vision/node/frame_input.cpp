@@ -16,8 +16,8 @@ TopicInput::TopicInput(ros::NodeHandle handle, const VisionParameters& parameter
       start_stamped_(parameters.start_stamped),
       topic_(handle.resolveName("image")) {
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
-  info_subscriber_ = handle.subscribe(ros::names::parentNamespace(topic_) + "/camera_info", 1, &TopicInput::onInfo,
-                                      this, hints);
+  info_subscriber_ =
+      handle.subscribe(ros::names::parentNamespace(topic_) + "/camera_info", 1, &TopicInput::onInfo, this, hints);
   if (parameters.compressed) {
     topic_ += "/compressed";
     image_subscriber_ = handle.subscribe(topic_, 1, &TopicInput::onCompressed, this, hints);
@@ -37,7 +37,8 @@ void TopicInput::onCompressed(const sensor_msgs::CompressedImageConstPtr& messag
 
 void TopicInput::onImage(const sensor_msgs::ImageConstPtr& image) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (image_) refuse("An image came without a camera_info of the same stamp; publish both together, or no camera_info.");
+  if (image_)
+    refuse("An image came without a camera_info of the same stamp; publish both together, or no camera_info.");
   image_ = image;
   pair();
 }
@@ -102,7 +103,8 @@ std::uint64_t TopicInput::dropped() const {
 std::string TopicInput::status() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!complaint_.empty()) return complaint_;
-  if (statistics_.frames == 0) return "No image has arrived on " + topic_ + "; remap 'image' to the topic of the camera.";
+  if (statistics_.frames == 0)
+    return "No image has arrived on " + topic_ + "; remap 'image' to the topic of the camera.";
   return "Images of " + topic_ + (info_ ? "." : " without camera_info: each is taken for the whole sensor.") +
          (depth_.bits > 8 ? " Their 16-bit values are taken as " + std::to_string(depth_.bits) + " bits." : "");
 }

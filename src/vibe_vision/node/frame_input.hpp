@@ -36,8 +36,8 @@ class CameraInput : public FrameInput {
   Capture capture_;
 };
 
-/// Images of another node, from the topic `image`, raw or compressed, with the camera_info beside it if there is one. In
-/// a nodelet raw images are shared, not copied.
+/// Images of another node, from the topic `image`, raw or compressed, with the camera_info beside it if there is one.
+/// In a nodelet raw images are shared, not copied.
 class TopicInput : public FrameInput {
  public:
   TopicInput(ros::NodeHandle handle, const VisionParameters& parameters);

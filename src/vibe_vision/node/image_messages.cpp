@@ -66,8 +66,8 @@ void setPixels(const sensor_msgs::ImageConstPtr& image, Frame& frame, SampleDept
   }
   try {
     const bool wide = image->encoding == encodings::MONO16 || image->encoding == encodings::TYPE_16UC1;
-    const auto grey = std::make_shared<cv::Mat>(wide ? upperBits(image, depth)
-                                                     : cv_bridge::toCvCopy(image, encodings::MONO8)->image);
+    const auto grey =
+        std::make_shared<cv::Mat>(wide ? upperBits(image, depth) : cv_bridge::toCvCopy(image, encodings::MONO8)->image);
     frame.image = {grey->data, grey->cols, grey->rows, static_cast<int>(grey->step)};
     frame.owner = grey;
   } catch (const std::exception&) {

@@ -17,16 +17,16 @@ constexpr double kTellingMotion = 6;        // from which what is seen where edg
 constexpr double kMotionUncertainty = 0.3;  // of the edges while it is tried [px]
 constexpr double kMinUncertainty = 0.3;     // of a prediction [px]
 constexpr double kCoarseBlur = 2.4, kMiddleBlur = 0.9;  // more than the camera's [px]
-constexpr double kSureGamma = 0.01;       // standard deviation from which it is looked for no more
+constexpr double kSureGamma = 0.01;                     // standard deviation from which it is looked for no more
 constexpr double kLeastGamma = 0.8, kMostGamma = 3;
-constexpr double kUnknownGamma = 0.1;     // standard deviation from which a search tries another one,
-constexpr double kCommonGamma = 2.2;      // that of many cameras
-constexpr double kOutOfFocus = 1;         // blur from which its shape is looked for [px]
-constexpr double kLearnVisible = 0.8;     // share of a rod that must be seen to learn the light on it
-constexpr int kGuessAfter = 3;            // tries after which what was learnt of the light is doubted
-constexpr double kHopeless = 0.8;                       // loss of a pixel after the coarse alignment
-constexpr double kVeryHopeless = 0.8;                   // before size and tilt are known
-constexpr double kPoor = 0.25;                          // loss of a pixel from which the rotation may be wrong
+constexpr double kUnknownGamma = 0.1;  // standard deviation from which a search tries another one,
+constexpr double kCommonGamma = 2.2;   // that of many cameras
+constexpr double kOutOfFocus = 1;      // blur from which its shape is looked for [px]
+constexpr double kLearnVisible = 0.8;  // share of a rod that must be seen to learn the light on it
+constexpr int kGuessAfter = 3;         // tries after which what was learnt of the light is doubted
+constexpr double kHopeless = 0.8;      // loss of a pixel after the coarse alignment
+constexpr double kVeryHopeless = 0.8;  // before size and tilt are known
+constexpr double kPoor = 0.25;         // loss of a pixel from which the rotation may be wrong
 constexpr int kAlignSteps = 3;
 constexpr double kPrepareBlur = 0.05, kPrepareScale = 0.01;  // changes after which the picture is made anew [px], 1
 constexpr double kPlaceTrial = 1.5;                          // [px]
@@ -150,7 +150,8 @@ void MarkerFitter::linearise() {
   if (gamma_ != table_gamma_)
     for (int v = 0; v < 256; ++v) linear_[v] = static_cast<float>(255 * std::pow(v / 255.0, gamma_));
   table_gamma_ = gamma_;
-  for (std::size_t i = 0; i < pixels_.count; ++i) pixels_.value[i] = linear_[static_cast<std::size_t>(pixels_.value[i])];
+  for (std::size_t i = 0; i < pixels_.count; ++i)
+    pixels_.value[i] = linear_[static_cast<std::size_t>(pixels_.value[i])];
 }
 
 /// The pixels and the light in the grey values of another gamma.

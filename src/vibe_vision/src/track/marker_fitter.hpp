@@ -67,7 +67,7 @@ class MarkerFitter {
   PixelBlock pixels_;
   std::size_t all_ = 0;  ///< pixels read
   RodLight light_;
-  int tries_ = 0;  ///< by acquire() since the light was learnt
+  int tries_ = 0;           ///< by acquire() since the light was learnt
   double gamma_ = 1;        ///< of pixels_ and light_
   double table_gamma_ = 0;  ///< of linear_
   double roundness_ = 0;

@@ -264,7 +264,8 @@ VIBE_LANES void PatternFit::fillColumns(const FitVector& x, const PixelBlock& pi
     } else {
       const float* __restrict p = k == kSlopeAlong ? pixels.along.data() : pixels.lateral.data();
       const auto centre = static_cast<float>(x[k == kSlopeAlong ? kAlong : kLateral]);
-      for (std::size_t i = 0; i < count; ++i) out[i] = factor[i] * lamp[i] * (black + contrast * m[i]) * (p[i] - centre);
+      for (std::size_t i = 0; i < count; ++i)
+        out[i] = factor[i] * lamp[i] * (black + contrast * m[i]) * (p[i] - centre);
     }
   }
 }
@@ -272,10 +273,10 @@ VIBE_LANES void PatternFit::fillColumns(const FitVector& x, const PixelBlock& pi
 void PatternFit::learnLight(const FitVector& x, const PixelBlock& pixels, RodLight& light) const {
   light.begin(poseOf(x));
   for (std::size_t i = 0; i < pixels.count; ++i) {
-    const double slopes = 1 + x[kSlopeAlong] * (pixels.along[i] - x[kAlong]) +
-                          x[kSlopeLateral] * (pixels.lateral[i] - x[kLateral]);
-    light.add(pixels.along[i], pixels.lateral[i], pixels.value[i], (x[kBlack] + x[kContrast] * values_.value[i]) * slopes,
-              factor_[i] * factor_[i]);
+    const double slopes =
+        1 + x[kSlopeAlong] * (pixels.along[i] - x[kAlong]) + x[kSlopeLateral] * (pixels.lateral[i] - x[kLateral]);
+    light.add(pixels.along[i], pixels.lateral[i], pixels.value[i],
+              (x[kBlack] + x[kContrast] * values_.value[i]) * slopes, factor_[i] * factor_[i]);
   }
   light.learn();
 }

@@ -47,7 +47,7 @@ class RingTable {
   int rows_ = 0, columns_ = 0, integral_rows_ = 0;
   double blur_ = 0, motion_ = 0;
   std::vector<Level> levels_, discs_;  ///< of the same blurs
-  std::vector<float> mixed_;  ///< integral at the blur asked for
+  std::vector<float> mixed_;           ///< integral at the blur asked for
   std::vector<float> table_;
 };
 

@@ -61,7 +61,8 @@ std::vector<double> spreadOverDisc(const std::vector<double>& profile, double st
   for (std::size_t i = 0; i < profile.size() && static_cast<double>(i) * step < end; ++i) {
     double sum = 0;
     const double r = static_cast<double>(i) * step;
-    for (const auto& [along, across] : points) sum += lookUp(profile, std::sqrt((r + along) * (r + along) + across) / step);
+    for (const auto& [along, across] : points)
+      sum += lookUp(profile, std::sqrt((r + along) * (r + along) + across) / step);
     spread[i] = sum / static_cast<double>(points.size());
   }
   return spread;
@@ -127,7 +128,8 @@ std::vector<double> RingTable::radialProfile(const Level& level) const {
     const double r = static_cast<double>(i) * kProfileStep;
     profile[i] = 1 - blurredDisc(r, outer_, blur) + blurredDisc(r, inner_, blur);
   }
-  return level.disc > 0 ? spreadOverDisc(profile, kProfileStep, level.disc, outer_ + level.disc + kGaussTail * blur) : profile;
+  return level.disc > 0 ? spreadOverDisc(profile, kProfileStep, level.disc, outer_ + level.disc + kGaussTail * blur)
+                        : profile;
 }
 
 void RingTable::buildLevel(Level& level) const {

@@ -14,11 +14,11 @@ constexpr double kAspectPrior = 0.04, kAspectDrift = 3e-5;
 constexpr double kBlurPrior = 0.5, kBlurDrift = 2e-3;  // [px]
 // Of a rod, slant and slide, and lateral and rotation, look nearly the same in one picture; guides hold the rod, so
 // that all pictures together tell them apart.
-constexpr double kSlantPrior = 0.2, kSlantDrift = 2e-5;   // [rad]
-constexpr double kLateralDrift = 3e-3;                    // [px]
-constexpr double kLeastSlant = 0.01;                      // [rad]: nobody glues a marker better
-constexpr double kLeastAspect = 0.01;                     // from which the direction of the slant can be told
-constexpr double kGammaPrior = 0.5;  // of a camera whose response is not given: 1 to 2.4 are common
+constexpr double kSlantPrior = 0.2, kSlantDrift = 2e-5;  // [rad]
+constexpr double kLateralDrift = 3e-3;                   // [px]
+constexpr double kLeastSlant = 0.01;                     // [rad]: nobody glues a marker better
+constexpr double kLeastAspect = 0.01;                    // from which the direction of the slant can be told
+constexpr double kGammaPrior = 0.5;                      // of a camera whose response is not given: 1 to 2.4 are common
 constexpr double kSlopePrior = 2e-3, kSlopeDrift = 4e-6;  // of the light [1/px], and per pixel of travel
 
 }  // namespace

@@ -100,7 +100,8 @@ TEST(ImageMessages, SixteenBitsAreThoseThatTheCameraUses) {
     const auto fill = [&](int grey) {
       for (std::size_t i = 0; i + 1 < message->data.size(); i += 2) {
         const int value = (grey << (bits - 8)) + 1;
-        message->data[i] = static_cast<std::uint8_t>(value), message->data[i + 1] = static_cast<std::uint8_t>(value >> 8);
+        message->data[i] = static_cast<std::uint8_t>(value),
+        message->data[i + 1] = static_cast<std::uint8_t>(value >> 8);
       }
     };
     SampleDepth learnt;
