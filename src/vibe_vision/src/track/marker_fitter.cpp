@@ -21,6 +21,8 @@ constexpr double kSureGamma = 0.01;                     // standard deviation fr
 constexpr double kLeastGamma = 0.8, kMostGamma = 3;
 constexpr double kUnknownGamma = 0.1;  // standard deviation from which a search tries another one,
 constexpr double kCommonGamma = 2.2;   // that of many cameras
+constexpr double kStrange = 2.5;        // misfit from which the response may be why
+constexpr double kBothEdges = 0.6;      // of the share of all edges: a curve moves white and black ones apart
 constexpr double kOutOfFocus = 1;      // blur from which its shape is looked for [px]
 constexpr double kLearnVisible = 0.8;  // share of a rod that must be seen to learn the light on it
 constexpr int kGuessAfter = 3;         // tries after which what was learnt of the light is doubted
@@ -82,11 +84,14 @@ MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVecto
                                 double motion, double max_motion, bool known_rotation, double reach) {
   const MarkerFit fit = tryToAcquire(map, frame, start, prior, motion, max_motion, known_rotation, reach);
   const double known = prior.information(kGamma, kGamma);
-  if ((fit.valid && fit.loss < kPoor) || known == 0 || known * kUnknownGamma * kUnknownGamma > 1) return fit;
+  const auto explains = [](const MarkerFit& f) {
+    return f.valid && f.loss < kPoor && f.misfit < kStrange && f.weaker_edges > kBothEdges * f.visible;
+  };
+  if (explains(fit) || seen_ > 0 || known == 0 || known * kUnknownGamma * kUnknownGamma > 1) return fit;
   FitVector other = start;
   other[kGamma] = kCommonGamma;
   const MarkerFit second = tryToAcquire(map, frame, other, prior, motion, max_motion, known_rotation, reach);
-  return second.valid && (second.loss < fit.loss || !fit.valid) ? second : fit;
+  return explains(second) ? second : fit;
 }
 
 MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
@@ -126,7 +131,7 @@ MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const Fit
 
 void MarkerFitter::forget() {
   light_.reset();
-  roundness_ = 0;
+  roundness_ = seen_ = 0;
   pattern_->setShape(0);
 }
 
@@ -266,7 +271,8 @@ void MarkerFitter::chooseMotion(MarkerFit& fit, const FitPrior& prior, double ma
 void MarkerFitter::refine(MarkerFit& fit, const FitPrior& prior, double uncertainty, int max_steps) {
   pattern_->prepare(poseOf(fit.x), fit.motion);
   const double known = prior.information(kGamma, kGamma);
-  const bool response = known > 0 && known * kSureGamma * kSureGamma < 1;
+  // While a straight response explains the picture, another one would explain its other errors, and move the marker.
+  const bool response = fit.x[kGamma] != 1 && known > 0 && known * kSureGamma * kSureGamma < 1;
   for (int i = 0; i < max_steps; ++i) {
     fit_.evaluate(fit.x, pixels_);
     const FitStep step = fit_.step(fit.x, prior, pixels_, {uncertainty, FitScope::All, response});
