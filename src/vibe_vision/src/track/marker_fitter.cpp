@@ -21,8 +21,8 @@ constexpr double kSureGamma = 0.01;                     // standard deviation fr
 constexpr double kLeastGamma = 0.8, kMostGamma = 3;
 constexpr double kUnknownGamma = 0.1;  // standard deviation from which a search tries another one,
 constexpr double kCommonGamma = 2.2;   // that of many cameras
-constexpr double kStrange = 2.5;        // misfit from which the response may be why
-constexpr double kBothEdges = 0.6;      // of the share of all edges: a curve moves white and black ones apart
+constexpr double kStrange = 2.5;       // misfit from which the response may be why
+constexpr double kBothEdges = 0.6;     // of the share of all edges: a curve moves white and black ones apart
 constexpr double kOutOfFocus = 1;      // blur from which its shape is looked for [px]
 constexpr double kLearnVisible = 0.8;  // share of a rod that must be seen to learn the light on it
 constexpr int kGuessAfter = 3;         // tries after which what was learnt of the light is doubted
