@@ -1,7 +1,8 @@
 #include "frame_input.hpp"
 
+#include <ros/names.h>
+
 #include "vibe_core/common/error.hpp"
-#include "vision_messages.hpp"
 
 namespace vibe::vision {
 namespace {
@@ -10,26 +11,68 @@ constexpr double kComplaintPeriod = 1;  // [s]
 
 }  // namespace
 
-TopicInput::TopicInput(ros::NodeHandle handle, ros::NodeHandle private_handle, const VisionParameters& parameters)
-    : exposure_(parameters.options.exposure), start_stamped_(parameters.start_stamped), transport_(handle) {
-  const image_transport::TransportHints hints("raw", ros::TransportHints().tcpNoDelay(), private_handle);
-  topic_ = handle.resolveName("image");
-  subscriber_ = transport_.subscribeCamera("image", 1, &TopicInput::onImage, this, hints);
+TopicInput::TopicInput(ros::NodeHandle handle, const VisionParameters& parameters)
+    : exposure_(parameters.options.exposure),
+      start_stamped_(parameters.start_stamped),
+      topic_(handle.resolveName("image")) {
+  const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
+  info_subscriber_ =
+      handle.subscribe(ros::names::parentNamespace(topic_) + "/camera_info", 1, &TopicInput::onInfo, this, hints);
+  if (parameters.compressed) {
+    topic_ += "/compressed";
+    image_subscriber_ = handle.subscribe(topic_, 1, &TopicInput::onCompressed, this, hints);
+  } else {
+    image_subscriber_ = handle.subscribe(topic_, 1, &TopicInput::onImage, this, hints);
+  }
 }
 
-void TopicInput::onImage(const sensor_msgs::ImageConstPtr& image, const sensor_msgs::CameraInfoConstPtr& info) {
+void TopicInput::onCompressed(const sensor_msgs::CompressedImageConstPtr& message) {
   try {
-    Frame frame = makeFrame(image, *info, exposure_, start_stamped_);
+    onImage(makeImage(*message));
+  } catch (const Error& error) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    refuse(error.what());
+  }
+}
+
+void TopicInput::onImage(const sensor_msgs::ImageConstPtr& image) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (image_)
+    refuse("An image came without a camera_info of the same stamp; publish both together, or no camera_info.");
+  image_ = image;
+  pair();
+}
+
+void TopicInput::onInfo(const sensor_msgs::CameraInfoConstPtr& info) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  info_ = info;
+  pair();
+}
+
+/// Image and camera_info belong together by their stamps, whichever comes first. A camera that publishes no camera_info
+/// has no region of interest.
+void TopicInput::pair() {
+  if (!image_) return;
+  if (info_ && info_->header.stamp == image_->header.stamp) {
+    use(*info_);
+  } else if (info_subscriber_.getNumPublishers() == 0) {
+    use({});
+  }
+}
+
+void TopicInput::use(const sensor_msgs::CameraInfo& info) {
+  try {
+    Frame frame = makeFrame(image_, info, exposure_, start_stamped_, depth_);
     frame.arrival = ros::Time::now().toSec();
     count(frame.sequence);
     latest_.put(std::move(frame));
   } catch (const Error& error) {
     refuse(error.what());
   }
+  image_.reset();
 }
 
 void TopicInput::count(std::uint64_t sequence) {
-  const std::lock_guard<std::mutex> lock(mutex_);
   // a publisher that starts anew counts from the beginning
   const bool gap = statistics_.frames > 0 && sequence > last_sequence_ + 1;
   if (gap) statistics_.lost += sequence - last_sequence_ - 1;
@@ -40,7 +83,6 @@ void TopicInput::count(std::uint64_t sequence) {
 
 void TopicInput::refuse(const std::string& complaint) {
   ROS_WARN_STREAM_THROTTLE(kComplaintPeriod, "A message on " << topic_ << " is ignored: " << complaint);
-  const std::lock_guard<std::mutex> lock(mutex_);
   ++statistics_.unreadable;
   complaint_ = complaint;
 }
@@ -61,8 +103,10 @@ std::uint64_t TopicInput::dropped() const {
 std::string TopicInput::status() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!complaint_.empty()) return complaint_;
-  if (statistics_.frames > 0) return "Images of " + topic_ + ".";
-  return "No image with its camera_info has arrived on " + topic_ + "; remap 'image' to the topic of the camera.";
+  if (statistics_.frames == 0)
+    return "No image has arrived on " + topic_ + "; remap 'image' to the topic of the camera.";
+  return "Images of " + topic_ + (info_ ? "." : " without camera_info: each is taken for the whole sensor.") +
+         (depth_.bits > 8 ? " Their 16-bit values are taken as " + std::to_string(depth_.bits) + " bits." : "");
 }
 
 }  // namespace vibe::vision

@@ -4,9 +4,10 @@
 #include <mutex>
 #include <string>
 
-#include <image_transport/image_transport.h>
+#include <ros/node_handle.h>
 
 #include "vibe_vision/camera/capture.hpp"
+#include "vision_messages.hpp"
 #include "vision_parameters.hpp"
 
 namespace vibe::vision {
@@ -35,10 +36,11 @@ class CameraInput : public FrameInput {
   Capture capture_;
 };
 
-/// Images of another node, from the topic `image` with its camera_info. In a nodelet they are shared, not copied.
+/// Images of another node, from the topic `image`, raw or compressed, with the camera_info beside it if there is one.
+/// In a nodelet raw images are shared, not copied.
 class TopicInput : public FrameInput {
  public:
-  TopicInput(ros::NodeHandle handle, ros::NodeHandle private_handle, const VisionParameters& parameters);
+  TopicInput(ros::NodeHandle handle, const VisionParameters& parameters);
   ReadResult take(Frame& frame, double timeout) override;
   SourceStatistics statistics() const override;
   std::uint64_t dropped() const override;
@@ -52,11 +54,17 @@ class TopicInput : public FrameInput {
   SourceStatistics statistics_;
   std::uint64_t last_sequence_ = 0;
   std::string complaint_;
+  sensor_msgs::ImageConstPtr image_;  ///< without its camera_info so far
+  sensor_msgs::CameraInfoConstPtr info_;
+  SampleDepth depth_;
   std::string topic_;
-  image_transport::ImageTransport transport_;
-  image_transport::CameraSubscriber subscriber_;
+  ros::Subscriber image_subscriber_, info_subscriber_;
 
-  void onImage(const sensor_msgs::ImageConstPtr& image, const sensor_msgs::CameraInfoConstPtr& info);
+  void onCompressed(const sensor_msgs::CompressedImageConstPtr& message);
+  void onImage(const sensor_msgs::ImageConstPtr& image);
+  void onInfo(const sensor_msgs::CameraInfoConstPtr& info);
+  void pair();
+  void use(const sensor_msgs::CameraInfo& info);
   void refuse(const std::string& complaint);
   void count(std::uint64_t sequence);
 };

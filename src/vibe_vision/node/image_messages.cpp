@@ -2,7 +2,9 @@
 #include <sensor_msgs/distortion_models.h>
 #include <sensor_msgs/image_encodings.h>
 
+#include <algorithm>
 #include <cstring>
+#include <opencv2/imgcodecs.hpp>
 
 #include "vibe_core/common/error.hpp"
 #include "vision_messages.hpp"
@@ -39,8 +41,23 @@ void checkImage(const sensor_msgs::Image& image, const sensor_msgs::CameraInfo& 
   }
 }
 
+/// The upper 8 of the bits that the camera uses.
+cv::Mat upperBits(const sensor_msgs::ImageConstPtr& image, SampleDepth& depth) {
+  const cv::Mat wide = cv_bridge::toCvShare(image)->image;
+  double highest = 0;
+  cv::minMaxLoc(wide, nullptr, &highest);
+  depth.bits = std::max(depth.bits, 10);
+  while (highest >= 1 << depth.bits) depth.bits += 2;
+  cv::Mat grey(wide.size(), CV_8U);
+  const int shift = depth.bits - 8;
+  for (int y = 0; y < wide.rows; ++y)
+    std::transform(wide.ptr<std::uint16_t>(y), wide.ptr<std::uint16_t>(y) + wide.cols, grey.ptr(y),
+                   [shift](std::uint16_t v) { return static_cast<std::uint8_t>(v >> shift); });
+  return grey;
+}
+
 /// Pixels of the image as grey values, shared if they are.
-void setPixels(const sensor_msgs::ImageConstPtr& image, Frame& frame) {
+void setPixels(const sensor_msgs::ImageConstPtr& image, Frame& frame, SampleDepth& depth) {
   if (image->encoding == encodings::MONO8 || image->encoding == encodings::TYPE_8UC1) {
     frame.image = {image->data.data(), static_cast<int>(image->width), static_cast<int>(image->height),
                    static_cast<int>(image->step)};
@@ -48,8 +65,10 @@ void setPixels(const sensor_msgs::ImageConstPtr& image, Frame& frame) {
     return;
   }
   try {
-    const auto grey = std::make_shared<cv_bridge::CvImage>(*cv_bridge::toCvCopy(image, encodings::MONO8));
-    frame.image = {grey->image.data, grey->image.cols, grey->image.rows, static_cast<int>(grey->image.step)};
+    const bool wide = image->encoding == encodings::MONO16 || image->encoding == encodings::TYPE_16UC1;
+    const auto grey =
+        std::make_shared<cv::Mat>(wide ? upperBits(image, depth) : cv_bridge::toCvCopy(image, encodings::MONO8)->image);
+    frame.image = {grey->data, grey->cols, grey->rows, static_cast<int>(grey->step)};
     frame.owner = grey;
   } catch (const std::exception&) {
     fail("has the encoding '" + image->encoding + "', which cannot be converted to grey", "set the camera to mono8");
@@ -92,11 +111,23 @@ sensor_msgs::ImagePtr makeImage(const Frame& frame, const std::string& frame_id)
   return image;
 }
 
+sensor_msgs::ImagePtr makeImage(const sensor_msgs::CompressedImage& message) {
+  cv::Mat grey;
+  try {
+    if (!message.data.empty()) grey = cv::imdecode(message.data, cv::IMREAD_GRAYSCALE);
+  } catch (const cv::Exception&) {
+    grey.release();
+  }
+  if (grey.empty())
+    fail("in the format '" + message.format + "' cannot be decoded", "publish JPEG or PNG, or raw images");
+  return cv_bridge::CvImage(message.header, encodings::MONO8, grey).toImageMsg();
+}
+
 Frame makeFrame(const sensor_msgs::ImageConstPtr& image, const sensor_msgs::CameraInfo& info, double exposure,
-                bool start_stamped) {
+                bool start_stamped, SampleDepth& depth) {
   checkImage(*image, info);
   Frame frame;
-  setPixels(image, frame);
+  setPixels(image, frame, depth);
   const bool known = info.width != 0 && info.height != 0;
   frame.offset_x = static_cast<int>(info.roi.x_offset);
   frame.offset_y = static_cast<int>(info.roi.y_offset);

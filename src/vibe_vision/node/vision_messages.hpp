@@ -1,5 +1,6 @@
 #pragma once
 #include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/CompressedImage.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/JointState.h>
 #include <vibe_msgs/InstrumentTrackArray.h>
@@ -37,12 +38,22 @@ std::optional<sensor_msgs::JointState> makePredictedJoints(const VisionConfig& c
 sensor_msgs::CameraInfo makeCameraInfo(const CameraModel& camera, const Frame& frame, const std::string& frame_id);
 sensor_msgs::ImagePtr makeImage(const Frame& frame, const std::string& frame_id);
 
+/// JPEG or PNG as a grey image with the same header. @throws Error with one sentence if it cannot be decoded
+sensor_msgs::ImagePtr makeImage(const sensor_msgs::CompressedImage& message);
+
+/// How many bits of 16-bit grey values a camera uses. Messages do not say, and cameras of 10, 12 or 14 bits leave the
+/// upper ones 0: the fewest that have room for every value seen so far.
+struct SampleDepth {
+  int bits = 8;
+};
+
 /// An image message as a frame that shares its pixels (mono8), or holds a grey copy (any other encoding).
 /// @param exposure       [s]
 /// @param start_stamped  the stamp is the start of the exposure, not its middle
+/// @param depth  of the camera, learnt from 16-bit images
 /// @throws Error with one sentence for a stamp 0, an encoding that cannot be read, binning, or sizes that contradict
 ///         each other
 Frame makeFrame(const sensor_msgs::ImageConstPtr& image, const sensor_msgs::CameraInfo& info, double exposure,
-                bool start_stamped);
+                bool start_stamped, SampleDepth& depth);
 
 }  // namespace vibe::vision

@@ -32,7 +32,7 @@ VisionNode::VisionNode(ros::NodeHandle handle, ros::NodeHandle private_handle, c
       publisher_(handle, pipeline_.config(), parameters),
       updater_(handle, private_handle, name) {
   if (parameters.fromTopic()) {
-    input_ = std::make_unique<TopicInput>(handle, private_handle, parameters);
+    input_ = std::make_unique<TopicInput>(handle, parameters);
   } else {
     input_ = std::make_unique<CameraInput>(parameters.source, parameters.options);
   }

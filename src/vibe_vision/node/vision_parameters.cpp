@@ -73,8 +73,7 @@ VisionParameters readVisionParameters(const ros::NodeHandle& private_handle) {
   reader.read("hold_lost", parameters.hold_lost);
   reader.read("debug_rate", parameters.debug_rate, 0.1, 1000, "Hz");
   reader.read("publish_images", parameters.publish_images);
-  std::string transport;  // image_transport reads it itself
-  reader.read("image_transport", transport);
+  parameters.compressed = readChoice(reader, "image_transport", {"raw", "compressed"}) == 1;
   double diagnostic_period = 1;  // diagnostic_updater reads it itself
   reader.read("diagnostic_period", diagnostic_period, 0.1, 60, "s");
   reader.finish();

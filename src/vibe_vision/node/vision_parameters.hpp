@@ -13,6 +13,7 @@ struct VisionParameters {
   std::string source;          ///< address of a FrameSource, or "topic"
   SourceOptions options;       ///< of the camera; exposure and rate also of a topic
   bool start_stamped = false;  ///< stamps of image messages are the start of the exposure, not its middle
+  bool compressed = false;     ///< images of a topic are sensor_msgs/CompressedImage
   std::string udp;             ///< host:port; empty: no datagrams
   double lead = 0;             ///< of overstitch/predicted_js [s]; 0: not published
   std::string frame_id = "camera_optical";

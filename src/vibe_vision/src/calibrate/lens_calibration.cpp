@@ -21,11 +21,14 @@ constexpr double kLargeResidual = 0.5;  // [px]
 constexpr double kFocalUncertainty = 0.01;
 constexpr double kBadView = 3;  // times the median residual
 
+/// In millimetres: in metres, the equations are so badly scaled that OpenCV drops their weakest direction, and with it
+/// most of the uncertainty of the focal length.
 std::vector<cv::Point3f> boardPoints(const BoardSpec& board) {
+  const auto square = static_cast<float>(1e3 * board.square);
   std::vector<cv::Point3f> points;
   for (int row = 0; row < board.rows; ++row) {
     for (int column = 0; column < board.columns; ++column) {
-      points.emplace_back(static_cast<float>(column * board.square), static_cast<float>(row * board.square), 0.0F);
+      points.emplace_back(static_cast<float>(column) * square, static_cast<float>(row) * square, 0.0F);
     }
   }
   return points;

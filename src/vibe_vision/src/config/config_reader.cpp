@@ -55,7 +55,7 @@ VisionConfig ConfigReader::read() {
 
 void ConfigReader::readCamera(const YamlField& field) {
   CameraModel& camera = config_.camera;
-  const Keys keys{"size", "focal_length", "centre", "distortion", "reprojection_rms", "noise", "blur"};
+  const Keys keys{"size", "focal_length", "centre", "distortion", "reprojection_rms", "noise", "blur", "gamma"};
   for (const YamlField& entry : mapOf(field, keys, {"size", "focal_length", "centre"})) {
     if (entry.key == "size") readSize(entry);
     if (entry.key == "focal_length") {
@@ -75,6 +75,7 @@ void ConfigReader::readCamera(const YamlField& field) {
     if (entry.key == "reprojection_rms") camera.reprojection_rms = source_.quantity(entry, "px", 0, kMaxResidual);
     if (entry.key == "noise") readNoise(entry);
     if (entry.key == "blur") config_.blur = source_.quantity(entry, "px", 0.1, 20);
+    if (entry.key == "gamma") config_.gamma = source_.quantity(entry, "1", 0.5, 3);
   }
   checkLens(field);
 }

@@ -73,6 +73,7 @@ void writeCamera(const VisionConfig& config, std::ostream& out) {
   out << "  noise: {gain: " << showQuantity(config.noise.gain, "DN")
       << ", read: " << showQuantity(config.noise.read, "DN") << "}\n";
   out << "  blur: " << showQuantity(config.blur, "px") << "\n";
+  if (config.gamma) out << "  gamma: " << number(*config.gamma) << "\n";
 }
 
 void writeGates(const GateConfig& gates, std::ostream& out) {

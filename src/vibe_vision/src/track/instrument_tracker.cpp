@@ -10,6 +10,12 @@
 namespace vibe::vision {
 namespace {
 
+/// Of a sleeve [px]; 0 of a ring.
+double rodRadius(const InstrumentConfig& instrument) {
+  const auto* sleeve = std::get_if<SleeveDesign>(&instrument.marker);
+  return sleeve == nullptr ? 0 : sleeve->diameter / 2 * instrument.axis.pixels_per_metre;
+}
+
 constexpr double kCloseEnough = 1.2;    // deviation of a prediction from which a fit converges [px]
 constexpr double kMaxGap = 0.5;         // after which the motion is forgotten [s]
 constexpr int kForget = 60;             // lost frames after which size, tilt and blur are forgotten
@@ -49,7 +55,7 @@ InstrumentTracker::InstrumentTracker(const VisionConfig& config, const Instrumen
                                      std::unique_ptr<MarkerPattern> pattern)
     : config_(instrument),
       min_contrast_(config.gates.min_contrast),
-      fitter_(std::move(pattern), config.noise),
+      fitter_(std::move(pattern), config.noise, rodRadius(instrument)),
       map_(config.camera, instrument.axis,
            alongOf(instrument.axis, instrument.lower) - 1.1 * fitter_.pattern().maxWindow().norm(),
            alongOf(instrument.axis, instrument.upper) + 1.1 * fitter_.pattern().maxWindow().norm(),
@@ -68,6 +74,7 @@ void InstrumentTracker::reset() {
   slide_.reset();
   rotation_.reset();
   slow_.reset();
+  fitter_.forget();
   light_.reset();
   jumps_ = lost_frames_ = 0;
   lose(LostReason::NoFrame);
@@ -81,7 +88,10 @@ const Measurement& InstrumentTracker::lose(LostReason reason) {
   measurement_.pixel.setConstant(kNaN);
   measurement_.roi_x = before.roi_x, measurement_.roi_y = before.roi_y;
   measurement_.roi_width = before.roi_width, measurement_.roi_height = before.roi_height;
-  if (++lost_frames_ == kForget) slow_.reset();
+  if (++lost_frames_ == kForget) {
+    slow_.reset();
+    fitter_.forget();
+  }
   return measurement_;
 }
 

@@ -17,9 +17,18 @@ constexpr double kTellingMotion = 6;        // from which what is seen where edg
 constexpr double kMotionUncertainty = 0.3;  // of the edges while it is tried [px]
 constexpr double kMinUncertainty = 0.3;     // of a prediction [px]
 constexpr double kCoarseBlur = 2.4, kMiddleBlur = 0.9;  // more than the camera's [px]
-constexpr double kHopeless = 0.8;                       // loss of a pixel after the coarse alignment
-constexpr double kVeryHopeless = 0.8;                   // before size and tilt are known
-constexpr double kPoor = 0.25;                          // loss of a pixel from which the rotation may be wrong
+constexpr double kSureGamma = 0.01;                     // standard deviation from which it is looked for no more
+constexpr double kLeastGamma = 0.8, kMostGamma = 3;
+constexpr double kUnknownGamma = 0.1;  // standard deviation from which a search tries another one,
+constexpr double kCommonGamma = 2.2;   // that of many cameras
+constexpr double kStrange = 2.5;       // misfit from which the response may be why
+constexpr double kBothEdges = 0.6;     // of the share of all edges: a curve moves white and black ones apart
+constexpr double kOutOfFocus = 1;      // blur from which its shape is looked for [px]
+constexpr double kLearnVisible = 0.8;  // share of a rod that must be seen to learn the light on it
+constexpr int kGuessAfter = 3;         // tries after which what was learnt of the light is doubted
+constexpr double kHopeless = 0.8;      // loss of a pixel after the coarse alignment
+constexpr double kVeryHopeless = 0.8;  // before size and tilt are known
+constexpr double kPoor = 0.25;         // loss of a pixel from which the rotation may be wrong
 constexpr int kAlignSteps = 3;
 constexpr double kPrepareBlur = 0.05, kPrepareScale = 0.01;  // changes after which the picture is made anew [px], 1
 constexpr double kPlaceTrial = 1.5;                          // [px]
@@ -38,11 +47,12 @@ std::size_t capacityOf(const MarkerPattern& pattern) {
 
 }  // namespace
 
-MarkerFitter::MarkerFitter(std::unique_ptr<MarkerPattern> pattern, const PixelNoise& noise)
+MarkerFitter::MarkerFitter(std::unique_ptr<MarkerPattern> pattern, const PixelNoise& noise, double rod_radius)
     : pattern_(std::move(pattern)),
       observed_(pattern_->observes()),
       rotations_(pattern_->rotationGuesses()),
       radius_(pattern_->maxWindow().minCoeff() / 2),
+      light_(rod_radius),
       fit_(*pattern_, noise, capacityOf(*pattern_)) {
   pixels_.allocate(capacityOf(*pattern_));
 }
@@ -63,18 +73,37 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
   take(step, fit);
   refine(fit, prior, 0, kFollowSteps);
   seen_ = fit.visible;
+  if (light_.isRound() && fit.valid && fit.visible > kLearnVisible) {
+    useQuarter();
+    fit_.learnLight(fit.x, pixels_, light_);
+  }
   return fit;
 }
 
 MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
                                 double motion, double max_motion, bool known_rotation, double reach) {
+  const MarkerFit fit = tryToAcquire(map, frame, start, prior, motion, max_motion, known_rotation, reach);
+  const double known = prior.information(kGamma, kGamma);
+  const auto explains = [](const MarkerFit& f) {
+    return f.valid && f.loss < kPoor && f.misfit < kStrange && f.weaker_edges > kBothEdges * f.visible;
+  };
+  if (explains(fit) || seen_ > 0 || known == 0 || known * kUnknownGamma * kUnknownGamma > 1) return fit;
+  FitVector other = start;
+  other[kGamma] = kCommonGamma;
+  const MarkerFit second = tryToAcquire(map, frame, other, prior, motion, max_motion, known_rotation, reach);
+  return explains(second) ? second : fit;
+}
+
+MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
+                                     double motion, double max_motion, bool known_rotation, double reach) {
   MarkerFit fit;
   fit.x = start;
   fit.motion = motion;
   const double blur = fit.x[kBlur];
   // The search knows the place of a sleeve well, and its bars would vanish.
   fit.x[kBlur] = blur + (observed_[kRotation] ? kMiddleBlur : kCoarseBlur);
-  if (!read(map, frame, fit)) return fit;
+  const bool guess = !light_.known() || ++tries_ > kGuessAfter;
+  if (!read(map, frame, fit, guess)) return fit;
   useHalf();
   if (reach > 0) choosePlace(fit, reach);
   if (!align(fit, prior, FitScope::Position)) return fit;
@@ -90,14 +119,69 @@ MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVecto
   if (max_motion > 1) chooseMotion(fit, prior, max_motion);
   if (!read(map, frame, fit)) return fit;
   refine(fit, prior, kMotionUncertainty, kAcquireSteps);
+  if (light_.isRound() && guess && fit.visible > kLearnVisible) {
+    fit_.learnLight(fit.x, pixels_, light_);
+    light_.shine(poseOf(fit.x), pixels_, pixels_.padded());
+    refine(fit, prior, 0, kAcquireSteps);
+    if (fit.valid) tries_ = 0;
+  }
+  if (!light_.isRound() && fit.x[kBlur] > kOutOfFocus) chooseShape(fit, prior);
   return fit;
 }
 
-bool MarkerFitter::read(AxisMap& map, const Frame& frame, MarkerFit& fit) {
+void MarkerFitter::forget() {
+  light_.reset();
+  roundness_ = seen_ = 0;
+  pattern_->setShape(0);
+}
+
+/// Of a blur that is more than the optics': a Gaussian, a disc or half of each, by the least loss of a pixel.
+void MarkerFitter::chooseShape(MarkerFit& fit, const FitPrior& prior) {
+  const MarkerFit start = fit;
+  const double before = roundness_;
+  for (const double roundness : {0.0, 0.5, 1.0}) {
+    if (roundness == before) continue;
+    MarkerFit trial = start;
+    useGamma(trial.x[kGamma]);
+    pattern_->setShape(roundness);
+    refine(trial, prior, 0, kAcquireSteps);
+    if (trial.loss < fit.loss) fit = trial, roundness_ = roundness;
+  }
+  pattern_->setShape(roundness_);
+}
+
+/// From what is seen to what grows with the light.
+void MarkerFitter::linearise() {
+  if (gamma_ != table_gamma_)
+    for (int v = 0; v < 256; ++v) linear_[v] = static_cast<float>(255 * std::pow(v / 255.0, gamma_));
+  table_gamma_ = gamma_;
+  for (std::size_t i = 0; i < pixels_.count; ++i)
+    pixels_.value[i] = linear_[static_cast<std::size_t>(pixels_.value[i])];
+}
+
+/// The pixels and the light in the grey values of another gamma.
+void MarkerFitter::useGamma(double gamma) {
+  if (gamma == gamma_) return;
+  const auto power = static_cast<float>(gamma / gamma_);
+  const std::size_t count = (all_ + kLanes - 1) / kLanes * kLanes;
+  for (std::size_t i = 0; i < count; ++i) {
+    pixels_.value[i] = 255 * std::pow(pixels_.value[i] / 255, power);
+    if (light_.isRound()) pixels_.light[i] = std::pow(pixels_.light[i], power);
+  }
+  light_.raise(gamma / gamma_);
+  gamma_ = gamma;
+}
+
+bool MarkerFitter::read(AxisMap& map, const Frame& frame, MarkerFit& fit, bool guess_light) {
   const MarkerPose pose = poseOf(fit.x);
   fit.roi = map.gather(frame, {pose.along, pose.lateral}, pattern_->window(pose, fit.motion), pixels_);
+  all_ = 0;
+  useGamma(fit.x[kGamma]);
+  if (gamma_ != 1) linearise();
+  if (guess_light) light_.guess(pose, pixels_);
   pattern_->select(pose, fit.motion, pixels_);
   all_ = pixels_.count;
+  light_.shine(pose, pixels_, pixels_.padded());
   return all_ >= kMinPixels;
 }
 
@@ -186,9 +270,12 @@ void MarkerFitter::chooseMotion(MarkerFit& fit, const FitPrior& prior, double ma
 /// Steps with all parameters until they change no more.
 void MarkerFitter::refine(MarkerFit& fit, const FitPrior& prior, double uncertainty, int max_steps) {
   pattern_->prepare(poseOf(fit.x), fit.motion);
+  const double known = prior.information(kGamma, kGamma);
+  // While a straight response explains the picture, another one would explain its other errors, and move the marker.
+  const bool response = fit.x[kGamma] != 1 && known > 0 && known * kSureGamma * kSureGamma < 1;
   for (int i = 0; i < max_steps; ++i) {
     fit_.evaluate(fit.x, pixels_);
-    const FitStep step = fit_.step(fit.x, prior, pixels_, {uncertainty, FitScope::All});
+    const FitStep step = fit_.step(fit.x, prior, pixels_, {uncertainty, FitScope::All, response});
     if (!step.valid) return;
     const double last = uncertainty;
     uncertainty = uncertainty > kConverged ? uncertainty / 3 : 0;
@@ -215,11 +302,13 @@ void MarkerFitter::doubtCovered(MarkerFit& fit) {
 }
 
 /// Goes the step, at most a few pixels at once.
-void MarkerFitter::take(const FitStep& step, MarkerFit& fit) const {
+void MarkerFitter::take(const FitStep& step, MarkerFit& fit) {
   const double size = std::max({std::abs(step.change[kAlong]), std::abs(step.change[kLateral]),
                                 radius_ * std::abs(step.change[kLogScale]), radius_ * std::abs(step.change[kRotation]),
                                 radius_ * std::abs(step.change[kTilt])});
   fit.x += step.change * std::min(1.0, kMaxStep / std::max(size, 1e-12));
+  fit.x[kGamma] = std::clamp(fit.x[kGamma], kLeastGamma, kMostGamma);
+  useGamma(fit.x[kGamma]);
   fit.x[kBlur] = std::clamp(fit.x[kBlur], 0.05, 4.0);
 }
 

@@ -25,10 +25,13 @@ struct MarkerFit {
 /// Reads the pixels around a place and fits a marker's pattern to them.
 class MarkerFitter {
  public:
-  MarkerFitter(std::unique_ptr<MarkerPattern> pattern, const PixelNoise& noise);
+  /// @param rod_radius  of a sleeve at log_scale 0 [px]; 0 for a flat marker
+  MarkerFitter(std::unique_ptr<MarkerPattern> pattern, const PixelNoise& noise, double rod_radius);
 
   const MarkerPattern& pattern() const { return *pattern_; }
   bool shows(PoseIndex k) const { return observed_[k]; }
+  /// Forgets the light on the rod and the shape of the blur.
+  void forget();
 
   /// From a good prediction. @param uncertainty  of its position, standard deviation [px]
   MarkerFit follow(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior, double motion,
@@ -40,7 +43,12 @@ class MarkerFitter {
                     double max_motion, bool known_rotation, double reach = 0);
 
  private:
-  bool read(AxisMap& map, const Frame& frame, MarkerFit& fit);
+  bool read(AxisMap& map, const Frame& frame, MarkerFit& fit, bool guess_light = false);
+  void linearise();
+  void useGamma(double gamma);
+  void chooseShape(MarkerFit& fit, const FitPrior& prior);
+  MarkerFit tryToAcquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior, double motion,
+                         double max_motion, bool known_rotation, double reach);
   void useHalf();
   void useQuarter();
   void useAll();
@@ -50,7 +58,7 @@ class MarkerFitter {
   void chooseMotion(MarkerFit& fit, const FitPrior& prior, double max_motion);
   void refine(MarkerFit& fit, const FitPrior& prior, double uncertainty, int max_steps);
   static void doubtCovered(MarkerFit& fit);
-  void take(const FitStep& step, MarkerFit& fit) const;
+  void take(const FitStep& step, MarkerFit& fit);
 
   std::unique_ptr<MarkerPattern> pattern_;
   std::array<bool, kPoseParameters> observed_;
@@ -58,7 +66,13 @@ class MarkerFitter {
   double radius_;  ///< of the marker, about [px]
   PixelBlock pixels_;
   std::size_t all_ = 0;  ///< pixels read
-  double seen_ = 0;      ///< share of the marker that follow() saw the last time
+  RodLight light_;
+  int tries_ = 0;           ///< by acquire() since the light was learnt
+  double gamma_ = 1;        ///< of pixels_ and light_
+  double table_gamma_ = 0;  ///< of linear_
+  double roundness_ = 0;
+  std::array<float, 256> linear_{};  ///< grey values
+  double seen_ = 0;                  ///< share of the marker that follow() saw the last time
   MarkerFit best_;
   PatternFit fit_;
 };

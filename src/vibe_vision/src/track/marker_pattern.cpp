@@ -11,6 +11,7 @@ void PixelBlock::allocate(std::size_t capacity) {
   lateral.assign(size, 0);
   value.assign(size, 0);
   weight.assign(size, 0);
+  light.assign(size, 1);
   count = 0;
 }
 

@@ -143,8 +143,9 @@ void PatternFit::startLevels(const PixelBlock& pixels, FitVector& x) const {
   LevelHistogram black, white;
   for (std::size_t i = 0; i < pixels.count; ++i) {
     if (pixels.weight[i] == 0) continue;
-    if (values_.value[i] <= low + margin) black.add(pixels.value[i], values_.value[i]);
-    if (values_.value[i] >= high - margin) white.add(pixels.value[i], values_.value[i]);
+    const float value = pixels.value[i] / pixels.light[i];
+    if (values_.value[i] <= low + margin) black.add(value, values_.value[i]);
+    if (values_.value[i] >= high - margin) white.add(value, values_.value[i]);
   }
   x[kBlack] = x[kContrast] = 0;
   if (black.count() == 0 || white.count() == 0 || high - low < 1e-3F) return;
@@ -155,7 +156,7 @@ void PatternFit::startLevels(const PixelBlock& pixels, FitVector& x) const {
 FitStep PatternFit::step(const FitVector& x, const FitPrior& prior, const PixelBlock& pixels,
                          const FitOptions& options) {
   FitStep result;
-  chooseColumns(options.scope);
+  chooseColumns(options);
   weigh(x, pixels, options);
   fillColumns(x, pixels);
   equations_.sum(pixels.padded());
@@ -175,9 +176,11 @@ double PatternFit::loss(const FitVector& x, const PixelBlock& pixels, const FitO
   return valid_ > 0 ? loss_ / valid_ : 1;
 }
 
-void PatternFit::chooseColumns(FitScope scope) {
+void PatternFit::chooseColumns(const FitOptions& options) {
   columns_ = 0;
-  const auto wanted = [scope](int k) {
+  const FitScope scope = options.scope;
+  const auto wanted = [&options, scope](int k) {
+    if (k == kGamma) return options.response;
     if (scope == FitScope::Position) return k <= kRotation || k == kBlack || k == kContrast;
     return scope == FitScope::All || (k != kBlur && k < kSlopeAlong);
   };
@@ -212,6 +215,7 @@ VIBE_LANES void PatternFit::weighPixels(const FitVector& x, const PixelBlock& pi
   const float* __restrict by_scale = values_.derivative[kLogScale].data();
   const float* __restrict px = pixels.along.data(), * __restrict py = pixels.lateral.data();
   const float* __restrict seen = pixels.value.data(), * __restrict valid = pixels.weight.data();
+  const float* __restrict lamp = pixels.light.data();
   float* __restrict factor = factor_.data(), * __restrict residual = equations_.residual();
   float* __restrict weight = weight_.data(), * __restrict rest = rest_.data();
   float* __restrict information = information_.data(), * __restrict white = white_.data();
@@ -219,7 +223,7 @@ VIBE_LANES void PatternFit::weighPixels(const FitVector& x, const PixelBlock& pi
   const std::size_t count = pixels.padded() / kLanes * kLanes;
 #pragma GCC ivdep
   for (std::size_t i = 0; i < count; ++i) {
-    const float light = 1 + slope_x * (px[i] - centre_x) + slope_y * (py[i] - centre_y);
+    const float light = lamp[i] * (1 + slope_x * (px[i] - centre_x) + slope_y * (py[i] - centre_y));
     const float grey = (black + contrast * m[i]) * light, steep = by_along[i] * by_along[i];
     const float slope = steep + by_lateral[i] * by_lateral[i];
     const float inverse = 1 / (floor + gain * (grey > 0 ? grey : 0) + slack * slope);
@@ -230,15 +234,16 @@ VIBE_LANES void PatternFit::weighPixels(const FitVector& x, const PixelBlock& pi
     lit[i] = root * light;
     residual[i] = root * r;
     rest[i] = share * kept;
-    information[i] = inverse * steep;
-    white[i] = by_scale[i] > 0 ? inverse * steep : 0;
+    const float told = inverse * steep * light * light;
+    information[i] = told;
+    white[i] = by_scale[i] > 0 ? told : 0;
   }
 }
 
 VIBE_LANES void PatternFit::fillColumns(const FitVector& x, const PixelBlock& pixels) {
   const auto black = static_cast<float>(x[kBlack]), contrast = static_cast<float>(x[kContrast]);
   const float* __restrict m = values_.value.data(), * __restrict factor = factor_.data();
-  const float* __restrict lit = lit_.data();
+  const float* __restrict lit = lit_.data(), * __restrict lamp = pixels.light.data();
   const std::size_t count = pixels.padded() / kLanes * kLanes;
   for (int c = 0; c < columns_; ++c) {
     float* __restrict out = equations_.column(c);
@@ -250,12 +255,30 @@ VIBE_LANES void PatternFit::fillColumns(const FitVector& x, const PixelBlock& pi
       std::copy_n(lit, count, out);
     } else if (k == kContrast) {
       for (std::size_t i = 0; i < count; ++i) out[i] = lit[i] * m[i];
+    } else if (k == kGamma) {  // how much less a pixel means if the response is more curved
+      const auto inverse = static_cast<float>(1 / x[kGamma]);
+      for (std::size_t i = 0; i < count; ++i) {
+        const float v = std::max(pixels.value[i], 0.1F);
+        out[i] = -factor[i] * inverse * v * std::log(v / 255);
+      }
     } else {
       const float* __restrict p = k == kSlopeAlong ? pixels.along.data() : pixels.lateral.data();
       const auto centre = static_cast<float>(x[k == kSlopeAlong ? kAlong : kLateral]);
-      for (std::size_t i = 0; i < count; ++i) out[i] = factor[i] * (black + contrast * m[i]) * (p[i] - centre);
+      for (std::size_t i = 0; i < count; ++i)
+        out[i] = factor[i] * lamp[i] * (black + contrast * m[i]) * (p[i] - centre);
     }
   }
+}
+
+void PatternFit::learnLight(const FitVector& x, const PixelBlock& pixels, RodLight& light) const {
+  light.begin(poseOf(x));
+  for (std::size_t i = 0; i < pixels.count; ++i) {
+    const double slopes =
+        1 + x[kSlopeAlong] * (pixels.along[i] - x[kAlong]) + x[kSlopeLateral] * (pixels.lateral[i] - x[kLateral]);
+    light.add(pixels.along[i], pixels.lateral[i], pixels.value[i],
+              (x[kBlack] + x[kContrast] * values_.value[i]) * slopes, factor_[i] * factor_[i]);
+  }
+  light.learn();
 }
 
 void PatternFit::solve(const FitVector& x, const FitPrior& prior, FitStep& result) const {

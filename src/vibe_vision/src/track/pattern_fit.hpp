@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "track/rod_light.hpp"
 #include "vibe_vision/track/marker_pattern.hpp"
 
 namespace vibe::vision {
@@ -35,10 +36,12 @@ class NormalEquations {
   Eigen::Matrix<double, kMaxColumns + 1, kMaxColumns + 1> products_;
 };
 
-/// What a fit looks for: the pose, then grey values of the marker and how the light changes over it. A pixel shows
-///   (black + contrast * reflectance) * (1 + slope_along * (along - pose.along) + slope_lateral * (lateral - ...)).
-constexpr int kFitParameters = kPoseParameters + 4;
-enum FitIndex { kBlack = kPoseParameters, kContrast, kSlopeAlong, kSlopeLateral };
+/// What a fit looks for: the pose, then grey values of the marker, how the light changes over it, and the response of
+/// the camera. A pixel shows
+///   (black + contrast * reflectance) * (1 + slope_along * (along - pose.along) + slope_lateral * (lateral - ...))
+/// times the light that is known of it, in grey values that grow with the light: 255 (seen / 255)^gamma.
+constexpr int kFitParameters = kPoseParameters + 5;
+enum FitIndex { kBlack = kPoseParameters, kContrast, kSlopeAlong, kSlopeLateral, kGamma };
 using FitVector = Eigen::Matrix<double, kFitParameters, 1>;
 using FitMatrix = Eigen::Matrix<double, kFitParameters, kFitParameters>;
 /// Of some of the parameters; on the stack.
@@ -62,6 +65,7 @@ enum class FitScope {
 struct FitOptions {
   double uncertainty = 0;  ///< of the edges' places that the fit starts from, standard deviation [px]
   FitScope scope = FitScope::All;
+  bool response = false;  ///< look for gamma, too
 };
 
 /// The result of one step, at the parameters before the step.
@@ -92,9 +96,11 @@ class PatternFit {
   /// FitStep::loss alone.
   double loss(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
   const PatternValues& values() const { return values_; }
+  /// Learns how the light changes around a rod, from the pixels and weights of the last step.
+  void learnLight(const FitVector& x, const PixelBlock& pixels, RodLight& light) const;
 
  private:
-  void chooseColumns(FitScope scope);
+  void chooseColumns(const FitOptions& options);
   void weigh(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
   void weighPixels(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
   void fillColumns(const FitVector& x, const PixelBlock& pixels);

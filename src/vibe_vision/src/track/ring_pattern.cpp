@@ -120,7 +120,7 @@ void RingPattern::select(const MarkerPose& pose, double motion, PixelBlock& pixe
 }
 
 void RingPattern::prepare(const MarkerPose& pose, double motion, bool /*rough*/) {
-  table_.compose(tableBlur(pose), motion * TableFrame(pose).motion);
+  table_.compose(tableBlur(pose), motion * TableFrame(pose).motion, roundness_);
 }
 
 void RingPattern::evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) {

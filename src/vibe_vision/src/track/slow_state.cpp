@@ -14,16 +14,18 @@ constexpr double kAspectPrior = 0.04, kAspectDrift = 3e-5;
 constexpr double kBlurPrior = 0.5, kBlurDrift = 2e-3;  // [px]
 // Of a rod, slant and slide, and lateral and rotation, look nearly the same in one picture; guides hold the rod, so
 // that all pictures together tell them apart.
-constexpr double kSlantPrior = 0.2, kSlantDrift = 2e-5;   // [rad]
-constexpr double kLateralDrift = 3e-3;                    // [px]
-constexpr double kLeastAspect = 0.01;                     // from which the direction of the slant can be told
+constexpr double kSlantPrior = 0.2, kSlantDrift = 2e-5;  // [rad]
+constexpr double kLateralDrift = 3e-3;                   // [px]
+constexpr double kLeastSlant = 0.01;                     // [rad]: nobody glues a marker better
+constexpr double kLeastAspect = 0.01;                    // from which the direction of the slant can be told
+constexpr double kGammaPrior = 0.5;                      // of a camera whose response is not given: 1 to 2.4 are common
 constexpr double kSlopePrior = 2e-3, kSlopeDrift = 4e-6;  // of the light [1/px], and per pixel of travel
 
 }  // namespace
 
 SlowState::SlowState(const VisionConfig& config, const InstrumentConfig& instrument,
                      const std::array<bool, kPoseParameters>& shown)
-    : axis_(instrument.axis), blur_(config.blur) {
+    : axis_(instrument.axis), blur_(config.blur), gamma_(config.gamma.value_or(1)) {
   focal_ = (config.camera.fx + config.camera.fy) / 2;
   slant_ = std::atan(axis_.perspective * focal_ / axis_.pixels_per_metre);
   lateral_tolerance_ = instrument.lateral_tolerance * axis_.pixels_per_metre;
@@ -44,6 +46,7 @@ SlowState::SlowState(const VisionConfig& config, const InstrumentConfig& instrum
   add(kSlant, kSlantPrior, kSlantDrift);
   add(kSlopeAlong, kSlopePrior, kSlopeDrift);
   add(kSlopeLateral, kSlopePrior, kSlopeDrift);
+  if (!config.gamma) add(kGamma, kGammaPrior, 0);
   reset();
 }
 
@@ -57,7 +60,7 @@ void SlowState::reset() {
 double SlowState::greatestSlant() const {
   const double deviation = std::sqrt(covariance_(kLogAspect, kLogAspect));
   const double aspect = mean_[kLogAspect] + std::log(std::cos(slant_)) - 2 * deviation;
-  return std::acos(std::exp(std::min(aspect, 0.0))) + std::abs(slant_);
+  return std::max(std::acos(std::exp(std::min(aspect, 0.0))) + std::abs(slant_), kLeastSlant);
 }
 
 /// Random walk, but never less certain than at the beginning. The camera sees a slanted marker from another side after
@@ -67,7 +70,7 @@ void SlowState::predict(double travel) {
   for (int i = 0; i < count_; ++i) {
     const int k = index_[i];
     double step = drift_[k];
-    if (k >= kSlopeAlong) step *= 1 + std::abs(travel);
+    if (k == kSlopeAlong || k == kSlopeLateral) step *= 1 + std::abs(travel);
     if (k == kLogAspect || k == kLogScale) step += turn;
     if (k == kTilt && initial_deviation_[kLogAspect] > 0)
       step += turn / (2 * std::max(std::abs(mean_[kLogAspect]), kLeastAspect));
@@ -87,11 +90,14 @@ void SlowState::limitKeystone() {
   covariance_ -= gain * common * common.transpose();
 }
 
+/// What the fit did not look for, the response once it is known, stays as it was.
 void SlowState::update(const FitVector& x, const FitMatrix& covariance, double slide, double doubt) {
   const FitVector base = nominal(slide);
   for (int i = 0; i < count_; ++i) {
     mean_[index_[i]] = x[index_[i]] - base[index_[i]];
+    const double before = covariance_(index_[i], index_[i]);
     for (int j = 0; j < count_; ++j) covariance_(index_[i], index_[j]) = covariance(index_[i], index_[j]);
+    if (covariance(index_[i], index_[i]) == 0) covariance_(index_[i], index_[i]) = before;
   }
   for (int i = 0; i < count_; ++i)
     covariance_(index_[i], index_[i]) += doubt * initial_deviation_[index_[i]] * initial_deviation_[index_[i]];
@@ -119,6 +125,7 @@ FitVector SlowState::nominal(double slide) const {
   x[kLogScale] = -std::log(w) - std::log(std::cos(slant_));
   x[kLogAspect] = -std::log(w) + std::log(std::cos(slant_));
   x[kBlur] = blur_;
+  x[kGamma] = gamma_;
   x[kKeystone] = -axis_.perspective * w / axis_.pixels_per_metre;
   x[kSlant] = slant_;
   return x;

@@ -31,7 +31,7 @@ class SlowState {
   void limitKeystone();
 
   SlideAxis axis_;
-  double focal_ = 0, slant_ = 0, blur_ = 0, lateral_tolerance_;
+  double focal_ = 0, slant_ = 0, blur_ = 0, gamma_ = 1, lateral_tolerance_;
   std::array<int, kFitParameters> index_{};  ///< the slow parameters
   int count_ = 0;
   FitVector initial_deviation_, drift_, mean_;

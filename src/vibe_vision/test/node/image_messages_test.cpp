@@ -3,9 +3,11 @@
 #include <boost/weak_ptr.hpp>
 
 #include <numeric>
+#include <opencv2/imgcodecs.hpp>
 
 #include "node/node_test_support.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_testing/expect_error.hpp"
 #include "vision_messages.hpp"
 
 namespace vibe::vision::image_messages_test {
@@ -26,9 +28,15 @@ sensor_msgs::ImagePtr image(const std::string& encoding, std::uint32_t bytes_per
   return message;
 }
 
+/// Of a camera that nothing is known about.
+SampleDepth& depth() {
+  static SampleDepth unknown;
+  return unknown = {};
+}
+
 std::string refusalOf(const sensor_msgs::ImagePtr& message, const sensor_msgs::CameraInfo& info) {
   try {
-    makeFrame(message, info, 0.001, false);
+    makeFrame(message, info, 0.001, false, depth());
   } catch (const Error& error) {
     return error.what();
   }
@@ -46,7 +54,7 @@ TEST(ImageMessages, GreyImagesAreSharedNotCopied) {
   sensor_msgs::ImagePtr message = image(encodings::MONO8, 1);
   const std::uint8_t* pixels = message->data.data();
   const boost::weak_ptr<sensor_msgs::Image> watch = message;
-  Frame frame = makeFrame(message, info, 0.001, false);
+  Frame frame = makeFrame(message, info, 0.001, false, depth());
   EXPECT_EQ(frame.image.data, pixels);
   message.reset();
   EXPECT_FALSE(watch.expired());  // the frame keeps it
@@ -65,11 +73,11 @@ TEST(ImageMessages, GreyImagesAreSharedNotCopied) {
 }
 
 TEST(ImageMessages, StampsOfTheStartAreMovedToTheMiddle) {
-  EXPECT_NEAR(makeFrame(image(encodings::MONO8, 1), {}, 0.004, true).stamp, 1000.0020005, 1e-9);
+  EXPECT_NEAR(makeFrame(image(encodings::MONO8, 1), {}, 0.004, true, depth()).stamp, 1000.0020005, 1e-9);
 }
 
 TEST(ImageMessages, WithoutASizeInCameraInfoTheImageIsTheSensor) {
-  const Frame frame = makeFrame(image(encodings::MONO8, 1), {}, 0.001, false);
+  const Frame frame = makeFrame(image(encodings::MONO8, 1), {}, 0.001, false, depth());
   EXPECT_EQ(frame.sensor_width, 8);
   EXPECT_EQ(frame.sensor_height, 4);
   EXPECT_EQ(frame.offset_x, 0);
@@ -80,9 +88,43 @@ TEST(ImageMessages, ColourBecomesGrey) {
   for (std::size_t y = 0; y < 4; ++y)
     for (std::size_t x = 0; x < 8; ++x)
       for (std::size_t c = 0; c < 3; ++c) message->data[y * message->step + 3 * x + c] = static_cast<std::uint8_t>(x);
-  const Frame frame = makeFrame(message, {}, 0.001, false);
+  const Frame frame = makeFrame(message, {}, 0.001, false, depth());
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 8; ++x) EXPECT_EQ(frame.image.row(y)[x], x);
+}
+
+/// A camera of 10 or 12 bits fills the lower ones; what one image has shown holds for darker ones after it.
+TEST(ImageMessages, SixteenBitsAreThoseThatTheCameraUses) {
+  for (const int bits : {10, 12, 16}) {
+    const sensor_msgs::ImagePtr message = image(encodings::MONO16, 2);
+    const auto fill = [&](int grey) {
+      for (std::size_t i = 0; i + 1 < message->data.size(); i += 2) {
+        const int value = (grey << (bits - 8)) + 1;
+        message->data[i] = static_cast<std::uint8_t>(value),
+        message->data[i + 1] = static_cast<std::uint8_t>(value >> 8);
+      }
+    };
+    SampleDepth learnt;
+    for (const int grey : {200, 3}) {
+      fill(grey);
+      EXPECT_EQ(makeFrame(message, {}, 0.001, false, learnt).image.row(2)[3], grey) << bits;
+      EXPECT_EQ(learnt.bits, bits);
+    }
+  }
+}
+
+TEST(ImageMessages, CompressedImagesAreDecoded) {
+  sensor_msgs::CompressedImage message;
+  message.header.stamp = ros::Time(7, 5);
+  message.format = "mono8; png compressed";
+  const cv::Mat pixels = (cv::Mat_<std::uint8_t>(2, 3) << 1, 2, 3, 4, 5, 250);
+  cv::imencode(".png", pixels, message.data);
+  const sensor_msgs::ImagePtr image = makeImage(message);
+  EXPECT_EQ(image->header.stamp, ros::Time(7, 5));
+  EXPECT_EQ(image->encoding, "mono8");
+  EXPECT_EQ(image->data, (std::vector<std::uint8_t>{1, 2, 3, 4, 5, 250}));
+  message.data.resize(message.data.size() / 4);
+  EXPECT_NE(errorOf([&] { makeImage(message); }).find("'mono8; png compressed' cannot be decoded"), std::string::npos);
 }
 
 TEST(ImageMessages, UnusableImagesAreNamed) {
@@ -140,11 +182,11 @@ TEST(ImageMessages, CameraInfoHasTheCalibrationAndTheRegion) {
 }
 
 TEST(ImageMessages, AnImageMessageAndAFrameAreTheSame) {
-  const Frame frame = makeFrame(image(encodings::MONO8, 1), {}, 0.001, false);
+  const Frame frame = makeFrame(image(encodings::MONO8, 1), {}, 0.001, false, depth());
   const sensor_msgs::ImagePtr message = makeImage(frame, "optical");
   EXPECT_EQ(message->step, 8u);
   EXPECT_EQ(message->encoding, "mono8");
-  const Frame again = makeFrame(message, {}, 0.001, false);
+  const Frame again = makeFrame(message, {}, 0.001, false, depth());
   EXPECT_EQ(again.stamp, frame.stamp);
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 8; ++x) EXPECT_EQ(again.image.row(y)[x], frame.image.row(y)[x]);

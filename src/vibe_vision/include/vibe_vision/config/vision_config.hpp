@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,9 @@ enum class AxisRule { Required, Optional };
 struct VisionConfig {
   CameraModel camera;
   PixelNoise noise;
+  /// Of the response: a pixel shows 255 (light / 255)^(1 / gamma). Not given: 1, or what a marker tells that 1 does not
+  /// explain.
+  std::optional<double> gamma;
   double blur = 0.6;  ///< standard deviation of the point spread function in focus [px]
   GateConfig gates;
   std::vector<InstrumentConfig> instruments;

@@ -39,6 +39,7 @@ constexpr std::size_t kLanes = 8;
 /// with copies of the last pixel, with weight 0.
 struct PixelBlock {
   std::vector<float> along, lateral, value;
+  std::vector<float> light;   ///< on this pixel, relative to the marker's mean; 1 unless somebody knows better
   std::vector<float> weight;  ///< 0: nothing can be said about this pixel (saturated, outside of the image), else 1
   std::size_t count = 0;
 
@@ -75,6 +76,9 @@ class MarkerPattern {
   /// @param motion  by which the marker moves along the axis during the exposure [px]
   /// @param rough  the picture may be wrong by a few percent in a few places: enough to find the marker
   virtual void prepare(const MarkerPose& pose, double motion, bool rough = false) = 0;
+  /// The shape of the point spread function from the next prepare() on, for patterns that tell it.
+  /// @param roundness  0: a Gaussian, 1: a disc, as a lens out of focus draws it, blurred by the optics; or between
+  virtual void setShape(double /*roundness*/) {}
   /// The pattern near the prepared pose: exact in position, rotation, size and tilt, to first order in the change of
   /// the blur. Fills values up to pixels.padded(). No allocation.
   virtual void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) = 0;
