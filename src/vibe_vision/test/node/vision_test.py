@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """vision_node on rendered videos with known truth."""
 
+import io
 import math
 import os
 import re
@@ -9,11 +10,13 @@ import socket
 import time
 import unittest
 
+import numpy as np
+import PIL.Image
 import rosgraph
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
-from sensor_msgs.msg import CameraInfo, Image, JointState
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image, JointState
 from std_srvs.srv import Trigger
 from vibe_msgs.msg import InstrumentTrack, InstrumentTrackArray
 from vibe_testing.diagnostics import Diagnostics
@@ -222,6 +225,47 @@ class VisionTest(unittest.TestCase):
                     wrong += abs(track.slide - self.scene.truth["needle_driver"][sequence][0]) > 1e-5
         self.assertLessEqual(wrong, 1)
         tracking.disconnect()
+
+    def check_topic_without_camera_info(self, topic, kind, make, **parameters):
+        """Frames of the scene as messages that make(picture) fills, one after the other."""
+        publisher = rospy.Publisher(topic, kind, queue_size=1)
+        tracking = Recorder("other/overstitch/tracking", InstrumentTrackArray)
+        arguments = ["image:=/plain/image_raw", "__ns:=other"]
+        given = dict(config=self.scene.config, source="topic", exposure=0.001, **parameters)
+        node = Program("vibe_vision", "vision_node", *arguments, name="vision_node", **given)
+        self.programs.append(node)
+        self.assertTrue(wait_until(lambda: publisher.get_num_connections() > 0, 20), node.output())
+        tracks = []
+        for k in range(20):
+            message = make(PIL.Image.open(self.scene.path("frame_{:06d}.pgm".format(k))))
+            message.header.stamp = rospy.Time.from_sec(self.scene.stamps[k])
+            message.header.seq = k
+            publisher.publish(message)
+            track = tracking.waits_for(lambda m: m.exposure > 0 and m.header.stamp == message.header.stamp)
+            self.assertIsNotNone(track, node.output())
+            tracks.append((k, track.instruments[1]))
+        errors = [t.slide - self.scene.truth_of("needle_driver", k)[0] for k, t in tracks if t.tracked]
+        self.assertGreater(len(errors), 15)
+        self.assertLess(max(map(abs, errors)), 3e-5)
+        tracking.disconnect()
+        publisher.unregister()
+
+    def test_ten_bits_of_a_topic_without_camera_info(self):
+        def make(picture):
+            values = np.asarray(picture).astype("<u2") << 2
+            return Image(height=values.shape[0], width=values.shape[1], encoding="mono16", step=2 * values.shape[1],
+                         data=values.tobytes())
+
+        self.check_topic_without_camera_info("/plain/image_raw", Image, make)
+
+    def test_compressed_images_of_a_topic(self):
+        def make(picture):
+            data = io.BytesIO()
+            picture.save(data, "png")
+            return CompressedImage(format="png", data=data.getvalue())
+
+        self.check_topic_without_camera_info("/plain/image_raw/compressed", CompressedImage, make,
+                                             image_transport="compressed")
 
     def test_black_images_lose_everything(self):
         node = self.start(source=self.scene.grey_images(0), loop="true")
