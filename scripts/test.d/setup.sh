@@ -34,7 +34,8 @@ check 'setup says when there is no package' refuses 1 'no package.xml' "$setup" 
 
 printf 'ID=debian\nVERSION_CODENAME=bullseye\nPRETTY_NAME="Debian 11"\n' >"$scratch/os-release"
 printf 'ID=debian\nVERSION_CODENAME=trixie\nPRETTY_NAME="Debian 13"\n' >"$scratch/trixie"
-elsewhere() { env VIBE_OS_RELEASE="$scratch/os-release" "$@"; }
+# the scripts look for what is missing only where the tests have not built already
+elsewhere() { env -u VIBE_WORKSPACE_IS_BUILT VIBE_OS_RELEASE="$scratch/os-release" "$@"; }
 for script in setup build test run; do
   check "$script refuses another Debian" refuses 1 'Debian 12 .bookworm. or 13 .trixie.*Debian 11' elsewhere "$root/scripts/$script"
 done

@@ -1,5 +1,5 @@
 // sources: src/geometry/mesh_file.cpp src/geometry/*_reader.cpp src/geometry/polygon.cpp src/geometry/text_lines.cpp
-// sources: src/geometry/gltf_values.cpp
+// sources: src/geometry/gltf_values.cpp src/common/number_text.cpp
 // sources: src/common/files.cpp src/common/foreign_content.cpp
 // sources: src/geometry/surface_check.cpp src/geometry/triangle_tree.cpp src/geometry/surface_mesh.cpp
 // sources: src/geometry/remesh.cpp src/geometry/editable_mesh.cpp src/geometry/surface_operators.cpp

@@ -3,6 +3,7 @@ import dataclasses
 import hashlib
 import itertools
 import os
+from xml.etree import ElementTree
 
 import rospkg
 import yaml
@@ -82,8 +83,9 @@ def versions():
     program = find_program()
     prefix = os.path.dirname(os.path.dirname(os.path.dirname(program)))
     library = os.path.join(prefix, "lib", "libvibe_core.so")
-    try:
-        version = rospkg.RosPack().get_manifest("vibe_core").version
+    try:  # not get_manifest(): it loads rosdep, which prints where nobody has initialised it
+        description = os.path.join(rospkg.RosPack().get_path("vibe_core"), "package.xml")
+        version = ElementTree.parse(description).findtext("version").strip()
     except rospkg.ResourceNotFound:
         version = "unknown"
     return {"vibe_core": version, "build": digest(library if os.path.exists(library) else program)[:16]}
