@@ -46,18 +46,6 @@ TEST(Tracker, FollowsWithoutASearchOnceItKnowsTheMotion) {
   }
 }
 
-// Nothing of its picture tells a slant, which must not make the fit singular.
-TEST(Tracker, ARingParallelToTheSensorStaysTracked) {
-  SyntheticScene scene = ringScene("static");
-  scene.instruments[0].nominal.axis.perspective = 0;
-  const Renderer renderer(scene);
-  Tracker tracker(nominalConfig(scene));
-  for (std::uint64_t i = 0; i < 20; ++i) {
-    const Measurement& m = tracker.track(renderer.render(i).frame)[0];
-    ASSERT_TRUE(m.tracked()) << "frame " << i << ": " << toText(m.reason);
-  }
-}
-
 // The speed of 0.4 m/s is lost at once: no filter predicts this.
 TEST(Tracker, AStopIsReportedInTheSameFrame) {
   SyntheticScene scene = ringScene("moving");
