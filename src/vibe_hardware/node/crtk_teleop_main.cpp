@@ -2,7 +2,6 @@
 
 #include <ros/ros.h>
 
-#include <csignal>
 #include <cstdio>
 
 #include "crtk_teleop_node.hpp"
@@ -14,19 +13,13 @@ constexpr int kUsage = 2;
 constexpr double kMasterPatience = 10;  // [s]
 constexpr double kDelivery = 0.2;       // for the arm to receive that there is no force [s]
 
-volatile sig_atomic_t stop_signal = 0;
-
-void onSignal(int number) {
-  stop_signal = number;
-}
-
 void run() {
   ros::NodeHandle handle;
   const vibe::hardware::CrtkParameters parameters = vibe::hardware::readCrtkParameters(ros::NodeHandle("~"));
   vibe::hardware::CrtkTeleopNode node(handle, parameters);
   ros::AsyncSpinner spinner(1);
   spinner.start();
-  while (ros::ok() && !stop_signal) ros::WallDuration(0.02).sleep();
+  vibe::node::waitForStop();
   spinner.stop();
   node.release();
   ros::WallDuration(kDelivery).sleep();
@@ -36,11 +29,8 @@ void run() {
 
 int main(int argc, char** argv) {
   try {
-    // roscpp's own handler would close the topics before the arm is told that there is no force
-    vibe::node::init(argc, argv, "crtk_teleop", ros::init_options::NoSigintHandler);
-    signal(SIGINT, onSignal);
-    signal(SIGTERM, onSignal);
-    if (!vibe::node::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return 0;
+    vibe::node::initWithGoodbye(argc, argv, "crtk_teleop");
+    if (!vibe::node::waitForMaster(kMasterPatience)) return 0;
     run();
     ros::shutdown();
     return 0;

@@ -2,7 +2,6 @@
 
 #include <ros/ros.h>
 
-#include <csignal>
 #include <cstdio>
 
 #include "hardware_node.hpp"
@@ -14,12 +13,6 @@ constexpr int kUsage = 2;
 constexpr double kMasterPatience = 10;  // [s]
 constexpr double kDelivery = 0.2;       // for listeners to receive that the buttons are released [s]
 
-volatile sig_atomic_t stop_signal = 0;
-
-void onSignal(int number) {
-  stop_signal = number;
-}
-
 void run() {
   ros::NodeHandle handle;
   const vibe::hardware::HardwareParameters parameters = vibe::hardware::readHardwareParameters(ros::NodeHandle("~"));
@@ -29,7 +22,7 @@ void run() {
   vibe::hardware::HardwareNode node(handle, parameters);
   ros::AsyncSpinner spinner(1);
   spinner.start();
-  while (ros::ok() && !stop_signal) ros::WallDuration(0.02).sleep();
+  vibe::node::waitForStop();
   spinner.stop();
   if (node.stop()) ros::WallDuration(kDelivery).sleep();
 }
@@ -38,11 +31,8 @@ void run() {
 
 int main(int argc, char** argv) {
   try {
-    // roscpp's own handler would close the topics before the buttons are released
-    vibe::node::init(argc, argv, "hardware_node", ros::init_options::NoSigintHandler);
-    signal(SIGINT, onSignal);
-    signal(SIGTERM, onSignal);
-    if (!vibe::node::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return 0;
+    vibe::node::initWithGoodbye(argc, argv, "hardware_node");
+    if (!vibe::node::waitForMaster(kMasterPatience)) return 0;
     run();
     ros::shutdown();
     return 0;

@@ -2,7 +2,6 @@
 
 #include <ros/ros.h>
 
-#include <csignal>
 #include <cstdio>
 
 #include "latency_probe.hpp"
@@ -19,15 +18,13 @@ constexpr char kHelp[] =
 constexpr double kMasterPatience = 10;  // [s]
 constexpr double kFlushPeriod = 0.5;    // [s]
 
-volatile sig_atomic_t stop_signal = 0;
-
 void run() {
   ros::NodeHandle handle;
   vibe::latency::LatencyProbe probe(handle, vibe::latency::readProbeParameters(ros::NodeHandle("~")));
   ros::AsyncSpinner spinner(1);
   spinner.start();
   bool told = false;
-  while (ros::ok() && !stop_signal) {
+  while (ros::ok() && vibe::node::stopSignal() == 0) {
     ros::WallDuration(kFlushPeriod).sleep();
     probe.flush();
     if (!told && probe.seesLamp()) std::puts("latency_probe: ready");
@@ -42,13 +39,12 @@ void run() {
 
 int main(int argc, char** argv) {
   try {
-    vibe::node::init(argc, argv, "latency_probe", ros::init_options::NoSigintHandler);
+    vibe::node::initWithGoodbye(argc, argv, "latency_probe");
     if (vibe::node::asksForHelp(argc, argv)) {
       std::fputs(kHelp, stdout);
       return 0;
     }
-    for (const int number : {SIGINT, SIGTERM}) signal(number, [](int) { stop_signal = 1; });
-    if (!vibe::node::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return 1;
+    if (!vibe::node::waitForMaster(kMasterPatience)) return 1;
     run();
     ros::shutdown();
     return 0;

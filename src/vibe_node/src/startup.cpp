@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -21,6 +22,12 @@
 
 namespace vibe::node {
 namespace {
+
+volatile std::sig_atomic_t noted_signal = 0;
+
+void noteSignal(int number) {
+  noted_signal = number;
+}
 
 // Limits of a user are raised in limits.conf(5).
 std::string remedy(const char* limit) {
@@ -60,11 +67,24 @@ void init(int& argc, char** argv, const std::string& name, std::uint32_t options
   ros::init(argc, argv, name, options);
 }
 
-bool waitForMaster(double patience, const std::function<bool()>& stopped) {
+void initWithGoodbye(int& argc, char** argv, const std::string& name, std::uint32_t options) {
+  init(argc, argv, name, options | ros::init_options::NoSigintHandler);
+  for (const int number : {SIGINT, SIGTERM}) std::signal(number, noteSignal);
+}
+
+int stopSignal() {
+  return noted_signal;
+}
+
+void waitForStop() {
+  while (ros::ok() && noted_signal == 0) ros::WallDuration(0.02).sleep();
+}
+
+bool waitForMaster(double patience) {
   const ros::WallTime begin = ros::WallTime::now();
   bool told = false;
   while (!ros::master::check()) {
-    if (stopped && stopped()) return false;
+    if (noted_signal != 0) return false;
     if ((ros::WallTime::now() - begin).toSec() > patience)
       throw Error("No ROS master answers at " + ros::master::getURI() + "; start roscore, or set ROS_MASTER_URI.");
     if (!told) std::fprintf(stderr, "Waiting for a ROS master at %s ...\n", ros::master::getURI().c_str());

@@ -8,20 +8,9 @@
 #include <string>
 #include <string_view>
 
+#include "common/portable_numbers.hpp"
+
 namespace vibe {
-
-#ifdef __cpp_lib_to_chars
-
-std::from_chars_result readReal(const char* begin, const char* end, double& value) {
-  return std::from_chars(begin, end, value);
-}
-
-std::string shortestText(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
-#else
 
 namespace {
 
@@ -30,8 +19,8 @@ const char* digitsFrom(const char* at, const char* end) {
   return at;
 }
 
-/// The end of the longest number in digits at `begin`; `begin` where there is none. `significant`: one of them is not
-/// 0.
+/// The end of the longest number in digits at `begin`; `begin` where there is none.
+/// @param significant  out: one of the digits is not 0
 const char* endOfNumber(const char* begin, const char* end, bool& significant) {
   const char* const whole = begin != end && *begin == '-' ? begin + 1 : begin;
   const char* at = digitsFrom(whole, end);
@@ -67,6 +56,8 @@ std::from_chars_result readWord(const char* begin, const char* end, double& valu
 
 }  // namespace
 
+namespace portable {
+
 std::from_chars_result readReal(const char* begin, const char* end, double& value) {
   bool significant = false;
   const char* const stop = endOfNumber(begin, end, significant);
@@ -90,10 +81,33 @@ std::string shortestText(double value) {
     out.precision(digits);
     out << value;
     text = out.str();
-    readReal(text.data(), text.data() + text.size(), back);
+    portable::readReal(text.data(), text.data() + text.size(), back);
     if (back == value) break;
   }
   return text;
+}
+
+}  // namespace portable
+
+#ifdef __cpp_lib_to_chars
+
+std::from_chars_result readReal(const char* begin, const char* end, double& value) {
+  return std::from_chars(begin, end, value);
+}
+
+std::string shortestText(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+#else
+
+std::from_chars_result readReal(const char* begin, const char* end, double& value) {
+  return portable::readReal(begin, end, value);
+}
+
+std::string shortestText(double value) {
+  return portable::shortestText(value);
 }
 
 #endif

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,13 +13,22 @@ namespace vibe::node {
 /// @throws Error if it cannot make the folder for logs
 void init(int& argc, char** argv, const std::string& name, std::uint32_t options = 0);
 
-/// Waits for an answer of the ROS master. Call it after ros::init() and before the first NodeHandle, which waits for a
+/// init() for a node that says goodbye, for example that releases its buttons: SIGINT and SIGTERM are only noted, while
+/// roscpp's own handler would close the topics first. Such a node looks at stopSignal().
+void initWithGoodbye(int& argc, char** argv, const std::string& name, std::uint32_t options = 0);
+
+/// The signal that has been noted, 0: none. Always 0 without initWithGoodbye().
+int stopSignal();
+
+/// Sleeps until a signal is noted or roscpp ends.
+void waitForStop();
+
+/// Waits for an answer of the ROS master. Call it after init() and before the first NodeHandle, which waits for a
 /// master for ever and hears no signal meanwhile. Says once that it waits.
 /// @param patience  [s]
-/// @param stopped   asked ten times a second; the wait ends where it is true; empty: never
-/// @return whether there is a master; false: stopped
+/// @return whether there is a master; false: a signal was noted
 /// @throws Error when none has answered in time
-bool waitForMaster(double patience, const std::function<bool()>& stopped = {});
+bool waitForMaster(double patience);
 
 /// Whether the command line has --help or -h.
 bool asksForHelp(int argc, const char* const* argv);

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 
 #include <ros/ros.h>
@@ -34,19 +33,14 @@ constexpr char kHelp[] =
     "start_paused, await_recorder, threads, realtime_priority, duration, summary_file, master_timeout; see "
     "docs/interfaces.md.\n";
 
-volatile sig_atomic_t stop_signal = 0;
-
-void onSignal(int number) {
-  stop_signal = number;
-}
-
 void waitForEnd(const sim::SimulationThread& thread, const sim::MasterWatch& watch) {
-  while (ros::ok() && !stop_signal && thread.isRunning() && !watch.isHopeless()) ros::WallDuration(0.02).sleep();
+  while (ros::ok() && vibe::node::stopSignal() == 0 && thread.isRunning() && !watch.isHopeless())
+    ros::WallDuration(0.02).sleep();
 }
 
 /// The sentence that says why the node ends, unless the stepping has said so itself.
 void explainEnd(const sim::MasterWatch& watch) {
-  if (stop_signal) {
+  if (vibe::node::stopSignal() != 0) {
     std::puts("Stopped by a signal.");
   } else if (!ros::ok() && !watch.isHopeless()) {
     std::puts(
@@ -100,14 +94,12 @@ int run() {
 
 int main(int argc, char** argv) {
   try {
-    vibe::node::init(argc, argv, "sim_node", ros::init_options::NoSigintHandler);
+    vibe::node::initWithGoodbye(argc, argv, "sim_node");
     if (vibe::node::asksForHelp(argc, argv)) {
       std::fputs(kHelp, stdout);
       return 0;
     }
-    signal(SIGINT, onSignal);
-    signal(SIGTERM, onSignal);
-    if (!vibe::node::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return kFailure;
+    if (!vibe::node::waitForMaster(kMasterPatience)) return kFailure;
     const int result = run();
     ros::shutdown();
     return result;

@@ -1,4 +1,3 @@
-#include <csignal>
 #include <cstdio>
 
 #include <ros/ros.h>
@@ -23,12 +22,6 @@ constexpr char kHelp[] =
     "                                   [_namespace:=NS]\n"
     "It needs /use_sim_time true, takes replay/command and says where it is on replay/status.\n";
 
-volatile std::sig_atomic_t stop_signal = 0;
-
-void onSignal(int number) {
-  stop_signal = number;
-}
-
 void play() {
   vibe::node::ParameterReader reader(ros::NodeHandle("~"));
   const std::string file = reader.required("recording", "the bag to play");
@@ -46,7 +39,7 @@ void play() {
   const vibe::sim::Recording recording(file, choice);
   if (!recording.remarkOnChoice().empty()) ROS_INFO_STREAM(recording.remarkOnChoice());
   vibe::sim::Player player(recording, ros::NodeHandle(), plays, rate);
-  while (ros::ok() && !stop_signal) {
+  while (ros::ok() && vibe::node::stopSignal() == 0) {
     player.spinOnce();
     ros::WallDuration(kIdle).sleep();
   }
@@ -56,14 +49,12 @@ void play() {
 
 int main(int argc, char** argv) {
   try {
-    vibe::node::init(argc, argv, "vibe_player", ros::init_options::NoSigintHandler);
+    vibe::node::initWithGoodbye(argc, argv, "vibe_player");
     if (vibe::node::asksForHelp(argc, argv)) {
       std::fputs(kHelp, stdout);
       return 0;
     }
-    std::signal(SIGINT, onSignal);
-    std::signal(SIGTERM, onSignal);
-    if (!vibe::node::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return kFailure;
+    if (!vibe::node::waitForMaster(kMasterPatience)) return kFailure;
     play();
     ros::shutdown();
     return 0;

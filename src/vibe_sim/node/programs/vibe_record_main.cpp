@@ -1,4 +1,3 @@
-#include <csignal>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -19,12 +18,6 @@ constexpr int kUsage = 2;
 constexpr double kSearchPeriod = 0.2;  // between looks for new topics [s]
 constexpr double kMasterPatience =
     10;  // without an answer of the master, at the start or before the recording ends [s]
-
-volatile std::sig_atomic_t stop_signal = 0;
-
-void onSignal(int number) {
-  stop_signal = number;
-}
 
 struct Options {
   std::string file;
@@ -58,7 +51,7 @@ Options readOptions(const std::vector<std::string>& words) {
 /// @throws Error
 void recordUntilStopped(vibe::sim::Recorder& recorder) {
   double silence = 0;
-  while (!stop_signal && ros::ok()) {
+  while (vibe::node::stopSignal() == 0 && ros::ok()) {
     const bool answers = recorder.findTopics();
     if (answers && silence > 0) {
       std::fprintf(stderr,
@@ -80,7 +73,7 @@ void recordUntilStopped(vibe::sim::Recorder& recorder) {
 int main(int argc, char** argv) {
   bool running = false;
   try {
-    vibe::node::init(argc, argv, "vibe_record", ros::init_options::NoSigintHandler | ros::init_options::AnonymousName);
+    vibe::node::initWithGoodbye(argc, argv, "vibe_record", ros::init_options::AnonymousName);
     if (vibe::node::asksForHelp(argc, argv)) {
       std::puts(
           "vibe_record: records the graph to a bag until Ctrl-C: inputs, events and all that a replay cannot compute\n"
@@ -92,9 +85,7 @@ int main(int argc, char** argv) {
       return 0;
     }
     const Options options = readOptions({argv, argv + argc});
-    std::signal(SIGINT, onSignal);
-    std::signal(SIGTERM, onSignal);
-    if (!vibe::node::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return kFailure;
+    if (!vibe::node::waitForMaster(kMasterPatience)) return kFailure;
     std::string file = options.file;
     if (options.free_name) {
       file = vibe::sim::claimFreeBag(file);
