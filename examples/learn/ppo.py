@@ -73,7 +73,7 @@ class Learner:
         os.replace(file + ".new.npz", file)
         self.torch.save({"mean": [part.detach() for part in self.mean], "spread": self.spread.detach(),
                          "value": self.value.state_dict(), "optimiser": self.optimiser.state_dict(),
-                         "scaling": self.scaling, **state}, file[:-4] + ".pt.new")
+                         "scaling": [self.torch.from_numpy(part) for part in self.scaling], **state}, file[:-4] + ".pt.new")
         os.replace(file[:-4] + ".pt.new", file[:-4] + ".pt")
 
     def load(self, file):
@@ -83,7 +83,7 @@ class Learner:
                 part.copy_(stored)
         self.value.load_state_dict(state["value"])
         self.optimiser.load_state_dict(state["optimiser"])
-        self.scaling = state["scaling"]
+        self.scaling = [part.numpy() for part in state["scaling"]]
         return state
 
     def improve(self, rows, actions, chances, advantages, returns, still_value):
