@@ -22,6 +22,8 @@ LINK = re.compile(r"(?P<head>!?\[(?:[^\[\]]|\[[^\]]*\]|!\[[^\]]*\]\([^)]*\))*\]\
 RAW_ANCHOR = re.compile(r'^<a id="([\w-]+)"></a>[ \n]*', re.MULTILINE)
 LANGUAGES = {".hpp": "cpp", ".cpp": "cpp", ".h": "cpp", ".py": "python", ".yaml": "yaml", ".yml": "yaml", ".sh": "bash",
              ".xml": "xml", ".urdf": "xml", ".js": "js", ".cmake": "cmake", ".msg": "none", ".srv": "none"}
+# Below their list, so that they are not in the sidebar of every page.
+PACKAGE_PAGES = "\n```{toctree}\n:hidden:\n:glob:\n../src/**/README\n../src/*/CHANGELOG\n```\n"
 SHOWN = 400_000  # bytes; a longer file is named, not shown
 
 
@@ -83,6 +85,8 @@ class Site:
     def copy_pages(self):
         for page in self.pages:
             text = (self.root / page).read_text(encoding="utf-8")
+            if page == "docs/packages.md":
+                text += PACKAGE_PAGES
             self.write(page, self.rewrite(page, text) if page.endswith(".md") else text)
         for picture in [*(self.root / "docs").rglob("*.png"), *(self.root / "docs").rglob("*.svg"),
                         *(self.root / "src").glob("*/*.png"), *(self.root / "examples").rglob("*.png")]:
