@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Puts the sources of the site together: the Markdown pages of the workspace in the folders where they are, the pages
-that reference.py and api.py make, and a page for every file of code that a page links to. A link to what is not there
-ends the program with status 1."""
+that reference.py and api.py make, and a page for every file of code that a page links to. A link to what is not there,
+and headers that lack more comments than before, end the program with status 1 when all is written."""
 
 import argparse
 import os
@@ -138,21 +138,23 @@ def main():
     shutil.rmtree(arguments.output, ignore_errors=True)
     site = Site(arguments.root.resolve(), arguments.output)
     made = dict(reference.pages(site.root))
+    interface = dict(api.pages(site.root, arguments.doxygen))
     made["index.md"] = (site.root / "docs/site/index.md").read_text(encoding="utf-8")
-    site.made = {*made}
+    site.made = {*made, *interface}
     site.copy_pages()
     for name, text in made.items():
         site.write(name, site.rewrite(name, text))
-    for name, text in api.pages(site.root, arguments.doxygen):
+    for name, text in interface.items():
         site.write(name, text)
     site.write_code_pages()
     static = arguments.output / "_static"
     shutil.copytree(arguments.katex, static / "katex", ignore=shutil.ignore_patterns("*.mjs", "katex.js", "katex.css"))
     for name in ("formulas.js", "site.css"):
         shutil.copyfile(site.root / "docs/site" / name, static / name)
-    for problem in site.problems:
+    problems = [*site.problems, *api.problems(arguments.doxygen)]
+    for problem in problems:
         print(problem, file=sys.stderr)
-    return 1 if site.problems else 0
+    return 1 if problems else 0
 
 
 if __name__ == "__main__":

@@ -16,18 +16,13 @@ copyright = "the ViBE for ROS authors, BSD-3-Clause"  # noqa: A001
 release = version = version_of("vibe_core")
 language = "en"
 
-extensions = ["myst_parser", "sphinx.ext.mathjax", "breathe"]
+extensions = ["myst_parser", "sphinx.ext.mathjax"]
 myst_enable_extensions = ["dollarmath", "amsmath"]
 myst_dmath_double_inline = True
 myst_heading_anchors = 4
 # A page may show C++, shell, YAML and sessions without a word that tells Pygments which.
 highlight_language = "none"
 suppress_warnings = ["misc.highlighting_failure"]
-
-breathe_projects = {"vibe": os.environ["VIBE_DOXYGEN_XML"]}
-breathe_default_project = "vibe"
-breathe_default_members = ("members", "undoc-members")
-cpp_index_common_prefix = ["vibe::"]
 
 # KaTeX of Debian in the place of MathJax: it draws formulas without a server and is small. sphinx.ext.mathjax writes the
 # formulas between \( \) and \[ \]; formulas.js draws them.
