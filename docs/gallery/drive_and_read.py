@@ -11,7 +11,8 @@ def react(message):  # 60 times a second: the wrench of the tissue on the tool, 
     insertion += 0.0005  # 30 mm/s
     command.publish(JointState(position=[insertion, 0, 0, 0]))  # [m], rotation, tip up/down, tip left/right [rad]
     if force > 0.5:
-        rospy.signal_shutdown("{:.0f} mm deep, {:.2f} N".format(1e3 * insertion, force))
+        print("{:.0f} mm deep, {:.2f} N".format(1e3 * insertion, force))
+        rospy.signal_shutdown("reached")
 
 
 rospy.init_node("drive_and_read")

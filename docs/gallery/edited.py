@@ -13,5 +13,4 @@ with rosbag.Bag(recording) as source, rosbag.Bag(copy, "w") as target:
         target.write(topic, message, time)
 for bag in (recording, copy):
     replay = subprocess.run(["rosrun", "vibe_sim", "vibe_replay", bag], capture_output=True, text=True, check=False)
-    said = (replay.stdout + replay.stderr).strip().splitlines()
-    print("status {}: {}".format(replay.returncode, said[-1]))
+    print("status {}: {}".format(replay.returncode, replay.stdout.strip().splitlines()[-1]))

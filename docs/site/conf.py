@@ -2,6 +2,9 @@
 
 import os
 import re
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 ROOT = os.environ["VIBE_ROOT"]  # the workspace; scripts/docs sets it
 
@@ -16,7 +19,7 @@ copyright = "the ViBE for ROS authors, BSD-3-Clause"  # noqa: A001
 release = version = version_of("vibe_core")
 language = "en"
 
-extensions = ["myst_parser", "sphinx.ext.mathjax"]
+extensions = ["myst_parser", "sphinx.ext.mathjax", "theme"]
 myst_enable_extensions = ["dollarmath", "amsmath"]
 myst_dmath_double_inline = True
 myst_heading_anchors = 4
