@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Error of tracked slides against the truth of synthetic images: compare_tracks.py FOLDER, draws FOLDER/error.svg"""
+"""Error of tracked slides against the truth of synthetic images: compare_tracks.py FOLDER, draws FOLDER/error.png"""
 import csv
 import sys
 
@@ -25,4 +25,4 @@ for name, values in errors.items():
 plt.xlabel("frame")
 plt.ylabel("error of the slide [µm]")
 plt.legend()
-plt.savefig(folder + "/error.svg")
+plt.savefig(folder + "/error.png", dpi=110)

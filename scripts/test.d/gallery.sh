@@ -81,7 +81,7 @@ makesACohort() { prints ',4$|,2$' "$gallery/cohort.sh" "$scratch/cohort" && isPi
 check 'gallery: a cohort' makesACohort
 holds() { prints 'ok$' rosrun vibe_sessions regression "$gallery/balloon.regression.yaml"; }
 check 'gallery: a regression holds' holds
-tracks() { prints 'frames, error of the slide [0-9]\.[0-9]+ um RMS' "$gallery/camera.sh" "$scratch/camera" && [ -s "$scratch/camera/error.svg" ]; }
+tracks() { prints 'frames, error of the slide [0-9]\.[0-9]+ um RMS' "$gallery/camera.sh" "$scratch/camera" && isPicture "$scratch/camera/error.png"; }
 check 'gallery: instruments are tracked' tracks
 emulates() {
   local port
