@@ -18,7 +18,7 @@ def mend(app, problem):
     rules = re.sub(r"@import url\(/.*?\);\n", "", rules)
     dark = re.search(r"@media not print \{\n(.*?\} *)\}\n", rules, re.DOTALL)
     if dark and "prefers-color-scheme" not in rules:
-        rules += "\n@media not print and (prefers-color-scheme: dark) {\n" + dark.group(1).replace(
+        rules += "\n@media screen and (prefers-color-scheme: dark) {\n" + dark.group(1).replace(
             'body[data-theme="dark"]', 'body:not([data-theme="light"])') + "}\n"
     style.write_text(rules, encoding="utf-8")
 

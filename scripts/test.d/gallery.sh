@@ -47,7 +47,7 @@ withSimulator() {
   rosrun vibe_sim sim_node _scene:=package://vibe_core/scenes/stomach.yaml _time_source:=sim _await_recorder:=true \
     >"$scratch/sim.log" 2>&1 &
   "$@" || status=$?
-  kill -INT "$recorder" && wait "$recorder" || true
+  kill "$recorder" && wait "$recorder" || true
   # shellcheck disable=SC2046
   kill $(jobs -p) 2>/dev/null && wait || true
   [ "$status" -eq 0 ] || cat "$scratch/sim.log"
