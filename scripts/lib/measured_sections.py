@@ -10,7 +10,7 @@ import resource
 import subprocess
 import tempfile
 
-SESSION_TEXT = "first_session.txt"  # what the first session printed, which README shows
+SESSION_TEXT = "first_session.txt"  # what the first session printed, which first_run.md shows
 STOMACH = "package://vibe_core/scenes/stomach.yaml"
 SCENES = {  # variants of the default scene: a text that follows its line, or (line to remove, None)
     "rigid": ("  compliance: {}", None),

@@ -5,7 +5,7 @@ import os
 from measured_sections import SESSION_TEXT
 from measured_store import number
 from measured_tables import made_from
-from measured_text import code, digits, percent, sentence, signed, span, table, whole
+from measured_text import code, digits, percent, signed, span, table, whole
 
 ORGANS = {
     "stomach": "default",
@@ -113,17 +113,6 @@ def organs(store):
 
 
 @made_from("organs")
-def organs_in_a_sentence(store):
-    rows = [row for row in store.rows("organs") if row["part"] != "stomach"]
-    of = lambda column: [number(row[column]) for row in rows]  # noqa: E731
-    text = f"The same protocol on {len(rows)} other stomachs: "
-    text += f"{span(of('sets_as_planned'), whole)} of {PLANNED_SETS} sets as planned, "
-    text += f"{span(of('bites'), whole)} of {PLANNED_BITES} bites taken, {whole(sum(of('tear_outs')))} torn out in all"
-    text += f", {digits(max(of('max_force')))} N at most ([table](docs/protocols.md#on-other-organs))."
-    return sentence(text), [(f"`{row['part']}`", row) for row in rows]
-
-
-@made_from("organs")
 def sleeve(store):
     row = by_part(store, "organs")["stomach"]
     reductions = ", ".join(percent(row[what + "_reduction"], 3) for what in ("area", "volume", "length"))
@@ -157,7 +146,7 @@ def replayed(store):
 def speed(store):
     sessions = by_part(store, "sessions")
     found = (
-        ("sleeve", "the sleeve above, six sets", by_part(store, "organs").get("stomach")),
+        ("sleeve", "a sleeve of six sets", by_part(store, "organs").get("stomach")),
         ("first session", "the first session, one set", sessions.get("first")),
         ("grabs", "`demo/grabs.yaml`, one minute, with self-contact", sessions.get("grabs")),
         ("shape matching", "the same with `shape_matching`", sessions.get("grabs_shape_matching")),

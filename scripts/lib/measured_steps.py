@@ -39,13 +39,6 @@ HARD = {  # a stem that ends with _ stands before a speed or seed
     "8x7": "8 sets of 7 bites",
     "14x4": "14 sets of 4 bites",
 }
-STATES = {  # of README
-    "`free`": "a patch is pulled by 20 mm",
-    "`pressed`, rigid scope": "a rigid scope presses",
-    "`pressed`": "the scope of the shipped scene presses, which gives way and slides along the wall",
-    "`wound`": "the fold of a cinched set is pulled and turned",
-    "`cinch6`": "the sixth set is cinched",
-}
 ERRORS = ("motion_error", "motion_error_end", "force_error", "force_error_end")
 RATES = ("60", "120", "240")
 
@@ -169,16 +162,6 @@ def steps_1_ms(store):
     rows = [(f"`{row['state']}`", row) for row in store.rows("states") if row["part"] == "steps_1_ms"]
     lines = [(label, times(row, "ms_p50", "ms_p99"), digits(row["iterations_mean"])) for label, row in rows]
     return table(("state, 1,020 Hz, 1 iteration", "p50, p99 ms", "iterations"), lines), rows
-
-
-@made_from("states")
-def contact_errors(store):
-    found = state_rows(store)
-    rows = [(label, found[label]["60"]) for label in STATES if label in found]
-    errors = ("motion_error", "force_error", "motion_error_end")
-    lines = [(STATES[label], *percents(row, errors)) for label, row in rows]
-    header = ("default stomach, 60 Hz", "motion, worst frame", "force, worst frame", "motion at the end")
-    return table(header, lines), rows
 
 
 @made_from("refinement")

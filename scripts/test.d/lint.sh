@@ -3,7 +3,7 @@
 # cost: 60
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-for name in format door rooms names launch bash python; do
+for name in format door rooms names launch links bash python; do
   check "lint $name" "$root/scripts/lint" --only "$name"
 done
 
@@ -93,3 +93,18 @@ check 'lint sees a constant that hides a value of a header' findsName other.cpp 
 check 'lint sees a function in two sources of a folder' findsName very.cpp 'double used(double x) {
   return x;
 }' "'used' stands in use.cpp, too"
+
+# findsLink LINE PATTERN: two pages pass; with a line in one of them lint must name the problem
+findsLink() {
+  local tree
+  tree=$(copyOfTree)
+  rm "$tree/docs/architecture.md"
+  printf '# Title\n\n## A `name` here\n\n`[no](link.md)`\n\n```\n[no](link.md)\n```\n' >"$tree/docs/a.md"
+  printf '# Other\n\n[a](a.md#a-name-here), [folder](../src), [web](https://example.org/x.md)\n' >"$tree/docs/b.md"
+  "$tree/scripts/lint" --only links || { echo 'finds a problem where none is'; return 1; }
+  printf '\n%s\n' "$1" >>"$tree/docs/b.md"
+  refuses 1 'not clean: links' bash -c '"$1" --only links 2>&1 >"$2"' - "$tree/scripts/lint" "$tree/said" &&
+    cat "$tree/said" && grep -qE "^docs/b.md: $2" "$tree/said"
+}
+check 'lint sees a link to a file that is not there' findsLink '[x](c.md)' "'c.md' is not there"
+check 'lint sees a link to a heading that is not there' findsLink '[x](a.md#a-name)' "'a.md#a-name': that page has no such heading"

@@ -15,7 +15,7 @@ namespace {
 
 // Stiffness of the factor over that of the body where a step has one iteration. Such a step is unstable where the true
 // stiffness exceeds that of the factor: its error (1 - ratio) enters the acceleration. With two or more iterations it
-// is unstable only beyond twice the stiffness of the factor (docs/architecture.md, initial guess of a step) [1].
+// is unstable only beyond twice the stiffness of the factor (docs/computation.md, the time step) [1].
 constexpr double kMarginOfOne = 2;
 // Elastic energy of an extrapolated guess over that of the last step, above which the guess is dropped. Design choice:
 // a guess along a smooth motion changes the energy by a few percent per step [1].

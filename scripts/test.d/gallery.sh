@@ -1,0 +1,97 @@
+# The examples of docs/gallery.md run as they are, and the pages show them as they are.
+# kind: computing
+# cost: 90
+# timeout: 600
+source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
+
+gallery=$root/docs/gallery
+showsTheFiles() { /usr/bin/python3 -B "$root/scripts/lib/check_code_blocks.py" "$1" "$root"; }
+check 'code in README.md is that of the file it names' showsTheFiles "$root/README.md"
+check 'code in docs/gallery.md is that of the files it names' showsTheFiles "$root/docs/gallery.md"
+isShort() { [ -z "$(find "$gallery" -type f -exec awk 'END { if (NR > 60) print FILENAME }' {} \;)" ]; }
+check 'no example of the gallery has more than 60 lines' isShort
+isShown() {
+  local file
+  for file in "$gallery"/*; do grep -qF "<!-- file: docs/gallery/${file##*/} -->" "$root/docs/gallery.md" || { echo "$file"; return 1; }; done
+}
+check 'every file of the gallery is in its page' isShown
+
+if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/vibe_sim/sim_node" ]; then
+  echo 'skipped the examples (they need the ordinary build)'
+  exit 0
+fi
+set +u
+# shellcheck disable=SC1091
+source "$root/devel/setup.bash"
+set -u
+
+# prints PATTERN COMMAND...: the command succeeds, and one of its lines matches.
+prints() {
+  local said
+  said=$("${@:2}" 2>&1) || { printf '%s\n' "$said"; return 1; }
+  printf '%s\n' "$said"
+  grep -qE -- "$1" <<<"$said"
+}
+isPicture() { [ "$(head -c 4 "$1" | tail -c 3)" = PNG ]; }
+
+# A graph of its own: a master and the simulator, as the page says, and a recorder. In simulated time, so that a busy
+# machine is slower and nothing else.
+withSimulator() {
+  local port status=0
+  port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
+  export ROS_MASTER_URI=http://127.0.0.1:$port ROS_HOSTNAME=127.0.0.1
+  rosmaster --core -p "$port" >/dev/null 2>&1 &
+  until rosparam set /use_sim_time true >/dev/null 2>&1; do sleep 0.2; done
+  rosrun vibe_sim vibe_record "$scratch/session.bag" >"$scratch/record.log" 2>&1 &
+  local recorder=$!
+  rosrun vibe_sim sim_node _scene:=package://vibe_core/scenes/stomach.yaml _time_source:=sim _await_recorder:=true \
+    >"$scratch/sim.log" 2>&1 &
+  "$@" || status=$?
+  kill "$recorder" && wait "$recorder" || true
+  # shellcheck disable=SC2046
+  kill $(jobs -p) 2>/dev/null && wait || true
+  [ "$status" -eq 0 ] || cat "$scratch/sim.log"
+  return "$status"
+}
+drivesAndReads() {
+  "$gallery/forces.py" 8 "$scratch/forces.csv" "$scratch/forces.png" >"$scratch/forces.txt" 2>&1 &
+  local reader=$!
+  prints 'mm deep, 0\.[5-9]' timeout 120 "$gallery/drive_and_read.py" && wait "$reader"
+}
+check 'gallery: a program drives and reads' withSimulator drivesAndReads
+readsForces() {
+  cat "$scratch/forces.txt"
+  grep -qE '^[0-9]+ samples, [01]\.[0-9]+ N at most$' "$scratch/forces.txt" && isPicture "$scratch/forces.png" &&
+    [ "$(wc -l <"$scratch/forces.csv")" -gt 100 ]
+}
+check 'gallery: forces of a session' readsForces
+findsTheEdit() {
+  local said
+  said=$("$gallery/edited.py" "$scratch/session.bag" "$scratch/copy.bag")
+  printf '%s\n' "$said"
+  grep -q '^status 0: the same: ' <<<"$said" && grep -q '^status 1: NOT the same' <<<"$said"
+}
+check 'gallery: a replay, and one of a recording that was edited' findsTheEdit
+
+readsASurface() { prints '^[0-9]+ mL, [0-9]+ mL at (9\.9|10\.0|10\.1) mmHg$' "$gallery/own_mesh.py" "$scratch/flat.obj" "$scratch/own.png" && isPicture "$scratch/own.png"; }
+check 'gallery: your own mesh' readsASurface
+sweeps() { prints '^110 kPa: 3[0-9]\.[0-9] mL/mmHg$' "$gallery/sweep.py" "$scratch/sweep.png" && isPicture "$scratch/sweep.png"; }
+check 'gallery: a sweep' sweeps
+makesACohort() { prints ',1,1$' "$gallery/cohort.sh" "$scratch/cohort" 1 && isPicture "$scratch/cohort/cohort.png"; }
+check 'gallery: a cohort' makesACohort
+holds() { prints 'ok$' rosrun vibe_sessions regression "$gallery/balloon.regression.yaml"; }
+check 'gallery: a regression holds' holds
+tracks() { prints 'frames, error of the slide [0-9]\.[0-9]+ um RMS' "$gallery/camera.sh" "$scratch/camera" && isPicture "$scratch/camera/error.png"; }
+check 'gallery: instruments are tracked' tracks
+emulates() {
+  local port
+  port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
+  export ROS_MASTER_URI=http://127.0.0.1:$port ROS_HOSTNAME=127.0.0.1
+  rosmaster --core -p "$port" >/dev/null 2>&1 &
+  local master=$! status=0
+  until rosparam list >/dev/null 2>&1; do sleep 0.2; done
+  prints '^[0-9]+,' "$gallery/emulator.sh" 8 || status=$?
+  kill "$master" && wait "$master" || true
+  return "$status"
+}
+check 'gallery: the emulated devices send their joints' emulates
