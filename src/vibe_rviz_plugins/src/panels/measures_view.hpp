@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "messages/reference_values.hpp"
+#include "vibe_rviz_plugins/messages/reference_values.hpp"
 #include "panels/panel_messages.hpp"
 
 class QLabel;

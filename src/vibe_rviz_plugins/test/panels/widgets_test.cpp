@@ -6,7 +6,7 @@
 #include <QTableWidget>
 #include <limits>
 
-#include "messages/reference_values.hpp"
+#include "vibe_rviz_plugins/messages/reference_values.hpp"
 #include "offscreen.hpp"
 #include "panels/control_boxes.hpp"
 #include "panels/measures_view.hpp"

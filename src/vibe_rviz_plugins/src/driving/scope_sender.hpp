@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "drive/scope_drive.hpp"
+#include "vibe_rviz_plugins/drive/scope_drive.hpp"
 #include "messages/session_watch.hpp"
 
 namespace vibe::rviz_plugins {
