@@ -7,8 +7,8 @@
 #include "operator/operator_seat.hpp"
 #include "protocol/command.hpp"
 
-// Any bytes as a command of a page: nothing, or a command within its limits; and rows of them in the operator's seat, in
-// which nobody but the one who was granted it holds anything.
+// Any bytes as a command of a page: nothing, or a command within its limits; and rows of them in the operator's seat,
+// in which nobody but the one who was granted it holds anything.
 
 namespace web = vibe::web;
 

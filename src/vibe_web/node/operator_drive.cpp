@@ -5,8 +5,8 @@
 #include <limits>
 #include <random>
 
-#include <nlohmann/json.hpp>
 #include <vibe_msgs/ReplayCommand.h>
+#include <nlohmann/json.hpp>
 
 #include "protocol/byte_writer.hpp"
 
@@ -34,7 +34,9 @@ json numberOrNull(double value) {
 }  // namespace
 
 OperatorDrive::OperatorDrive(ros::NodeHandle& handle)
-    : drive_("web_node"), replay_(handle.advertise<vibe_msgs::ReplayCommand>("replay/command", 10)), last_(steadyNow()) {}
+    : drive_("web_node"),
+      replay_(handle.advertise<vibe_msgs::ReplayCommand>("replay/command", 10)),
+      last_(steadyNow()) {}
 
 void OperatorDrive::hear(ClientId client, const Command& command) {
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -76,8 +78,9 @@ void OperatorDrive::obey(ClientId client, const Command& command, WebServer& ser
       return;
     case Command::Kind::Drive:
       if (!seat_.hear(client, command, steadyNow()))
-        server.send(client, Kind::Refusal,
-                    textMessage(Kind::Refusal, "A drive message does not count: it is old, or this page does not drive."));
+        server.send(
+            client, Kind::Refusal,
+            textMessage(Kind::Refusal, "A drive message does not count: it is old, or this page does not drive."));
       return;
     case Command::Kind::Replay:
       if (client == seat_.holder()) replay(command);

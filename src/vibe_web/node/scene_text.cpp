@@ -31,11 +31,18 @@ json turnOf(const urdf::Rotation& r) {
 json jointOf(const urdf::Joint& joint) {
   const urdf::Pose& origin = joint.parent_to_joint_origin_transform;
   const bool turns = joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS;
-  json link = {{"name", joint.child_link_name}, {"parent", joint.parent_link_name}, {"joint", joint.name},
-               {"type", turns ? "turn" : joint.type == urdf::Joint::PRISMATIC ? "slide" : "fixed"},
-               {"place", placeOf(origin.position)}, {"turn", turnOf(origin.rotation)}, {"axis", placeOf(joint.axis)}};
+  json link = {{"name", joint.child_link_name},
+               {"parent", joint.parent_link_name},
+               {"joint", joint.name},
+               {"type", turns                                  ? "turn"
+                        : joint.type == urdf::Joint::PRISMATIC ? "slide"
+                                                               : "fixed"},
+               {"place", placeOf(origin.position)},
+               {"turn", turnOf(origin.rotation)},
+               {"axis", placeOf(joint.axis)}};
   if (joint.mimic)
-    link["mimic"] = {{"joint", joint.mimic->joint_name}, {"factor", joint.mimic->multiplier}, {"offset", joint.mimic->offset}};
+    link["mimic"] = {
+        {"joint", joint.mimic->joint_name}, {"factor", joint.mimic->multiplier}, {"offset", joint.mimic->offset}};
   return link;
 }
 
@@ -63,7 +70,8 @@ void addMesh(const std::string& address, json& visual, RobotText& robot) {
   const std::string file = fileOf(address), name = file.substr(file.rfind('/') + 1);
   const bool known = name.size() > 4 && name.substr(name.size() - 4) == ".obj" && std::ifstream(file).good();
   if (!known) {
-    robot.problems.push_back("The mesh '" + address + "' of the robot description is missing on the page, which reads " +
+    robot.problems.push_back("The mesh '" + address +
+                             "' of the robot description is missing on the page, which reads " +
                              "OBJ files; convert it, or correct its path.");
     return;
   }
@@ -74,8 +82,11 @@ void addMesh(const std::string& address, json& visual, RobotText& robot) {
 }
 
 json visualOf(const std::string& link, const urdf::Visual& visual, RobotText& robot) {
-  json text = {{"link", link}, {"place", placeOf(visual.origin.position)}, {"turn", turnOf(visual.origin.rotation)},
-               {"scale", {1, 1, 1}}, {"colour", {0.6, 0.6, 0.62}}};
+  json text = {{"link", link},
+               {"place", placeOf(visual.origin.position)},
+               {"turn", turnOf(visual.origin.rotation)},
+               {"scale", {1, 1, 1}},
+               {"colour", {0.6, 0.6, 0.62}}};
   if (visual.material) {
     const urdf::Color& colour = visual.material->color;
     text["colour"] = {colour.r, colour.g, colour.b};
@@ -138,7 +149,8 @@ json keyText() {
 RobotText readRobot(const std::string& description) {
   urdf::Model model;
   if (description.empty() || !model.initString(description))
-    throw std::runtime_error("The parameter robot_description holds no URDF that can be read, so the page shows no endoscope.");
+    throw std::runtime_error(
+        "The parameter robot_description holds no URDF that can be read, so the page shows no endoscope.");
   RobotText robot;
   robot.json = {{"links", json::array()}, {"visuals", json::array()}};
   for (const auto& [name, joint] : model.joints_) robot.json["links"].push_back(jointOf(*joint));

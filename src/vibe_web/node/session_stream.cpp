@@ -20,12 +20,12 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::uint32_t kQueue = 2;         // a state that is not the newest is of no use
+constexpr std::uint32_t kQueue = 2;  // a state that is not the newest is of no use
 constexpr std::uint32_t kEventQueue = 1000;
-constexpr int kSlowTicks = 2;               // of tick(): folds and heat five times a second
+constexpr int kSlowTicks = 2;  // of tick(): folds and heat five times a second
 const char* const kBase = "scope_base";
 
-PageFile fileOf(const std::string& type, std::string content) {
+PageFile pageFile(const std::string& type, std::string content) {
   PageFile file;
   file.type = type;
   file.content = std::make_shared<const std::string>(std::move(content));
@@ -59,20 +59,23 @@ SessionStream::SessionStream(ros::NodeHandle& handle, WebServer& server, const s
     ROS_WARN("%s", error.what());
   }
   const graphics::MucosaPattern pattern = graphics::makeMucosaPattern();
-  server_.provide("/pattern", fileOf("application/octet-stream", {pattern.voxels.begin(), pattern.voxels.end()}));
+  server_.provide("/pattern", pageFile("application/octet-stream", {pattern.voxels.begin(), pattern.voxels.end()}));
   const auto add = [this](ros::Subscriber subscriber) { subscribers_.push_back(std::move(subscriber)); };
   add(handle.subscribe("tissue/topology", kQueue, &SessionStream::takeTopology, this));
-  add(handle.subscribe("tissue/particles", kQueue, &SessionStream::takeParticles, this, ros::TransportHints().tcpNoDelay()));
+  add(handle.subscribe("tissue/particles", kQueue, &SessionStream::takeParticles, this,
+                       ros::TransportHints().tcpNoDelay()));
   add(handle.subscribe("joint_states", kQueue, &SessionStream::takeJoints, this, ros::TransportHints().tcpNoDelay()));
   add(handle.subscribe("sutures", kQueue, &SessionStream::takeSutures, this));
   add(handle.subscribe("/tf_static", kEventQueue, &SessionStream::takeTransforms, this));
   add(handle.subscribe<geometry_msgs::WrenchStamped>("scope/measured_cf", kQueue, [this](const auto& message) {
     const auto &f = message->wrench.force, &t = message->wrench.torque;
     const std::array<double, 6> wrench{f.x, f.y, f.z, t.x, t.y, t.z};
-    std::transform(wrench.begin(), wrench.end(), content_.wrench.begin(), [](double v) { return static_cast<float>(v); });
+    std::transform(wrench.begin(), wrench.end(), content_.wrench.begin(),
+                   [](double v) { return static_cast<float>(v); });
   }));
   add(handle.subscribe<vibe_msgs::ProcedureState>("procedure/state", kQueue, [this](const auto& m) { state_ = m; }));
-  add(handle.subscribe<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kQueue, [this](const auto& m) { skill_ = m; }));
+  add(handle.subscribe<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kQueue,
+                                                [this](const auto& m) { skill_ = m; }));
   add(handle.subscribe<vibe_msgs::ProcedureEvent>("procedure/events", kEventQueue, [this](const auto& message) {
     events_.add(*message);
     events_changed_ = true;
@@ -83,11 +86,12 @@ SessionStream::SessionStream(ros::NodeHandle& handle, WebServer& server, const s
 }
 
 void SessionStream::provideFiles(const RobotText& robot) {
-  for (const auto& [path, file] : robot.meshes) server_.provide(path, fileOf("text/plain", contentOf(file)));
+  for (const auto& [path, file] : robot.meshes) server_.provide(path, pageFile("text/plain", contentOf(file)));
 }
 
 void SessionStream::publishScene() {
-  if (organ_) server_.publish(Kind::Scene, textMessage(Kind::Scene, scene_.dump(-1, ' ', false, json::error_handler_t::replace)));
+  if (organ_)
+    server_.publish(Kind::Scene, textMessage(Kind::Scene, scene_.dump(-1, ' ', false, json::error_handler_t::replace)));
 }
 
 void SessionStream::takeTopology(const vibe_msgs::TissueTopology& message) {
@@ -125,8 +129,8 @@ void SessionStream::takeJoints(const sensor_msgs::JointState& message) {
 void SessionStream::takeTransforms(const tf2_msgs::TFMessage& message) {
   for (const auto& each : message.transforms) {
     if (each.child_frame_id != kBase) continue;
-    const auto &p = each.transform.translation;
-    const auto &q = each.transform.rotation;
+    const auto& p = each.transform.translation;
+    const auto& q = each.transform.rotation;
     scene_["base"] = {{"link", kBase}, {"place", {p.x, p.y, p.z}}, {"turn", {q.x, q.y, q.z, q.w}}};
     publishScene();
   }

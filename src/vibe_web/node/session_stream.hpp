@@ -20,8 +20,8 @@
 
 namespace vibe::web {
 
-/// Follows the topics of a simulator, or of vibe_player, and gives a server what pages show of them. While no page looks
-/// it reads the small topics only.
+/// Follows the topics of a simulator, or of vibe_player, and gives a server what pages show of them. While no page
+/// looks it reads the small topics only.
 class SessionStream {
  public:
   SessionStream(ros::NodeHandle& handle, WebServer& server, const std::string& description);

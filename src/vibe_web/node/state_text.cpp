@@ -27,8 +27,9 @@ json measureText(const rviz_plugins::ShownMeasure& measure, const rviz_plugins::
 }
 
 json setText(const rviz_plugins::SutureRow& row) {
-  return {{"set", row.set},     {"bites", row.bites},     {"technique", row.technique}, {"stage", row.stage},
-          {"tension", row.tension}, {"warns", row.warns}, {"help", row.help}};
+  return {{"set", row.set},     {"bites", row.bites},     {"technique", row.technique},
+          {"stage", row.stage}, {"tension", row.tension}, {"warns", row.warns},
+          {"help", row.help}};
 }
 
 /// Texts of messages may hold any bytes.
@@ -55,7 +56,9 @@ std::string stateText(const vibe_msgs::ProcedureState& state, const vibe_msgs::S
                {"cinched", state.sutures_cinched},
                {"bleeding", state.bleeding},
                {"blood", state.blood_lost},
-               {"needle", !state.needle_loaded ? "none" : state.needle_on_arm ? "on the arm" : "in the exchange"},
+               {"needle", !state.needle_loaded  ? "none"
+                          : state.needle_on_arm ? "on the arm"
+                                                : "in the exchange"},
                {"measures", json::array()},
                {"sets", json::array()}};
   if (skill != nullptr)
@@ -90,7 +93,10 @@ void EventList::add(const vibe_msgs::ProcedureEvent& event) {
 std::string EventList::text() const {
   json list = json::array();
   for (const Entry& entry : entries_)
-    list.push_back({{"number", entry.number}, {"time", entry.time}, {"kind", entry.kind}, {"severity", entry.severity},
+    list.push_back({{"number", entry.number},
+                    {"time", entry.time},
+                    {"kind", entry.kind},
+                    {"severity", entry.severity},
                     {"text", entry.text}});
   return dumped(list);
 }

@@ -46,7 +46,8 @@ void run(const web::ServerOptions& options) {
     drive.tick(server);
     if (++ticks % 10 == 0) stream.tick();
   });
-  while (ros::ok() && vibe::node::stopSignal() == 0) ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.1));
+  while (ros::ok() && vibe::node::stopSignal() == 0)
+    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.1));
   drive.goodbye();
 }
 

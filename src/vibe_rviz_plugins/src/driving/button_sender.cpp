@@ -3,12 +3,11 @@
 #include <ros/this_node.h>
 #include <vibe_msgs/StepInput.h>
 
-
 namespace vibe::rviz_plugins {
 namespace {
 
 constexpr std::uint32_t kButtonQueue = 100;
-constexpr double kTaking = 1;     // a paused simulator publishes no input [s]
+constexpr double kTaking = 1;         // a paused simulator publishes no input [s]
 constexpr double kLastMessage = 0.5;  // [s]
 
 }  // namespace

@@ -15,8 +15,8 @@
 #include <QTimer>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "overlay/legend.hpp"
 #include "messages/session_watch.hpp"
+#include "overlay/legend.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {

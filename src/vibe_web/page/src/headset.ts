@@ -144,7 +144,9 @@ export class Headset {
     stage.body.position.copy(stage.organ.centre).negate(); // the model stands where its middle is
     this.readHands(seconds);
     stage.renderer.info.reset();
+    this.model.visible = true; // the endoscope is in it
     stage.drawEndoscope();
+    this.model.visible = !this.around.visible;
     if (stage.endoscope && this.monitor.material.map !== stage.endoscope.target.texture) {
       this.monitor.material.map = stage.endoscope.target.texture;
       this.monitor.material.needsUpdate = true;
@@ -200,6 +202,6 @@ export class Headset {
   /** The picture on the monitor, or all around the eyes. */
   toggleAround() {
     this.around.visible = !this.around.visible;
-    this.monitor.visible = this.model.visible = !this.around.visible;
+    this.monitor.visible = !this.around.visible;
   }
 }

@@ -3,6 +3,7 @@
 
 import { readFileSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
+import { fileURLToPath } from 'node:url';
 import puppeteer from 'puppeteer-core';
 import { check, expect, until, wait } from './checks.mjs';
 
@@ -126,7 +127,7 @@ await check('a page that hangs lets go', async () => {
 });
 
 await check('a headset enters, drives with the handle and sees in stereo', async () => {
-  const iwer = readFileSync(find.resolve('iwer').replace(/[^/]*$/, 'iwer.min.js'), 'utf8');
+  const iwer = readFileSync(fileURLToPath(new URL('../node_modules/iwer/build/iwer.min.js', import.meta.url)), 'utf8');
   page = await openPage(async (fresh) => {
     await fresh.evaluateOnNewDocument(iwer);
     await fresh.evaluateOnNewDocument(() => {
@@ -161,8 +162,10 @@ await check('a headset enters, drives with the handle and sees in stereo', async
   await wait(2000);
   await save(page, 'around');
   const counts = await page.evaluate(() => window.vibe.stage.counts);
+  const seen = await levels(page);
   expect(moved > 0.005, `moved by ${moved} m`);
-  return { moved, counts };
+  expect(seen.mean > 50 && seen.deviation > 10, JSON.stringify(seen));
+  return { moved, counts, seen };
 });
 
 await check('nothing was wrong in the console at the end', async () => expect(errors.length === 0, errors.join('\n')));

@@ -8,11 +8,11 @@ namespace vibe::web {
 
 namespace {
 
-constexpr int kMaxRate = 60;                           // [Hz]
-constexpr double kSlowest = 0.01, kFastest = 100;      // as vibe_player
-constexpr double kLongest = 1e7;                       // of a recording [s]
-constexpr std::uint32_t kLastKey = 0x01ffffff;         // of Qt::Key
-constexpr std::size_t kDriveHead = 28;                 // [bytes]
+constexpr int kMaxRate = 60;                       // [Hz]
+constexpr double kSlowest = 0.01, kFastest = 100;  // as vibe_player
+constexpr double kLongest = 1e7;                   // of a recording [s]
+constexpr std::uint32_t kLastKey = 0x01ffffff;     // of Qt::Key
+constexpr std::size_t kDriveHead = 28;             // [bytes]
 
 template <class T>
 T at(const std::uint8_t* bytes, std::size_t place) {

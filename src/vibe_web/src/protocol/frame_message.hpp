@@ -9,11 +9,11 @@ namespace vibe::web {
 
 /// The organ and the tool at one moment.
 struct FrameContent {
-  std::uint32_t revision = 0;    ///< of the topology
-  double time = 0;               ///< of the sample [s]
-  float smoke = 0;               ///< its extinction [1/m]
-  std::array<float, 6> wrench{}; ///< of the tissue on the tool, in scope_tip [N], [N m]
-  std::vector<float> joints;     ///< in the order of the scene's list, at most 255 [m], [rad]
+  std::uint32_t revision = 0;     ///< of the topology
+  double time = 0;                ///< of the sample [s]
+  float smoke = 0;                ///< its extinction [1/m]
+  std::array<float, 6> wrench{};  ///< of the tissue on the tool, in scope_tip [N], [N m]
+  std::vector<float> joints;      ///< in the order of the scene's list, at most 255 [m], [rad]
 };
 
 /// Message Kind::Frame:

@@ -51,7 +51,8 @@ Bytes encodeSutures(const graphics::SutureDrawing& drawing) {
   for (const graphics::Wound& wound : drawing.wounds) {
     numbers.put(wound.place);
     numbers.put(wound.inward);
-    for (const double number : {wound.brisk ? 1.0 : 0.0, wound.rate / kMillilitre, wound.amount / kMillilitre, wound.age})
+    for (const double number :
+         {wound.brisk ? 1.0 : 0.0, wound.rate / kMillilitre, wound.amount / kMillilitre, wound.age})
       numbers.put(number);
   }
   return writer.take();

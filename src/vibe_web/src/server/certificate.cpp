@@ -42,12 +42,14 @@ Owned<std::FILE> newFile(const std::string& path, mode_t mode) {
 
 bool isNumeric(const std::string& name) {
   std::array<unsigned char, 16> address;
-  return ::inet_pton(AF_INET, name.c_str(), address.data()) == 1 || ::inet_pton(AF_INET6, name.c_str(), address.data()) == 1;
+  return ::inet_pton(AF_INET, name.c_str(), address.data()) == 1 ||
+         ::inet_pton(AF_INET6, name.c_str(), address.data()) == 1;
 }
 
 std::string alternativeNames(const std::vector<std::string>& names) {
   std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ",") + std::string(isNumeric(name) ? "IP:" : "DNS:") + name;
+  for (const std::string& name : names)
+    list += (list.empty() ? "" : ",") + std::string(isNumeric(name) ? "IP:" : "DNS:") + name;
   return list;
 }
 
@@ -55,21 +57,25 @@ void addExtension(X509* certificate, int kind, const std::string& value) {
   X509V3_CTX context;
   X509V3_set_ctx_nodb(&context);
   X509V3_set_ctx(&context, certificate, certificate, nullptr, nullptr, 0);
-  const Owned<X509_EXTENSION> extension(X509V3_EXT_conf_nid(nullptr, &context, kind, value.c_str()), X509_EXTENSION_free);
-  if (!extension || X509_add_ext(certificate, extension.get(), -1) != 1) fail("OpenSSL takes no names into a certificate");
+  const Owned<X509_EXTENSION> extension(X509V3_EXT_conf_nid(nullptr, &context, kind, value.c_str()),
+                                        X509_EXTENSION_free);
+  if (!extension || X509_add_ext(certificate, extension.get(), -1) != 1)
+    fail("OpenSSL takes no names into a certificate");
 }
 
 Owned<X509> signedBy(EVP_PKEY* key, const std::vector<std::string>& names) {
   Owned<X509> certificate(X509_new(), X509_free);
   std::uint64_t serial = 1;
-  if (RAND_bytes(reinterpret_cast<unsigned char*>(&serial), sizeof serial) != 1) fail("The system gives no random numbers");
+  if (RAND_bytes(reinterpret_cast<unsigned char*>(&serial), sizeof serial) != 1)
+    fail("The system gives no random numbers");
   X509_set_version(certificate.get(), 2);
   ASN1_INTEGER_set_uint64(X509_get_serialNumber(certificate.get()), serial >> 1);
   X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -60);
   X509_gmtime_adj(X509_getm_notAfter(certificate.get()), kLife);
   X509_set_pubkey(certificate.get(), key);
   X509_NAME* name = X509_get_subject_name(certificate.get());
-  X509_NAME_add_entry_by_txt(name, "CN", MBSTRING_ASC, reinterpret_cast<const unsigned char*>("ViBE for ROS"), -1, -1, 0);
+  X509_NAME_add_entry_by_txt(name, "CN", MBSTRING_ASC, reinterpret_cast<const unsigned char*>("ViBE for ROS"), -1, -1,
+                             0);
   X509_set_issuer_name(certificate.get(), name);
   addExtension(certificate.get(), NID_subject_alt_name, alternativeNames(names));
   addExtension(certificate.get(), NID_basic_constraints, "critical,CA:FALSE");
@@ -89,7 +95,8 @@ CertificateFiles provideCertificate(const std::string& folder, const std::vector
   if (!key) fail("OpenSSL makes no key");
   const Owned<X509> certificate = signedBy(key.get(), names);
   const Owned<std::FILE> secret = newFile(files.key, 0600);
-  if (PEM_write_PrivateKey(secret.get(), key.get(), nullptr, nullptr, 0, nullptr, nullptr) != 1) fail("The key cannot be written");
+  if (PEM_write_PrivateKey(secret.get(), key.get(), nullptr, nullptr, 0, nullptr, nullptr) != 1)
+    fail("The key cannot be written");
   const Owned<std::FILE> open = newFile(files.certificate, 0644);
   if (PEM_write_X509(open.get(), certificate.get()) != 1) fail("The certificate cannot be written");
   return files;
@@ -101,10 +108,12 @@ std::vector<std::string> networkAddresses() {
   if (::getifaddrs(&all) != 0) return addresses;
   const Owned<ifaddrs> owned(all, ::freeifaddrs);
   for (const ifaddrs* each = all; each != nullptr; each = each->ifa_next) {
-    if (each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET || (each->ifa_flags & IFF_LOOPBACK) != 0) continue;
+    if (each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET || (each->ifa_flags & IFF_LOOPBACK) != 0)
+      continue;
     std::array<char, INET_ADDRSTRLEN> text;
     const auto* address = reinterpret_cast<const sockaddr_in*>(each->ifa_addr);
-    if (::inet_ntop(AF_INET, &address->sin_addr, text.data(), text.size()) != nullptr) addresses.emplace_back(text.data());
+    if (::inet_ntop(AF_INET, &address->sin_addr, text.data(), text.size()) != nullptr)
+      addresses.emplace_back(text.data());
   }
   return addresses;
 }

@@ -11,7 +11,8 @@ struct CertificateFiles {
 };
 
 /// A certificate that nobody but this server signs, made in the folder if it is not there: browsers warn of it once and
-/// then speak TLS, without which they offer no virtual reality. P-256, ten years; the key is readable by its owner only.
+/// then speak TLS, without which they offer no virtual reality. P-256, ten years; the key is readable by its owner
+/// only.
 /// @param names  host names and numeric addresses under which the server is reached
 /// @throws std::runtime_error  the folder cannot be written, or OpenSSL fails
 CertificateFiles provideCertificate(const std::string& folder, const std::vector<std::string>& names);

@@ -115,8 +115,9 @@ class Client : public std::enable_shared_from_this<Client<Stream>> {
   /// @return whether the client may stay
   bool take() {
     const asio::const_buffer bytes = buffer_.cdata();
-    const auto command =
-        socket_.got_binary() ? decodeCommand(static_cast<const std::uint8_t*>(bytes.data()), bytes.size()) : std::nullopt;
+    const auto command = socket_.got_binary()
+                             ? decodeCommand(static_cast<const std::uint8_t*>(bytes.data()), bytes.size())
+                             : std::nullopt;
     buffer_.consume(bytes.size());
     if (!command || !allowance_.spend()) {
       close(command ? websocket::close_code::policy_error : websocket::close_code::bad_payload);

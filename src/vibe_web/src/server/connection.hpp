@@ -10,8 +10,8 @@
 
 namespace vibe::web {
 
-constexpr std::uint32_t kMaxHeader = 8192;    ///< [bytes]
-constexpr int kSendBuffer = 128 * 1024;       ///< of the system: what lies there is not replaced [bytes]
+constexpr std::uint32_t kMaxHeader = 8192;  ///< [bytes]
+constexpr int kSendBuffer = 128 * 1024;     ///< of the system: what lies there is not replaced [bytes]
 constexpr const char* kStreamPath = "/stream";
 
 inline std::string textOf(beast::string_view view) {
@@ -76,7 +76,8 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     if (file.content || path != "/") return file;
     file.type = "text/plain; charset=utf-8";
     file.content = std::make_shared<const std::string>(
-        "The page has not been built: install nodejs and npm, and run scripts/build again. The stream works without it.\n");
+        "The page has not been built: install nodejs and npm, and run scripts/build again. The stream works without "
+        "it.\n");
     return file;
   }
 
@@ -106,9 +107,10 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     response->set("X-Content-Type-Options", "nosniff");
     response->set("Referrer-Policy", "no-referrer");
     response->set(http::field::cache_control, "no-cache");
-    response->set("Content-Security-Policy",
-                  "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; connect-src 'self' "
-                  "ws: wss:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'");
+    response->set(
+        "Content-Security-Policy",
+        "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; connect-src 'self' "
+        "ws: wss:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'");
     if (file.gzipped) response->set(http::field::content_encoding, "gzip");
     if (request.method() != http::verb::head)
       response->body() = beast::span<const char>(file.content->data(), file.content->size());

@@ -12,7 +12,9 @@ namespace vibe::web {
 namespace {
 
 bool isPlain(const std::string& path) {
-  const auto allowed = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.' || c == '/'; };
+  const auto allowed = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.' || c == '/';
+  };
   return !path.empty() && path[0] == '/' && path.find("/.") == std::string::npos &&
          path.find("//") == std::string::npos && std::all_of(path.begin(), path.end(), allowed);
 }
@@ -26,13 +28,14 @@ std::shared_ptr<const std::string> contentOf(const std::string& file) {
 }  // namespace
 
 std::string mediaType(const std::string& path) {
-  static const std::array<std::pair<const char*, const char*>, 7> types{{{".html", "text/html; charset=utf-8"},
-                                                                         {".js", "text/javascript; charset=utf-8"},
-                                                                         {".css", "text/css; charset=utf-8"},
-                                                                         {".svg", "image/svg+xml"},
-                                                                         {".png", "image/png"},
-                                                                         {".json", "application/json"},
-                                                                         {".webmanifest", "application/manifest+json"}}};
+  static const std::array<std::pair<const char*, const char*>, 7> types{
+      {{".html", "text/html; charset=utf-8"},
+       {".js", "text/javascript; charset=utf-8"},
+       {".css", "text/css; charset=utf-8"},
+       {".svg", "image/svg+xml"},
+       {".png", "image/png"},
+       {".json", "application/json"},
+       {".webmanifest", "application/manifest+json"}}};
   for (const auto& [ending, type] : types) {
     const std::string end(ending);
     if (path.size() > end.size() && path.compare(path.size() - end.size(), end.size(), end) == 0) return type;

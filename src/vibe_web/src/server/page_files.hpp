@@ -13,7 +13,8 @@ struct PageFile {
 };
 
 /// The file of a page that a path asks for: "/" is index.html. Beside a file may stand FILE.gz, which is preferred.
-/// Only plain names below the folder are answered: letters, digits, - _ . and /, and no part of a name begins with a dot.
+/// Only plain names below the folder are answered: letters, digits, - _ . and /, and no part of a name begins with a
+/// dot.
 /// @param folder     of the page
 /// @param path       of the request, without its query
 /// @param take_gzip  whether the client can unpack

@@ -17,7 +17,8 @@ T at(const Bytes& bytes, std::size_t place) {
 
 TEST(FrameMessage, PlacesAreWithinHalfAStepOfTheBox) {
   std::vector<float> positions;
-  for (int i = 0; i < 3 * 3618; ++i) positions.push_back(0.33F * static_cast<float>(std::sin(i * 0.7)) / (1 + static_cast<float>(i % 3)));
+  for (int i = 0; i < 3 * 3618; ++i)
+    positions.push_back(0.33F * static_cast<float>(std::sin(i * 0.7)) / (1 + static_cast<float>(i % 3)));
   FrameContent content;
   content.revision = 3;
   content.time = 12.5;

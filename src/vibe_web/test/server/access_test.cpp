@@ -14,7 +14,8 @@ TEST(Access, OfThisMachineNeedsNoTokenButItsName) {
     EXPECT_EQ(streamRefusal(kLocal, {host, "", "/stream"}), "") << host;
     EXPECT_EQ(streamRefusal(kLocal, {host, "http://" + std::string(host), "/stream"}), "") << host;
   }
-  for (const char* host : {"", "evil.example", "127.0.0.1.evil.example:8890", "localhost.evil.example", "192.168.1.5:8890"})
+  for (const char* host :
+       {"", "evil.example", "127.0.0.1.evil.example:8890", "localhost.evil.example", "192.168.1.5:8890"})
     EXPECT_NE(streamRefusal(kLocal, {host, "", "/stream"}), "") << host;
 }
 
@@ -27,11 +28,13 @@ TEST(Access, OfPagesOfOtherServersIsRefused) {
 }
 
 TEST(Access, OfTheNetworkNeedsTheToken) {
-  const auto refusal = [](const std::string& query) { return streamRefusal(kLan, {"lab:8890", "", "/stream" + query}); };
+  const auto refusal = [](const std::string& query) {
+    return streamRefusal(kLan, {"lab:8890", "", "/stream" + query});
+  };
   EXPECT_EQ(refusal("?token=" + kLan.token), "");
   EXPECT_EQ(refusal("?rate=3&token=" + kLan.token), "");
-  for (const std::string query : {"", "?token=", "?token=0123456789abcdee", "?token=0123456789abcdef0", "?xtoken=0123456789abcdef",
-                                  "?token=0123456789abcde"})
+  for (const std::string query : {"", "?token=", "?token=0123456789abcdee", "?token=0123456789abcdef0",
+                                  "?xtoken=0123456789abcdef", "?token=0123456789abcde"})
     EXPECT_NE(refusal(query), "") << query;
 }
 
@@ -43,8 +46,8 @@ TEST(Access, TokensDiffer) {
 TEST(PageFiles, NothingOutsideOfTheFolderIsServed) {
   const std::string folder = ".";  // of the tests
   EXPECT_TRUE(readPageFile(folder, "/server/access_test.cpp", false).content);
-  for (const char* path : {"/../CMakeLists.txt", "/server/../../CMakeLists.txt", "//etc/passwd", "/server/", "server/access_test.cpp",
-                           "/%2e%2e/CMakeLists.txt", "/.hidden", "/none.js", ""})
+  for (const char* path : {"/../CMakeLists.txt", "/server/../../CMakeLists.txt", "//etc/passwd", "/server/",
+                           "server/access_test.cpp", "/%2e%2e/CMakeLists.txt", "/.hidden", "/none.js", ""})
     EXPECT_FALSE(readPageFile(folder, path, false).content) << path;
 }
 

@@ -18,10 +18,10 @@ struct DriveView {
   FirstStep step;        ///< the next thing to do; without a simulator number 0
   std::set<int> keys_down;
   DriveGear gear = DriveGear::Normal;
-  Joints joints{};                             ///< NaN: unknown
+  Joints joints{};  ///< NaN: unknown
   JointLimits limits{};
-  std::array<bool, 6> buttons{};               ///< in the order of scope/buttons
-  double force = 0;                            ///< of the tissue on the tool [N]; NaN: unknown
+  std::array<bool, 6> buttons{};              ///< in the order of scope/buttons
+  double force = 0;                           ///< of the tissue on the tool [N]; NaN: unknown
   vibe_msgs::ProcedureState::ConstPtr state;  ///< null: not come yet
 };
 
