@@ -6,6 +6,7 @@
 #include <ros/package.h>
 #include <urdf/model.h>
 
+#include "mesh_capsules.hpp"
 #include "operator/operator_seat.hpp"
 #include "vibe_graphics/geometry/endoscope_optics.hpp"
 #include "vibe_graphics/geometry/mucosa_map.hpp"
@@ -66,6 +67,13 @@ void addMaterials(const std::string& file, std::map<std::string, std::string>& m
   }
 }
 
+json capsuleText(const std::string& file) {
+  json text = json::array();
+  for (const graphics::Capsule& c : meshCapsules(file))
+    text.push_back({c.from.x(), c.from.y(), c.from.z(), c.to.x(), c.to.y(), c.to.z(), c.radius});
+  return text;
+}
+
 void addMesh(const std::string& address, json& visual, RobotText& robot) {
   const std::string file = fileOf(address), name = file.substr(file.rfind('/') + 1);
   const bool known = name.size() > 4 && name.substr(name.size() - 4) == ".obj" && std::ifstream(file).good();
@@ -78,6 +86,7 @@ void addMesh(const std::string& address, json& visual, RobotText& robot) {
   const std::string path = "/mesh/" + name;
   visual["mesh"] = path;
   robot.meshes[path] = file;
+  visual["capsules"] = capsuleText(file);
   addMaterials(file, robot.meshes);
 }
 

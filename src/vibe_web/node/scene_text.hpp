@@ -19,7 +19,8 @@ struct RobotText {
 ///   links: {name, parent, joint, type, place [x y z], turn [x y z w], axis, and mimic {joint, factor, offset} where a
 ///   joint follows another one};
 ///   visuals: {link, place, turn, scale, colour [r g b], and one of mesh (path), sphere [radius],
-///   cylinder [radius, length], box [x y z]}.
+///   cylinder [radius, length], box [x y z]; of a mesh also capsules [x y z, x y z, radius], which
+///   cast its shadow}.
 /// Meshes are Wavefront OBJ, with their material files beside them.
 /// @throws std::runtime_error  it cannot be read
 RobotText readRobot(const std::string& description);

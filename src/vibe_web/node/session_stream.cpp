@@ -7,10 +7,14 @@
 #include <vibe_msgs/ReplayStatus.h>
 
 #include "protocol/byte_writer.hpp"
+#include "protocol/shape_message.hpp"
 #include "protocol/suture_stream.hpp"
 #include "protocol/topology_message.hpp"
+#include "vibe_graphics/geometry/blood_shapes.hpp"
+#include "vibe_graphics/geometry/deformable_surface.hpp"
 #include "vibe_graphics/geometry/mucosa_map.hpp"
 #include "vibe_graphics/geometry/mucosa_pattern.hpp"
+#include "vibe_graphics/geometry/suture_shapes.hpp"
 #include "vibe_graphics/messages/suture_messages.hpp"
 #include "vibe_graphics/messages/tissue_messages.hpp"
 
@@ -43,7 +47,11 @@ struct SessionStream::Organ {
   graphics::TissueMesh mesh;
   graphics::MucosaMap map;
   WallLook look;
-  explicit Organ(graphics::TissueMesh read) : mesh(std::move(read)), map(graphics::mapMucosa(mesh)), look(mesh, map) {}
+  graphics::DeformableSurface surface;  // on which blood lies
+  graphics::BleedingShape bleeding;
+  explicit Organ(graphics::TissueMesh read) : mesh(std::move(read)), map(graphics::mapMucosa(mesh)), look(mesh, map), surface(mesh) {
+    bleeding.setMesh(&mesh);
+  }
 };
 
 SessionStream::~SessionStream() = default;
@@ -143,15 +151,7 @@ void SessionStream::takeSutures(const vibe_msgs::SutureArray::ConstPtr& message)
 
 void SessionStream::tick() {
   ++ticks_;
-  if (sutures_changed_ && sutures_) {
-    graphics::SutureDrawing drawing;
-    const std::string wrong = graphics::readSutures(*sutures_, drawing);
-    if (wrong.empty())
-      server_.publish(Kind::Sutures, encodeSutures(drawing));
-    else
-      complain(wrong);
-    sutures_changed_ = false;
-  }
+  if (sutures_changed_) publishSutures();
   if (events_changed_) server_.publish(Kind::Events, textMessage(Kind::Events, events_.text()));
   events_changed_ = false;
   if (ticks_ % kSlowTicks != 0) return;
@@ -163,10 +163,26 @@ void SessionStream::tick() {
   server_.publish(Kind::State, textMessage(Kind::State, state_text_));
 }
 
+void SessionStream::publishSutures() {
+  sutures_changed_ = false;
+  graphics::SutureDrawing drawing;
+  const std::string wrong = graphics::readSutures(*sutures_, drawing);
+  if (!wrong.empty()) return complain(wrong);
+  server_.publish(Kind::Sutures, encodeSutures(drawing));
+  graphics::ColouredShape threads;
+  graphics::appendSutures(drawing, graphics::naturalSutures(), threads);
+  server_.publish(Kind::Threads, encodeShape(Kind::Threads, threads));
+  if (organ_) organ_->bleeding.setWounds(drawing, {});
+}
+
 void SessionStream::publishWall() {
   if (!organ_ || !has_frame_ || server_.clients() == 0) return;
   if (auto folds = organ_->look.folds(frame_)) server_.publish(Kind::Folds, std::move(*folds));
   if (auto heat = organ_->look.heat(frame_)) server_.publish(Kind::Heat, std::move(*heat));
+  if (!sutures_ || (sutures_->bleedings.empty() && organ_->bleeding.shape().triangles.empty())) return;
+  organ_->surface.update(frame_.positions);
+  if (organ_->bleeding.update(&organ_->surface.vertices(), Eigen::Isometry3d::Identity()))
+    server_.publish(Kind::Blood, encodeShape(Kind::Blood, organ_->bleeding.shape()));
 }
 
 void SessionStream::complain(const std::string& sentence) {

@@ -38,6 +38,7 @@ class SessionStream {
   void takeSutures(const vibe_msgs::SutureArray::ConstPtr& message);
   void provideFiles(const RobotText& robot);
   void publishScene();
+  void publishSutures();
   void publishWall();
   void complain(const std::string& sentence);
 

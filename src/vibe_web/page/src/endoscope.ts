@@ -7,6 +7,7 @@ import {
 import { AutoExposure } from './exposure';
 import type { Lens, Source } from './messages';
 import { kEndoscopeLayer } from './organ';
+import { castShadow, type Capsule } from './shadow';
 import { materialOf } from './shaders';
 
 const kMeter = 32; // edge of the picture that measures the level [px]
@@ -62,18 +63,17 @@ export class EndoscopeView {
   }
 
   /** Draws into `target` what the lens at this frame (z ahead, x right, y down) sees at this time [s]. */
-  draw(scene: Scene, frame: Object3D, time: number) {
+  draw(scene: Scene, frame: Object3D, capsules: Capsule[], time: number) {
     const { renderer, camera } = this;
     const wasXr = renderer.xr.enabled;
     renderer.xr.enabled = false;
     frame.updateWorldMatrix(true, false);
     frame.matrixWorld.decompose(camera.position, camera.quaternion, camera.scale);
-    const scale = camera.scale.x;
-    camera.scale.setScalar(1);
     camera.rotateX(Math.PI);
-    camera.near = 0.0005 * scale;
-    camera.far = 2 * scale;
+    camera.updateMatrixWorld();
     scene.updateMatrixWorld();
+    const { capsules: numbers, capsule_count: count } = this.mucosa.uniforms;
+    count.value = castShadow(capsules, camera, numbers.value);
     this.drawPlane(scene, this.whole, this.lens.whole.half_width);
     if (this.lens.middle.size > 0) this.drawPlane(scene, this.middle, this.lens.middle.half_width);
     do {

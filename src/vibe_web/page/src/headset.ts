@@ -110,7 +110,6 @@ export class Headset {
     this.room.visible = true;
     this.model.add(this.stage.body);
     this.model.rotation.set(-Math.PI / 2, 0, -Math.PI / 2); // z of the simulator is up, and its front faces the viewer
-    this.model.scale.setScalar(kModelScale);
     this.last = performance.now();
   }
 
@@ -144,8 +143,10 @@ export class Headset {
     stage.body.position.copy(stage.organ.centre).negate(); // the model stands where its middle is
     this.readHands(seconds);
     stage.renderer.info.reset();
-    this.model.visible = true; // the endoscope is in it
+    this.model.visible = true; // the endoscope is in it, and its light falls off with true distances
+    this.model.scale.setScalar(1);
     stage.drawEndoscope();
+    this.model.scale.setScalar(kModelScale);
     this.model.visible = !this.around.visible;
     if (stage.endoscope && this.monitor.material.map !== stage.endoscope.target.texture) {
       this.monitor.material.map = stage.endoscope.target.texture;

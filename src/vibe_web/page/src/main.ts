@@ -3,7 +3,7 @@
 import { savePicture, VideoRecorder } from './capture';
 import { Drive } from './drive';
 import { Headset } from './headset';
-import { Kind, readFrame, readSutures, readText, readTopology, type Frame, type SceneText } from './messages';
+import { Kind, readFrame, readShape, readSutures, readText, readTopology, type Frame, type SceneText } from './messages';
 import { element, Panel } from './panel';
 import { Stage } from './stage';
 import { Stream } from './stream';
@@ -50,6 +50,8 @@ stream.on(Kind.Frame, (bytes) => {
 stream.on(Kind.Folds, (bytes) => stage.organ.setFolds(bytes, scene?.tallest_fold ?? 0));
 stream.on(Kind.Heat, (bytes) => stage.organ.setHeat(bytes));
 stream.on(Kind.Sutures, (bytes) => stage.sutures.set(readSutures(bytes)));
+stream.on(Kind.Threads, (bytes) => stage.sutures.setThreads(readShape(bytes)));
+stream.on(Kind.Blood, (bytes) => stage.sutures.setBlood(readShape(bytes)));
 
 drive.onChange = () => panel.showDriving();
 element('swap').onclick = () => {

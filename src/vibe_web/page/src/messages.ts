@@ -1,7 +1,7 @@
 // What the server sends: the layouts are in src/vibe_web/src/protocol of the sources.
 
 export enum Kind {
-  Scene = 1, Topology, Frame, Folds, Heat, Sutures, State, Events, Replay, Operator, Pong, Refusal, Grant,
+  Scene = 1, Topology, Frame, Folds, Heat, Sutures, State, Events, Replay, Operator, Pong, Refusal, Grant, Blood, Threads,
 }
 
 export interface Topology {
@@ -87,6 +87,16 @@ export function readSutures(bytes: ArrayBuffer): Sutures {
   };
 }
 
+export interface Shape { places: Float32Array; triangles: Uint32Array; colours: Uint8Array; normals: Int8Array }
+
+export function readShape(bytes: ArrayBuffer): Shape {
+  const [vertices, triangles] = new Uint32Array(bytes, 4, 2), colours = 12 + 12 * (vertices + triangles);
+  return {
+    places: new Float32Array(bytes, 12, 3 * vertices), triangles: new Uint32Array(bytes, 12 + 12 * vertices, 3 * triangles),
+    colours: new Uint8Array(bytes, colours, 4 * vertices), normals: new Int8Array(bytes, colours + 4 * vertices, 4 * vertices),
+  };
+}
+
 // --- texts
 
 export interface Link {
@@ -95,7 +105,7 @@ export interface Link {
 }
 export interface Visual {
   link: string; place: number[]; turn: number[]; scale: number[]; colour: number[];
-  mesh?: string; sphere?: number[]; cylinder?: number[]; box?: number[];
+  mesh?: string; capsules?: number[][]; sphere?: number[]; cylinder?: number[]; box?: number[];
 }
 export interface Source { half_width: number; size: number }
 export interface Lens {

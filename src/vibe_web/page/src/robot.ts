@@ -1,7 +1,7 @@
 // The endoscope with its suturing device: the tree of its joints, and its parts.
 
 import {
-  BoxGeometry, Color, CylinderGeometry, FrontSide, Group, Mesh, MeshPhongMaterial, Quaternion, SphereGeometry, Vector3,
+  BoxGeometry, Color, CylinderGeometry, FrontSide, Group, Matrix4, Mesh, MeshPhongMaterial, Quaternion, SphereGeometry, Vector3,
   type BufferGeometry, type Object3D,
 } from 'three';
 import { MTLLoader } from 'three/addons/loaders/MTLLoader.js';
@@ -9,6 +9,7 @@ import { OBJLoader } from 'three/addons/loaders/OBJLoader.js';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import type { Link, SceneText, Visual } from './messages';
 import { kEndoscopeLayer, kPlainLayer } from './organ';
+import type { Capsule } from './shadow';
 import { kReach, materialOf, smoke } from './shaders';
 
 const kColour = new Color(0.6, 0.6, 0.62), kShine = 0.5, kSharpness = 40;
@@ -24,6 +25,7 @@ function bodyOf(visual: Visual): BufferGeometry | null {
 
 export class Robot {
   readonly root = new Group();
+  capsules: Capsule[] = []; // that cast shadows
   private frames = new Map<string, Object3D>();
   private moving: { link: Link; frame: Object3D; place: Vector3; turn: Quaternion; axis: Vector3 }[] = [];
   private names: string[] = [];
@@ -47,6 +49,7 @@ export class Robot {
       this.frame(base.link).position.fromArray(base.place);
       this.frame(base.link).quaternion.fromArray(base.turn as [number, number, number, number]);
     }
+    this.capsules = scene.robot.visuals.flatMap((visual) => this.capsulesOf(visual));
     void this.addVisuals(scene.robot.visuals);
   }
 
@@ -131,6 +134,13 @@ export class Robot {
     }));
     lit.layers.set(kEndoscopeLayer);
     frame.add(plain, lit);
+  }
+
+  private capsulesOf({ link, place, turn, scale, capsules }: Visual): Capsule[] {
+    const pose = new Matrix4().compose(new Vector3(...place), new Quaternion(...turn), new Vector3(...scale));
+    return (capsules ?? []).map(([ax, ay, az, bx, by, bz, radius]) => ({
+      frame: this.frame(link), from: new Vector3(ax, ay, az).applyMatrix4(pose), to: new Vector3(bx, by, bz).applyMatrix4(pose), radius: radius * scale[0],
+    }));
   }
 
   private partsOf(visual: Visual): Promise<Part[]> {

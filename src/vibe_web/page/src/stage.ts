@@ -132,7 +132,7 @@ export class Stage {
   drawEndoscope() {
     if (!this.endoscope || !this.robot.has(kLensFrame) || this.drawnTime === this.time) return;
     const begin = performance.now();
-    this.endoscope.draw(this.scene, this.robot.frame(kLensFrame), this.time);
+    this.endoscope.draw(this.scene, this.robot.frame(kLensFrame), this.robot.capsules, this.time);
     this.drawnTime = this.time;
     this.slow = 0.8 * this.slow + 0.2 * (performance.now() - begin);
     const next = kSizes[kSizes.indexOf(this.size) + 1];

@@ -1,15 +1,16 @@
-// Threads, T-tags, cinches, bites and bleeding. Sizes are those of vibe_graphics/geometry/suture_shapes.hpp.
+// Threads, T-tags, cinches, bites and bleeding: from outside drawn here, with the tension of threads as their colour; as
+// the endoscope sees them, the shapes of vibe_graphics, which the server sends.
 
 import { BufferAttribute, BufferGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial, Vector3 } from 'three';
 import { CylinderGeometry, SphereGeometry, type Material } from 'three';
-import type { Sutures } from './messages';
+import type { Shape as SentShape, Sutures } from './messages';
 import { kEndoscopeLayer, kPlainLayer } from './organ';
 import { kReach, materialOf, smoke } from './shaders';
 
 const kThread = 0.16e-3; // radius of 2-0 polypropylene [m]
 const kEmphasis = 3; // of the view from outside, as in vibe.rviz
 const kSides = 6;
-const kNatural = [0.12, 0.3, 0.85, 1], kSteel = [0.72, 0.72, 0.74, 0.5], kPolymer = [0.85, 0.86, 0.88, 1];
+const kSteel = [0.72, 0.72, 0.74, 0.5], kPolymer = [0.85, 0.86, 0.88, 1];
 const kStrong = 8; // tension at the end of the colours [N]
 
 /** From blue (slack) over yellow to red. */
@@ -60,18 +61,13 @@ class Shape {
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(new Float32Array(this.positions), 3));
     geometry.setAttribute('normal', new BufferAttribute(new Float32Array(this.normals), 3));
-    const colours = new Float32Array(this.colours);
-    geometry.setAttribute('vertex_colour', new BufferAttribute(colours, 4));
-    geometry.setAttribute('color', new BufferAttribute(colours, 4));
-    geometry.setAttribute('texcoord0', new BufferAttribute(new Float32Array(this.positions.length), 3));
+    geometry.setAttribute('color', new BufferAttribute(new Float32Array(this.colours), 4));
     geometry.setIndex(this.triangles);
     return geometry;
   }
 }
 
-function bloodColour(amount: number, stopped: boolean): number[] {
-  return stopped ? [0.3, 0.12, 0.08, 0.8] : [Math.max(0.45, 0.75 - 0.05 * amount), 0.03, 0.03, 0.95];
-}
+const kFull = [0.1, 0.75, 0.3, 1], kPartial = [0.95, 0.55, 0.1, 1], kBleeding = [0.7, 0.03, 0.03, 1], kStopped = [0.3, 0.12, 0.08, 1];
 
 export class SutureView {
   readonly root = new Group();
@@ -93,39 +89,51 @@ export class SutureView {
   }
 
   set(sutures: Sutures) {
-    this.replace(this.plain, this.shapeOf(sutures, kEmphasis, (tension) => tensionColour(tension), true));
-    this.replace(this.natural, this.shapeOf(sutures, 1, () => kNatural, false));
-    const blood = new Shape();
-    for (const wound of sutures.wounds) blood.body(pool(wound.place, wound.amount), bloodColour(wound.amount, wound.rate <= 0));
-    this.replace(this.blood, blood);
+    replace(this.plain, this.shapeOf(sutures).geometry());
   }
 
-  private replace(mesh: Mesh, shape: Shape) {
-    mesh.geometry.dispose();
-    mesh.geometry = shape.geometry();
-    mesh.visible = mesh.geometry.index!.count > 0;
+  setThreads(shape: SentShape) {
+    replace(this.natural, geometryOf(shape));
   }
 
-  private shapeOf(sutures: Sutures, emphasis: number, colour: (tension: number) => number[], symbols: boolean): Shape {
+  setBlood(shape: SentShape) {
+    replace(this.blood, geometryOf(shape));
+  }
+
+  private shapeOf(sutures: Sutures): Shape {
     const shape = new Shape();
     for (const set of sutures.sets) {
       for (const { tension, points } of set.threads) {
         const line = Array.from({ length: points.length / 3 }, (_, k) => new Vector3().fromArray(points, 3 * k));
-        if (line.length > 1) shape.tube(line, kThread * emphasis, colour(tension));
+        if (line.length > 1) shape.tube(line, kThread * kEmphasis, tensionColour(tension));
       }
-      if (set.tTag) shape.body(new CylinderGeometry(0.45e-3, 0.45e-3, 6.5e-3, 10).translate(...(set.tTag as [number, number, number])), kSteel);
-      if (set.cinch) shape.body(new CylinderGeometry(0.95e-3, 1.3e-3, 6e-3, 12).translate(...(set.cinch as [number, number, number])), kPolymer);
-      if (symbols)
-        for (const bite of set.bites)
-          shape.body(new SphereGeometry(1.5e-3, 8, 6).translate(...(bite.place as [number, number, number])), bite.full ? [0.1, 0.75, 0.3, 1] : [0.95, 0.55, 0.1, 1]);
+      if (set.tTag) shape.body(at(new CylinderGeometry(0.45e-3, 0.45e-3, 6.5e-3, 10), set.tTag), kSteel);
+      if (set.cinch) shape.body(at(new CylinderGeometry(0.95e-3, 1.3e-3, 6e-3, 12), set.cinch), kPolymer);
+      for (const bite of set.bites) shape.body(at(new SphereGeometry(1.5e-3, 8, 6), bite.place), bite.full ? kFull : kPartial);
     }
-    if (symbols) for (const wound of sutures.wounds) shape.body(pool(wound.place, wound.amount), bloodColour(wound.amount, wound.rate <= 0));
+    for (const wound of sutures.wounds) shape.body(at(new SphereGeometry(woundRadius(wound.amount), 16, 10), wound.place), wound.rate > 0 ? kBleeding : kStopped);
     return shape;
   }
 }
 
-/** Simple: as much as is lost, in a flat ball around the wound. */
-function pool(place: number[], amount: number): BufferGeometry {
-  const radius = Math.min(0.02, 0.01 * Math.cbrt(0.3 * amount + 0.02));
-  return new SphereGeometry(radius, 16, 10).translate(...(place as [number, number, number]));
+const at = <T extends BufferGeometry>(body: T, place: number[]): T => body.translate(place[0], place[1], place[2]);
+
+/** Of a ball with a third of what is lost, so that it is seen from outside [m]. */
+const woundRadius = (millilitres: number) => Math.min(0.02, 0.01 * Math.cbrt(0.3 * millilitres + 0.02));
+
+function geometryOf({ places, triangles, colours, normals }: SentShape): BufferGeometry {
+  const geometry = new BufferGeometry(), unit = new Float32Array(places.length);
+  for (let v = 0; 3 * v < unit.length; v++) for (let k = 0; k < 3; k++) unit[3 * v + k] = normals[4 * v + k] / 127;
+  geometry.setAttribute('position', new BufferAttribute(places, 3));
+  geometry.setAttribute('normal', new BufferAttribute(unit, 3));
+  geometry.setAttribute('vertex_colour', new BufferAttribute(colours, 4, true));
+  geometry.setAttribute('texcoord0', new BufferAttribute(new Float32Array(places.length), 3));
+  geometry.setIndex(new BufferAttribute(triangles, 1));
+  return geometry;
+}
+
+function replace(mesh: Mesh, geometry: BufferGeometry) {
+  mesh.geometry.dispose();
+  mesh.geometry = geometry;
+  mesh.visible = geometry.index!.count > 0;
 }

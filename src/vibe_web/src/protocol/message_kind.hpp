@@ -19,12 +19,14 @@ enum class Kind : std::uint8_t {
   State = 7,      ///< text: phase, gas, counts, measures
   Events = 8,     ///< text: the last events with their numbers
   Replay = 9,     ///< text: where a recording stands
-  Operator = 10,  ///< text, to one client: who drives, and why not
+  Operator = 10,  ///< text: whether anybody drives, and why not
   Pong = 11,      ///< to one client: the eight bytes of its ping
   Refusal = 12,   ///< text, to one client: one sentence
-  Grant = 13      ///< text, to one client: it drives, and what its drive messages have to name
+  Grant = 13,    ///< text, to one client: it drives, and what its drive messages have to name
+  Blood = 14,    ///< shape_message.hpp
+  Threads = 15   ///< shape_message.hpp: thread, T-tags and cinches as the endoscope sees them
 };
-constexpr std::size_t kKinds = 14;  ///< one more than the largest number
+constexpr std::size_t kKinds = 16;  ///< one more than the largest number
 
 using Bytes = std::vector<std::uint8_t>;
 using SharedBytes = std::shared_ptr<const Bytes>;
