@@ -49,7 +49,8 @@ struct SessionStream::Organ {
   WallLook look;
   graphics::DeformableSurface surface;  // on which blood lies
   graphics::BleedingShape bleeding;
-  explicit Organ(graphics::TissueMesh read) : mesh(std::move(read)), map(graphics::mapMucosa(mesh)), look(mesh, map), surface(mesh) {
+  explicit Organ(graphics::TissueMesh read)
+      : mesh(std::move(read)), map(graphics::mapMucosa(mesh)), look(mesh, map), surface(mesh) {
     bleeding.setMesh(&mesh);
   }
 };

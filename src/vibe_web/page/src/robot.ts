@@ -1,7 +1,8 @@
 // The endoscope with its suturing device: the tree of its joints, and its parts.
 
 import {
-  BoxGeometry, Color, CylinderGeometry, FrontSide, Group, Matrix4, Mesh, MeshPhongMaterial, Quaternion, SphereGeometry, Vector3,
+  BoxGeometry, Color, CylinderGeometry, Float32BufferAttribute, FrontSide, Group, Matrix4, Mesh, MeshPhongMaterial, Quaternion, Skeleton,
+  SkinnedMesh, SphereGeometry, Uint16BufferAttribute, Vector3, type Bone,
   type BufferGeometry, type Object3D,
 } from 'three';
 import { MTLLoader } from 'three/addons/loaders/MTLLoader.js';
@@ -91,6 +92,7 @@ export class Robot {
 
   /** One mesh for each link and material, so that few are drawn. */
   private async addVisuals(visuals: Visual[]) {
+    const { known } = this;
     const parts = new Map<string, { frame: Object3D; material: MeshPhongMaterial; geometries: BufferGeometry[] }>();
     for (const visual of visuals)
       for (const { geometry, material } of await this.partsOf(visual)) {
@@ -105,7 +107,28 @@ export class Robot {
         part.geometries.push(geometry.clone().applyMatrix4(placed.matrix));
         parts.set(key, part);
       }
-    for (const { frame, material, geometries } of parts.values()) this.addPart(frame, mergeGeometries(geometries)!, material);
+    if (known !== this.known) return; // another robot has come meanwhile
+    const whole = [...parts.values()].map(({ frame, material, geometries }) => ({ frame, material, geometry: mergeGeometries(geometries)! }));
+    for (const { frame, material, geometry } of whole) this.addLit(frame, geometry, material);
+    if (whole.length > 0) this.addPlain(whole);
+  }
+
+  /** From outside: all links as the bones of one mesh, which is drawn at once. */
+  private addPlain(parts: { frame: Object3D; material: MeshPhongMaterial; geometry: BufferGeometry }[]) {
+    const frames = [...new Set(parts.map(({ frame }) => frame))];
+    const geometry = mergeGeometries(parts.map(({ frame, material, geometry: part }) => {
+      const bone = part.clone(), count = part.getAttribute('position').count, { r, g, b } = material.color;
+      const repeated = (numbers: number[]) => Array.from({ length: count }, () => numbers).flat();
+      bone.setAttribute('color', new Float32BufferAttribute(repeated([r, g, b]), 3));
+      bone.setAttribute('skinIndex', new Uint16BufferAttribute(repeated([frames.indexOf(frame), 0, 0, 0]), 4));
+      bone.setAttribute('skinWeight', new Float32BufferAttribute(repeated([1, 0, 0, 0]), 4));
+      return bone;
+    }))!;
+    const mesh = new SkinnedMesh(geometry, new MeshPhongMaterial({ vertexColors: true, specular: 0x555555, shininess: kSharpness }));
+    mesh.bind(new Skeleton(frames as Bone[], frames.map(() => new Matrix4())), new Matrix4());
+    mesh.frustumCulled = false;
+    mesh.layers.set(kPlainLayer);
+    this.root.add(mesh);
   }
 
   /** The frame above that moves: links that are fixed to it share its meshes. Moves `placed` into it. */
@@ -121,9 +144,8 @@ export class Robot {
     return frame;
   }
 
-  private addPart(frame: Object3D, geometry: BufferGeometry, material: MeshPhongMaterial) {
-    const plain = new Mesh(geometry, material);
-    plain.layers.set(kPlainLayer);
+  /** As the endoscope sees it: each material by itself. */
+  private addLit(frame: Object3D, geometry: BufferGeometry, material: MeshPhongMaterial) {
     const { color, specular, shininess } = material;
     const lit = new Mesh(geometry, materialOf({
       vertex: 'surface.vert', fragment: 'instrument.frag', side: FrontSide,
@@ -133,7 +155,7 @@ export class Robot {
       },
     }));
     lit.layers.set(kEndoscopeLayer);
-    frame.add(plain, lit);
+    frame.add(lit);
   }
 
   private capsulesOf({ link, place, turn, scale, capsules }: Visual): Capsule[] {

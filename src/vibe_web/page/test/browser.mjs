@@ -4,17 +4,13 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { fileURLToPath } from 'node:url';
-import puppeteer from 'puppeteer-core';
-import { check, expect, until, wait } from './checks.mjs';
+import { check, expect, launch, until, wait } from './checks.mjs';
 
 const [port, chromium, folder] = process.argv.slice(2);
 const find = createRequire(import.meta.url);
 const kPicture = 240; // edge of the endoscope's picture [px]
 
-const browser = await puppeteer.launch({
-  executablePath: chromium, headless: true, protocolTimeout: 300000,
-  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-dev-shm-usage', '--window-size=800,600'],
-});
+const browser = await launch(chromium);
 
 const errors = [];
 async function openPage(prepare = async () => {}) {

@@ -1,5 +1,14 @@
 // What the tests of the page share: each check prints one line of JSON, which web_test.py reads.
 
+import puppeteer from 'puppeteer-core';
+
+/** Chromium without a display and without a graphics card. */
+export const launch = (chromium) =>
+  puppeteer.launch({
+    executablePath: chromium, headless: true, protocolTimeout: 300000,
+    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-dev-shm-usage', '--window-size=800,600'],
+  });
+
 export const wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
 /** Until a condition holds, however slow the machine is. */

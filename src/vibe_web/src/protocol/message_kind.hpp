@@ -22,9 +22,9 @@ enum class Kind : std::uint8_t {
   Operator = 10,  ///< text: whether anybody drives, and why not
   Pong = 11,      ///< to one client: the eight bytes of its ping
   Refusal = 12,   ///< text, to one client: one sentence
-  Grant = 13,    ///< text, to one client: it drives, and what its drive messages have to name
-  Blood = 14,    ///< shape_message.hpp
-  Threads = 15   ///< shape_message.hpp: thread, T-tags and cinches as the endoscope sees them
+  Grant = 13,     ///< text, to one client: it drives, and what its drive messages have to name
+  Blood = 14,     ///< shape_message.hpp
+  Threads = 15    ///< shape_message.hpp: thread, T-tags and cinches as the endoscope sees them
 };
 constexpr std::size_t kKinds = 16;  ///< one more than the largest number
 
