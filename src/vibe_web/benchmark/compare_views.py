@@ -60,6 +60,8 @@ class WebSession(take_views.ViewSession):
 
 def main(folder, names):
     arguments = views.parse(["--size", "{0}x{0}".format(SIZE), "--output", folder, *names])
+    # both follow from the beginning: smoke and the age of marks depend on it
+    arguments.views = [view._replace(followed=0.5) for view in arguments.views]
     take_views.ViewSession = WebSession
     status = take_views.take_all(arguments)
     y, x = numpy.mgrid[0:SIZE, 0:SIZE] - (SIZE - 1) / 2

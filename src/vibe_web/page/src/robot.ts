@@ -94,8 +94,9 @@ export class Robot {
   private async addVisuals(visuals: Visual[]) {
     const { known } = this;
     const parts = new Map<string, { frame: Object3D; material: MeshPhongMaterial; geometries: BufferGeometry[] }>();
-    for (const visual of visuals)
-      for (const { geometry, material } of await this.partsOf(visual)) {
+    const loaded = await Promise.all(visuals.map((visual) => this.partsOf(visual)));
+    for (const [k, visual] of visuals.entries())
+      for (const { geometry, material } of loaded[k]) {
         const placed = new Group();
         placed.position.fromArray(visual.place);
         placed.quaternion.fromArray(visual.turn as [number, number, number, number]);

@@ -56,7 +56,7 @@ export class Stage {
     this.arrow.visible = false;
     this.camera.layers.set(kPlainLayer);
     this.camera.up.set(0, 0, 1);
-    this.camera.position.set(0.5, -0.24, 0.1);
+    this.camera.position.set(0.4, -0.19, 0.08);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => (this.dirty = true));
     this.screen.add(this.picture);

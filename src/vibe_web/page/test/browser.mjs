@@ -19,7 +19,7 @@ async function openPage(prepare = async () => {}) {
   page.on('pageerror', (error) => errors.push(String(error)));
   page.on('console', (message) => message.type() === 'error' && errors.push(message.text()));
   await prepare(page);
-  await page.goto(`http://localhost:${port}/#size=${kPicture}`);
+  await page.goto(`http://localhost:${port}/#size=${kPicture}&rate=15`);
   await until(() => page.evaluate(() => window.vibe?.stats.drawn > 2), 'a picture of the organ', 120);
   return page;
 }
@@ -59,7 +59,7 @@ async function rest(page) {
 let page;
 await check('the page shows the organ', async () => {
   page = await openPage();
-  await until(() => page.evaluate(() => window.vibe.stage.counts.calls > 5), 'the robot');
+  await until(() => page.evaluate(() => window.vibe.stage.counts.calls > 15), 'the robot');
   await wait(1000);
   await save(page, 'organ');
   const numbers = await page.evaluate(() => ({ ...window.vibe.stage.counts, first_picture_ms: window.vibe.stats.firstPicture }));
