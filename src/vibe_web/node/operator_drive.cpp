@@ -87,6 +87,7 @@ void OperatorDrive::obey(ClientId client, const Command& command, WebServer& ser
       return;
     case Command::Kind::Rate:
     case Command::Kind::Ping:
+    case Command::Kind::Drawn:
       return;  // the server's own
   }
 }

@@ -22,6 +22,7 @@ const drive = new Drive(stream);
 const panel = new Panel(stream, drive);
 const video = new VideoRecorder(canvas);
 let scene: SceneText | null = null, headset: Headset | null = null, frame: Frame | null = null, pattern = false;
+let undrawn = 0; // frames that have come since the last picture
 
 /** For tests and for the curious: what has been received and drawn. */
 const stats = { frames: 0, drawn: 0, firstPicture: 0, latencies: [] as number[], received: () => stream.received };
@@ -46,6 +47,7 @@ stream.on(Kind.Topology, (bytes) => stage.organ.setTopology(readTopology(bytes))
 stream.on(Kind.Frame, (bytes) => {
   frame = readFrame(bytes);
   stats.frames++;
+  undrawn++;
 });
 stream.on(Kind.Folds, (bytes) => stage.organ.setFolds(bytes, scene?.tallest_fold ?? 0));
 stream.on(Kind.Heat, (bytes) => stage.organ.setHeat(bytes));
@@ -82,6 +84,8 @@ stage.renderer.setAnimationLoop(() => {
   }
   if (stage.renderer.xr.isPresenting) headset?.draw();
   else stage.draw();
+  if (undrawn > 0) stream.send(Uint8Array.of(7, Math.min(255, undrawn))); // then the server sends more
+  undrawn = 0;
   if (!shown || !pattern) return;
   stats.drawn++;
   stats.firstPicture ||= performance.now();

@@ -105,6 +105,20 @@ await check('a client gets the rate that it asks for', async () => {
   return { rate };
 });
 
+await check('a page that has not drawn what it has gets no more', async () => {
+  const page = open();
+  await isOpen(page);
+  await until(() => page.counts[3], 'a frame');
+  page.socket.send(Buffer.from([7, 1]));
+  await wait(1000);
+  const before = page.counts[3];
+  await wait(1000);
+  expect(page.counts[3] === before, `${page.counts[3] - before} frames`);
+  page.socket.send(Buffer.from([7, 2]));
+  await until(() => page.counts[3] === before + 2, 'two more frames');
+  page.socket.terminate();
+});
+
 const driver = open();
 await check('one page drives, and only as long as it speaks', async () => {
   await isOpen(driver);

@@ -29,6 +29,14 @@ std::optional<Command> readRate(const std::uint8_t* bytes, std::size_t size) {
   return command;
 }
 
+std::optional<Command> readDrawn(const std::uint8_t* bytes, std::size_t size) {
+  Command command;
+  command.kind = Command::Kind::Drawn;
+  command.drawn = size == 2 ? bytes[1] : 0;
+  if (command.drawn < 1) return std::nullopt;
+  return command;
+}
+
 std::optional<Command> readWord(Command::Kind kind, std::size_t size) {
   Command command;
   command.kind = kind;
@@ -90,6 +98,8 @@ std::optional<Command> decodeCommand(const std::uint8_t* bytes, std::size_t size
       return readReplay(bytes, size);
     case Command::Kind::Ping:
       return readPing(bytes, size);
+    case Command::Kind::Drawn:
+      return readDrawn(bytes, size);
   }
   return std::nullopt;
 }

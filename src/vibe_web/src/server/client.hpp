@@ -10,6 +10,7 @@
 
 namespace vibe::web {
 
+constexpr int kMaxUndrawn = 2;                       ///< frames on their way to a page that tells what it has drawn
 constexpr auto kSilence = std::chrono::seconds(20);  ///< after half of it a client is pinged, then let go
 
 /// As many commands as a client may send, refilled steadily.
@@ -70,8 +71,12 @@ class Client : public std::enable_shared_from_this<Client<Stream>> {
   }
 
   bool isDue(std::size_t kind) const {
-    return waiting_[kind] && (kind != static_cast<std::size_t>(Kind::Frame) || Clock::now() >= next_frame_);
+    if (kind != static_cast<std::size_t>(Kind::Frame)) return static_cast<bool>(waiting_[kind]);
+    return waiting_[kind] && Clock::now() >= next_frame_ && !isBehind();
   }
+
+  /// A page that is slow to draw would show older and older frames from the queues of its browser.
+  bool isBehind() const { return tells_ && undrawn_ >= kMaxUndrawn; }
 
   /// Sends one of the messages that wait, in turns, so that frames do not keep back all else.
   void pump() {
@@ -80,7 +85,7 @@ class Client : public std::enable_shared_from_this<Client<Stream>> {
       const std::size_t kind = (last_kind_ + k) % kKinds;
       if (isDue(kind)) return write(kind);
     }
-    if (waiting_[static_cast<std::size_t>(Kind::Frame)]) wakeForFrame();
+    if (waiting_[static_cast<std::size_t>(Kind::Frame)] && !isBehind()) wakeForFrame();
   }
 
   void write(std::size_t kind) {
@@ -89,7 +94,7 @@ class Client : public std::enable_shared_from_this<Client<Stream>> {
     sending_ = std::exchange(waiting_[kind], nullptr);
     // a little early, because states come in steps of their own
     if (kind == static_cast<std::size_t>(Kind::Frame))
-      next_frame_ = std::max(next_frame_ + period_, Clock::now() - period_ / 2);
+      ++undrawn_, next_frame_ = std::max(next_frame_ + period_, Clock::now() - period_ / 2);
     socket_.async_write(asio::buffer(*sending_), [self = this->shared_from_this()](Error error, std::size_t) {
       self->writing_ = false;
       self->sending_.reset();
@@ -124,14 +129,22 @@ class Client : public std::enable_shared_from_this<Client<Stream>> {
       return false;
     }
     if (command->kind == Command::Kind::Rate) period_ = std::chrono::nanoseconds(1'000'000'000 / command->rate);
-    if (command->kind == Command::Kind::Ping) {
-      Bytes pong{static_cast<std::uint8_t>(Kind::Pong)};
-      pong.insert(pong.end(), command->ping.begin(), command->ping.end());
-      offer(Kind::Pong, std::make_shared<const Bytes>(std::move(pong)));
-    } else {
-      shared_->on_command(id_, *command);
-    }
+    if (command->kind == Command::Kind::Drawn) return noteDrawn(command->drawn), true;
+    if (command->kind == Command::Kind::Ping) return answer(command->ping), true;
+    shared_->on_command(id_, *command);
     return true;
+  }
+
+  void noteDrawn(int frames) {
+    undrawn_ = tells_ ? std::max(0, undrawn_ - frames) : 0;
+    tells_ = true;
+    pump();
+  }
+
+  void answer(const std::array<std::uint8_t, 8>& ping) {
+    Bytes pong{static_cast<std::uint8_t>(Kind::Pong)};
+    pong.insert(pong.end(), ping.begin(), ping.end());
+    offer(Kind::Pong, std::make_shared<const Bytes>(std::move(pong)));
   }
 
   void close(websocket::close_code code) {
@@ -152,6 +165,8 @@ class Client : public std::enable_shared_from_this<Client<Stream>> {
   std::array<SharedBytes, kKinds> waiting_;
   SharedBytes sending_;
   bool writing_ = false;
+  bool tells_ = false;  // what it has drawn
+  int undrawn_ = 0;     // frames sent and not drawn
   std::size_t last_kind_ = 0;
   std::chrono::nanoseconds period_{1'000'000'000 / 60};
   Clock::time_point next_frame_{};
