@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::uint32_t kQueue = 2;  // a state that is not the newest is of no use
 constexpr std::uint32_t kEventQueue = 1000;
-constexpr int kSlowTicks = 2;  // of tick(): folds and heat five times a second
+constexpr int kSlowTicks = 2;  // of tick(): folds, heat and thread five times a second
 const char* const kBase = "scope_base";
 
 PageFile pageFile(const std::string& type, std::string content) {
@@ -152,10 +152,10 @@ void SessionStream::takeSutures(const vibe_msgs::SutureArray::ConstPtr& message)
 
 void SessionStream::tick() {
   ++ticks_;
-  if (sutures_changed_) publishSutures();
   if (events_changed_) server_.publish(Kind::Events, textMessage(Kind::Events, events_.text()));
   events_changed_ = false;
   if (ticks_ % kSlowTicks != 0) return;
+  if (sutures_changed_) publishSutures();
   publishWall();
   if (!state_) return;
   std::string text = stateText(*state_, skill_.get(), sutures_.get());
@@ -172,7 +172,9 @@ void SessionStream::publishSutures() {
   server_.publish(Kind::Sutures, encodeSutures(drawing));
   graphics::ColouredShape threads;
   graphics::appendSutures(drawing, graphics::naturalSutures(), threads);
-  server_.publish(Kind::Threads, encodeShape(Kind::Threads, threads));
+  Bytes shape = encodeShape(Kind::Threads, threads);
+  if (shape != threads_) server_.publish(Kind::Threads, shape);
+  threads_ = std::move(shape);
   if (organ_) organ_->bleeding.setWounds(drawing, {});
 }
 

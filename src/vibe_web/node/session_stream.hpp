@@ -54,6 +54,7 @@ class SessionStream {
   vibe_msgs::SkillMetrics::ConstPtr skill_;
   vibe_msgs::SutureArray::ConstPtr sutures_;
   EventList events_;
+  Bytes threads_;  // as last sent
   std::string complaint_, state_text_;
   bool has_frame_ = false, events_changed_ = true, sutures_changed_ = false;
   int ticks_ = 0;

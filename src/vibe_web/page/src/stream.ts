@@ -29,6 +29,7 @@ export class Stream {
     const socket = new WebSocket(address);
     socket.binaryType = 'arraybuffer';
     socket.onopen = () => {
+      this.send(Uint8Array.of(7, 0)); // this page tells what it has drawn
       this.send(Uint8Array.of(1, this.rate));
       this.onState(true, 'Connected');
     };

@@ -32,8 +32,8 @@ std::optional<Command> readRate(const std::uint8_t* bytes, std::size_t size) {
 std::optional<Command> readDrawn(const std::uint8_t* bytes, std::size_t size) {
   Command command;
   command.kind = Command::Kind::Drawn;
-  command.drawn = size == 2 ? bytes[1] : 0;
-  if (command.drawn < 1) return std::nullopt;
+  if (size != 2) return std::nullopt;
+  command.drawn = bytes[1];
   return command;
 }
 

@@ -17,7 +17,7 @@ struct Command {
   Kind kind = Kind::Ping;
 
   int rate = 0;   ///< Rate: frames per second, 1 to 60
-  int drawn = 0;  ///< Drawn: frames that the page has done with since it last said so, 1 to 255
+  int drawn = 0;  ///< Drawn: frames that the page has done with since it last said so; at first 0: it will say so
 
   // Drive: all that is held now. It says who was allowed to drive and which of its messages this is, so that none is
   // obeyed twice or from another connection.

@@ -136,7 +136,7 @@ class Client : public std::enable_shared_from_this<Client<Stream>> {
   }
 
   void noteDrawn(int frames) {
-    undrawn_ = tells_ ? std::max(0, undrawn_ - frames) : 0;
+    undrawn_ = std::max(0, undrawn_ - frames);  // of all that were sent, so that none is forgotten in a queue
     tells_ = true;
     pump();
   }
