@@ -98,6 +98,7 @@ class Web(unittest.TestCase):
     def test_3_lan_needs_token_and_tls(self):
         with tempfile.TemporaryDirectory() as folder:
             server = Program("vibe_web", "web_node", "--lan", name="web_node_lan", port=0, certificates=folder)
+            self.addCleanup(server.stop)
             port = port_of(server)
             token = re.search(r"#token=([0-9a-f]{32})", server.output()).group(1)
             context = ssl.create_default_context(cafile=folder + "/certificate.pem")
