@@ -9,6 +9,7 @@ packagesOf() {
     vision) echo vibe_vision ;;
     measurements) echo vibe_latency vibe_prototype vibe_benchmarks ;;
     python) echo vibe_python ;;
+    web) echo vibe_web ;;
     tests) echo vibe_testing vibe_system_tests ;;
     *) return 1 ;;
   esac
@@ -37,7 +38,7 @@ newerSources() {
     -o -name package.xml -o -name setup.py \)
 }
 
-parts=(session devices vision measurements python firmware tests)
+parts=(session devices vision measurements python web firmware tests)
 
 # checkPart PART: ends the script if there is no such part
 checkPart() {

@@ -7,8 +7,8 @@
 #include <vibe_msgs/TissuePullState.h>
 #include <Eigen/Core>
 
-#include "drive/drive_keys.hpp"
-#include "drive/scope_drive.hpp"
+#include "vibe_rviz_plugins/drive/drive_keys.hpp"
+#include "vibe_rviz_plugins/drive/scope_drive.hpp"
 
 namespace vibe::rviz_plugins {
 

@@ -1,4 +1,4 @@
-#include "messages/reference_values.hpp"
+#include "vibe_rviz_plugins/messages/reference_values.hpp"
 
 #include <algorithm>
 #include <cmath>

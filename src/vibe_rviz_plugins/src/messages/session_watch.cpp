@@ -3,6 +3,7 @@
 #include <ros/names.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 
 #include "messages/number_text.hpp"
@@ -14,6 +15,10 @@ constexpr double kSilentAfter = 2;  // the same as in the simulator [s]
 constexpr double kWindow = 1;       // [s]
 
 }  // namespace
+
+double steadySeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 std::string SimulatorWatch::complaint(const std::string& topic, double now) const {
   if (waits()) return "Waiting for the simulator on " + topic + "; start it, or set the namespace below.";

@@ -5,6 +5,9 @@ namespace vibe::rviz_plugins {
 
 // Times are of a steady clock [s].
 
+/// Now.
+double steadySeconds();
+
 constexpr double kGoneAfter = 3;  ///< the simulator sends at least once a second of wall time, even while paused [s]
 
 /// Decides from the time of the last message whether the simulator is running.

@@ -8,7 +8,7 @@
 
 #include "messages/button_bank.hpp"
 #include "messages/number_text.hpp"
-#include "messages/reference_values.hpp"
+#include "vibe_rviz_plugins/messages/reference_values.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {

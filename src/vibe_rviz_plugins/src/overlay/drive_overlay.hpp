@@ -5,8 +5,8 @@
 #include <set>
 #include <string>
 
-#include "drive/drive_keys.hpp"
-#include "drive/scope_drive.hpp"
+#include "vibe_rviz_plugins/drive/drive_keys.hpp"
+#include "vibe_rviz_plugins/drive/scope_drive.hpp"
 
 namespace vibe::rviz_plugins {
 

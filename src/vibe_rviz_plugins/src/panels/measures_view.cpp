@@ -7,8 +7,8 @@
 
 #include "messages/number_text.hpp"
 #include "messages/procedure_text.hpp"
-#include "messages/reference_values.hpp"
 #include "panels/panel_style.hpp"
+#include "vibe_rviz_plugins/messages/reference_values.hpp"
 
 namespace vibe::rviz_plugins {
 

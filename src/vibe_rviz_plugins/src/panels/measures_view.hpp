@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "messages/reference_values.hpp"
 #include "panels/panel_messages.hpp"
+#include "vibe_rviz_plugins/messages/reference_values.hpp"
 
 class QLabel;
 

@@ -6,8 +6,8 @@
 #include <QString>
 #include <map>
 
-#include "messages/reference_values.hpp"
-#include "messages/table_rows.hpp"
+#include "vibe_rviz_plugins/messages/reference_values.hpp"
+#include "vibe_rviz_plugins/messages/table_rows.hpp"
 
 class QGridLayout;
 class QLabel;

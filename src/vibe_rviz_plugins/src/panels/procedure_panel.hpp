@@ -5,7 +5,7 @@
 #ifndef Q_MOC_RUN
 #include <rviz/panel.h>
 
-#include "panels/button_sender.hpp"
+#include "driving/button_sender.hpp"
 #include "panels/procedure_subscriptions.hpp"
 #include "panels/service_caller.hpp"
 #endif

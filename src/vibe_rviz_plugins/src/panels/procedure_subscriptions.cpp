@@ -1,6 +1,5 @@
 #include "panels/procedure_subscriptions.hpp"
 
-#include <chrono>
 #include <limits>
 
 namespace vibe::rviz_plugins {
@@ -9,10 +8,6 @@ namespace {
 constexpr std::uint32_t kEventQueue = 1000;  // many come in one step, and all are shown
 
 }  // namespace
-
-double steadySeconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 void ProcedureSubscriptions::listen(const std::string& name_space) {
   subscribers_.clear();

@@ -11,9 +11,6 @@
 
 namespace vibe::rviz_plugins {
 
-/// Time of a steady clock [s].
-double steadySeconds();
-
 /// Subscribes to what the panel shows. Callbacks run in the thread that spins the queue of the node, which in rviz is
 /// the thread of the widgets.
 class ProcedureSubscriptions {

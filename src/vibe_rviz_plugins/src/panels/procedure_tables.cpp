@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "messages/number_text.hpp"
-#include "messages/table_rows.hpp"
 #include "panels/panel_style.hpp"
+#include "vibe_rviz_plugins/messages/table_rows.hpp"
 
 namespace vibe::rviz_plugins {
 

@@ -6,7 +6,7 @@
 
 #include <vibe_msgs/ProcedureEvent.h>
 
-#include "messages/table_rows.hpp"
+#include "vibe_rviz_plugins/messages/table_rows.hpp"
 
 namespace vibe::rviz_plugins {
 

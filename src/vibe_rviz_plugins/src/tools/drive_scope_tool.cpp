@@ -15,9 +15,8 @@
 #include <QTimer>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "messages/command_messages.hpp"
+#include "messages/session_watch.hpp"
 #include "overlay/legend.hpp"
-#include "panels/procedure_subscriptions.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {
@@ -42,10 +41,7 @@ rviz::RenderPanel* renderPanel(rviz::DisplayContext* context) {
 
 }  // namespace
 
-DriveScopeTool::DriveScopeTool()
-    : sender_([this](int button, bool down) { button_changes_.emplace_back(button, down); }),
-      buttons_("drive_scope"),
-      button_timer_(new QTimer(this)) {
+DriveScopeTool::DriveScopeTool() : drive_("drive_scope"), button_timer_(new QTimer(this)) {
   shortcut_key_ = 'd';
   access_all_keys_ = true;  // the keys of other tools drive too; Esc leaves
   makeProperties();
@@ -104,7 +100,7 @@ void DriveScopeTool::changeSpeeds() {
       value(speeds_[4]) * kTurn,       value(speeds_[5]) * kMillimetre};
   speeds.slow = value(slow_);
   speeds.fast = value(fast_);
-  sender_.setSpeeds(speeds);
+  drive_.setSpeeds(speeds);
 }
 
 void DriveScopeTool::activate() {
@@ -119,22 +115,14 @@ void DriveScopeTool::activate() {
 }
 
 void DriveScopeTool::deactivate() {
-  releaseAll();
   active_ = false;
   if (window_) window_->removeEventFilter(this);  // rviz destroys the window before the tools
-  sender_.stop();
-  buttons_.setControl(false, steadySeconds());
+  drive_.stop();
   hideOverlay();
 }
 
 void DriveScopeTool::connectAgain() {
-  if (!active_) return;
-  releaseAll();
-  const std::string name_space = namespace_->getStdString();
-  name_space_trouble_ = checkNamespace(name_space);
-  if (!name_space_trouble_.empty()) return sender_.stop();
-  buttons_.listen(name_space);
-  sender_.start(name_space);
+  if (active_) drive_.start(namespace_->getStdString());
 }
 
 bool DriveScopeTool::eventFilter(QObject* watched, QEvent* event) {
@@ -149,7 +137,7 @@ bool DriveScopeTool::eventFilter(QObject* watched, QEvent* event) {
     case QEvent::FocusOut:
     case QEvent::WindowDeactivate:
     case QEvent::Hide:
-      releaseAll();
+      drive_.releaseAll();
       break;
     default:
       break;
@@ -172,10 +160,9 @@ bool DriveScopeTool::handleKey(const QKeyEvent& event) {
   if (down && (event.key() == Qt::Key_H || event.key() == Qt::Key_F1)) help_->setBool(!help_->getBool());
   if (down && event.key() == Qt::Key_V) showNextView();
   if (down)
-    sender_.keyDown(event.key());
+    drive_.keyDown(event.key());
   else
-    sender_.keyUp(event.key());
-  passButtons();
+    drive_.keyUp(event.key());
   return isOurs(event);
 }
 
@@ -187,53 +174,22 @@ void DriveScopeTool::showNextView() {
   views.setCurrentFrom(views.getViewAt(view_));
 }
 
-void DriveScopeTool::releaseAll() {
-  sender_.releaseAll();
-  passButtons();
-}
-
-void DriveScopeTool::passButtons() {
-  if (button_changes_.empty()) return;
-  const Moment now = moment(sender_.view());
-  for (const auto& [button, down] : button_changes_)
-    if (down)
-      buttons_.press(button, now);
-    else
-      buttons_.release(button, now);
-  button_changes_.clear();
-}
-
-Moment DriveScopeTool::moment(const ScopeSender::View& view) const {
-  Moment now;
-  now.wall = steadySeconds();
-  now.stamp = ros::Time::now().toSec();
-  if (!view.state) return now;
-  now.step_period = view.state->step_period;
-  now.step = view.state->step;
-  now.paused = view.state->paused;
-  return now;
-}
-
-/// Ten times a second. After the tool was left, until the last message is sent.
+/// After the tool was left, until the last message is sent.
 void DriveScopeTool::tickButtons() {
-  const ScopeSender::View view = sender_.view();
-  const Moment now = moment(view);
-  const bool control = active_ && view.driving;
-  if (control != buttons_.inControl()) buttons_.setControl(control, now.wall);
-  if (!now.paused || !buttons_.inControl()) buttons_.tick(now);  // during a pause only presses are published
-  if (!active_ && !buttons_.closing()) button_timer_->stop();
+  drive_.tick();
+  if (drive_.isSilent()) button_timer_->stop();
 }
 
 int DriveScopeTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
   if (event.wheel_delta != 0) {
     const double notches = event.wheel_delta / kNotch;
-    sender_.displace(Insertion, notches * kMillimetre * static_cast<double>(wheel_->getFloat()));
+    drive_.displace(Insertion, notches * kMillimetre * static_cast<double>(wheel_->getFloat()));
     return Render;
   }
   if (event.left() && event.type == QEvent::MouseMove) {
     const double by = kDegree * static_cast<double>(bend_->getFloat());
-    sender_.displace(TipUpDown, by * (event.last_y - event.y));
-    sender_.displace(TipLeftRight, by * (event.last_x - event.x));
+    drive_.displace(TipUpDown, by * (event.last_y - event.y));
+    drive_.displace(TipLeftRight, by * (event.last_x - event.x));
     return Render;
   }
   const bool of_view = event.middle() || event.right() || event.acting_button != Qt::NoButton;
@@ -247,33 +203,25 @@ void DriveScopeTool::update(float, float) {
   const double now = steadySeconds();
   if (now - drawn_ < kOverlayPeriod) return;
   drawn_ = now;
-  const DriveHud hud = hudOf(sender_.view());
+  const DriveHud hud = hudOf(drive_.view());
   draw(hud);
   setStatus(hud.trouble.empty() ? kHowTo : QString::fromStdString(hud.trouble));
 }
 
-DriveHud DriveScopeTool::hudOf(const ScopeSender::View& view) const {
+DriveHud DriveScopeTool::hudOf(const DriveView& view) const {
   DriveHud hud;
   hud.keys_down = view.keys_down;
   hud.gear = view.gear;
   hud.joints = view.joints;
   hud.limits = view.limits;
   hud.force = view.force;
-  for (std::size_t i = 0; i < hud.buttons.size(); ++i) hud.buttons[i] = buttons_.down()[i] != 0;
-  hud.trouble = name_space_trouble_.empty() ? view.trouble : name_space_trouble_;
+  hud.buttons = view.buttons;
+  hud.trouble = view.trouble;
+  hud.step = view.step;
   if (!view.state) return hud;
   describe(*view.state, hud);
-  if (hud.trouble.empty() && view.state->paused) hud.trouble = "The simulator is paused. Resume it to drive.";
-  if (hud.trouble.empty() && view.driving && !buttons_.inControl() && !buttons_.isTakingControl())
-    hud.trouble = "No buttons: " + buttons_.sentence(steadySeconds());
   if (hud.trouble.empty() && !renderPanel(context_)->hasFocus())
     hud.trouble = "The keyboard is elsewhere. Move the mouse over this view, or click into it.";
-  DriveSituation situation = situationOf(*view.state);
-  situation.touches = situation.touches || hud.force > 0;  // the state tells of gas first
-  situation.joints = hud.joints;
-  situation.closed = hud.limits[NeedleDriver].upper;
-  situation.gas_on = hud.buttons[5];
-  hud.step = firstStep(situation);
   return hud;
 }
 

@@ -6,12 +6,9 @@
 #include <QWidget>
 #include <memory>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "overlay/drive_overlay.hpp"
-#include "panels/button_sender.hpp"
-#include "tools/scope_sender.hpp"
+#include "vibe_rviz_plugins/driving/manual_drive.hpp"
 #endif
 
 class QTimer;
@@ -56,10 +53,7 @@ class DriveScopeTool : public rviz::Tool {
   bool handleKey(const QKeyEvent& event);
   bool isOurs(const QKeyEvent& event) const;
   void showNextView();
-  void releaseAll();
-  void passButtons();
-  Moment moment(const ScopeSender::View& view) const;
-  DriveHud hudOf(const ScopeSender::View& view) const;
+  DriveHud hudOf(const DriveView& view) const;
   void draw(const DriveHud& hud);
   void hideOverlay();
 
@@ -68,12 +62,9 @@ class DriveScopeTool : public rviz::Tool {
   std::array<rviz::FloatProperty*, 6> speeds_{};
   rviz::FloatProperty *slow_, *fast_, *bend_, *wheel_;
 
-  std::vector<std::pair<int, bool>> button_changes_;  // of keys, not passed on yet
-  ScopeSender sender_;
-  ButtonSender buttons_;
+  ManualDrive drive_;
   QTimer* button_timer_;
   std::unique_ptr<Legend> banner_, keys_, state_;
-  std::string name_space_trouble_;
   int view_ = 0;              // the saved view that was chosen last
   QPointer<QWidget> window_;  // whose keys it hears while it is active
   double drawn_ = 0;          // time of the last overlay, steady clock [s]

@@ -1,4 +1,4 @@
-#include "drive/drive_keys.hpp"
+#include "vibe_rviz_plugins/drive/drive_keys.hpp"
 
 #include <gtest/gtest.h>
 

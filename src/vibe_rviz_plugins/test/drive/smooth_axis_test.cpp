@@ -1,4 +1,4 @@
-#include "drive/scope_drive.hpp"
+#include "vibe_rviz_plugins/drive/scope_drive.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "messages/table_rows.hpp"
+#include "vibe_rviz_plugins/messages/table_rows.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,13 +6,13 @@
 #include <QTableWidget>
 #include <limits>
 
-#include "messages/reference_values.hpp"
 #include "offscreen.hpp"
 #include "panels/control_boxes.hpp"
 #include "panels/measures_view.hpp"
 #include "panels/panel_style.hpp"
 #include "panels/procedure_tables.hpp"
 #include "panels/status_summary.hpp"
+#include "vibe_rviz_plugins/messages/reference_values.hpp"
 
 namespace vibe::rviz_plugins::widgets_test {
 namespace {

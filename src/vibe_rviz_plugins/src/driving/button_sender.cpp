@@ -1,16 +1,14 @@
-#include "panels/button_sender.hpp"
+#include "driving/button_sender.hpp"
 
 #include <ros/this_node.h>
 #include <vibe_msgs/StepInput.h>
 
-#include "panels/procedure_subscriptions.hpp"
-
 namespace vibe::rviz_plugins {
 namespace {
 
-constexpr std::uint32_t kQueue = 100;
-constexpr double kTaking = 1;     // a paused simulator publishes no input [s]
-constexpr double kClosing = 0.5;  // [s]
+constexpr std::uint32_t kButtonQueue = 100;
+constexpr double kTaking = 1;         // a paused simulator publishes no input [s]
+constexpr double kLastMessage = 0.5;  // [s]
 
 }  // namespace
 
@@ -23,7 +21,7 @@ void ButtonSender::listen(const std::string& name_space) {
   handle_ = ros::NodeHandle(name_space);
   topic_ = handle_.resolveName("scope/buttons");
   subscriber_ =
-      handle_.subscribe<sensor_msgs::Joy>("scope/buttons", kQueue,
+      handle_.subscribe<sensor_msgs::Joy>("scope/buttons", kButtonQueue,
                                           boost::function<void(const ros::MessageEvent<const sensor_msgs::Joy>&)>(
                                               [this](const auto& event) { hear(event); }));
 }
@@ -51,7 +49,7 @@ void ButtonSender::setControl(bool on, double now) {
 void ButtonSender::beginControl() {
   last_input_ = {};
   in_control_ = true;
-  publisher_ = handle_.advertise<sensor_msgs::Joy>("scope/buttons", kQueue);
+  publisher_ = handle_.advertise<sensor_msgs::Joy>("scope/buttons", kButtonQueue);
   publish();
 }
 
@@ -81,7 +79,7 @@ void ButtonSender::tick(const Moment& now) {
   if (in_control_) {
     bank_.settle(now);
     publish();
-  } else if (publisher_ && now.wall - closing_since_ > kClosing) {
+  } else if (publisher_ && now.wall - closing_since_ > kLastMessage) {
     publisher_ = {};
   }
 }

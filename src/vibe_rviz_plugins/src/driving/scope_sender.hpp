@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "drive/scope_drive.hpp"
 #include "messages/session_watch.hpp"
+#include "vibe_rviz_plugins/drive/scope_drive.hpp"
 
 namespace vibe::rviz_plugins {
 

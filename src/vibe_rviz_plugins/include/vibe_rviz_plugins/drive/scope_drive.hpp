@@ -3,7 +3,7 @@
 #include <functional>
 #include <set>
 
-#include "drive/drive_keys.hpp"
+#include "vibe_rviz_plugins/drive/drive_keys.hpp"
 
 namespace vibe::rviz_plugins {
 

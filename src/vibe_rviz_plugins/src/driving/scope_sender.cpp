@@ -1,4 +1,4 @@
-#include "tools/scope_sender.hpp"
+#include "driving/scope_sender.hpp"
 
 #include <ros/this_node.h>
 
@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "messages/command_messages.hpp"
-#include "panels/procedure_subscriptions.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {

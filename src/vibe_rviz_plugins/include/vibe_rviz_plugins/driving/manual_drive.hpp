@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <set>
+#include <string>
+
+#include <vibe_msgs/ProcedureState.h>
+
+#include "vibe_rviz_plugins/drive/scope_drive.hpp"
+
+namespace vibe::rviz_plugins {
+
+/// What to show to a person who drives.
+struct DriveView {
+  bool driving = false;  ///< joints are being published
+  std::string trouble;   ///< why nothing moves, or no button works, in one sentence; empty if all is well
+  FirstStep step;        ///< the next thing to do; without a simulator number 0
+  std::set<int> keys_down;
+  DriveGear gear = DriveGear::Normal;
+  Joints joints{};  ///< NaN: unknown
+  JointLimits limits{};
+  std::array<bool, 6> buttons{};              ///< in the order of scope/buttons
+  double force = 0;                           ///< of the tissue on the tool [N]; NaN: unknown
+  vibe_msgs::ProcedureState::ConstPtr state;  ///< null: not come yet
+};
+
+/// Drives the scope and the suturing device with keys, as Qt names them: publishes scope/servo_jp and
+/// overstitch/measured_js in a thread of its own, and scope/buttons while nobody else presses them. The tool 'Drive
+/// scope' and the page of vibe_web drive with it, so both move alike. All functions belong to the thread that spins the
+/// global queue of the node.
+class ManualDrive {
+ public:
+  /// @param name  of the part of the program that presses buttons
+  explicit ManualDrive(const std::string& name);
+  ~ManualDrive();
+  ManualDrive(const ManualDrive&) = delete;
+  ManualDrive& operator=(const ManualDrive&) = delete;
+
+  /// Begins where the joints of the simulator are.
+  /// @param name_space  of the simulator; empty: that of the node. An invalid one is told as trouble.
+  void start(const std::string& name_space);
+  /// Releases everything and gives the buttons back; call tick() until isSilent().
+  void stop();
+  bool isSilent() const;
+
+  void setSpeeds(const DriveSpeeds& speeds);
+  void keyDown(int key);
+  void keyUp(int key);
+  void releaseAll();
+  /// See ScopeDrive::displace() [m] or [rad].
+  void displace(int joint, double by);
+
+  /// Ten times a second.
+  void tick();
+
+  DriveView view() const;
+
+ private:
+  class Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace vibe::rviz_plugins

@@ -1,0 +1,157 @@
+#include "operator_drive.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <vibe_msgs/ReplayCommand.h>
+#include <nlohmann/json.hpp>
+
+#include "protocol/byte_writer.hpp"
+
+namespace vibe::web {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr double kButtonPeriod = 0.1;  // [s]
+constexpr double kLongestStep = 0.1;   // [s]
+
+double steadyNow() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::string text(const json& value) {
+  return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+json numberOrNull(double value) {
+  return std::isfinite(value) ? json(value) : json(nullptr);
+}
+
+}  // namespace
+
+OperatorDrive::OperatorDrive(ros::NodeHandle& handle)
+    : drive_("web_node"),
+      replay_(handle.advertise<vibe_msgs::ReplayCommand>("replay/command", 10)),
+      last_(steadyNow()) {}
+
+void OperatorDrive::hear(ClientId client, const Command& command) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  heard_.emplace_back(client, command);
+}
+
+void OperatorDrive::leave(ClientId client) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  left_.push_back(client);
+}
+
+void OperatorDrive::tick(WebServer& server) {
+  std::vector<std::pair<ClientId, Command>> heard;
+  std::vector<ClientId> left;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    heard.swap(heard_);
+    left.swap(left_);
+  }
+  for (const auto& [client, command] : heard) obey(client, command, server);
+  for (const ClientId client : left) seat_.leave(client);
+  const double now = steadyNow();
+  seat_.tick(now);
+  move(std::min(now - last_, kLongestStep));
+  last_ = now;
+  if (now - ticked_ < kButtonPeriod) return;
+  ticked_ = now;
+  if (started_ && seat_.holder() == 0) drive_.stop(), started_ = false;
+  drive_.tick();
+  tell(server);
+}
+
+void OperatorDrive::obey(ClientId client, const Command& command, WebServer& server) {
+  switch (command.kind) {
+    case Command::Kind::Take:
+      return takeSeat(client, server);
+    case Command::Kind::GiveBack:
+      seat_.leave(client);
+      return;
+    case Command::Kind::Drive:
+      if (!seat_.hear(client, command, steadyNow()))
+        server.send(
+            client, Kind::Refusal,
+            textMessage(Kind::Refusal, "A drive message does not count: it is old, or this page does not drive."));
+      return;
+    case Command::Kind::Replay:
+      if (client == seat_.holder()) replay(command);
+      return;
+    case Command::Kind::Rate:
+    case Command::Kind::Ping:
+    case Command::Kind::Drawn:
+      return;  // the server's own
+  }
+}
+
+void OperatorDrive::takeSeat(ClientId client, WebServer& server) {
+  const bool had = seat_.holder() == client;
+  std::random_device random;
+  if (!seat_.take(client, random(), steadyNow())) {
+    server.send(client, Kind::Refusal,
+                textMessage(Kind::Refusal, "Another page drives; it has to give control back, or to be closed."));
+    return;
+  }
+  if (!had) ++seats_;
+  if (!started_) drive_.start("");
+  started_ = true;
+  server.send(client, Kind::Grant, textMessage(Kind::Grant, text({{"seat", seats_}, {"grant", seat_.grant()}})));
+}
+
+void OperatorDrive::replay(const Command& command) {
+  vibe_msgs::ReplayCommand message;
+  message.play = command.play;
+  message.rate = command.speed;
+  message.seek = command.seek ? command.time : std::numeric_limits<double>::quiet_NaN();
+  message.exact = true;
+  replay_.publish(message);
+}
+
+/// Brings the keys and axes of the page to the scope.
+void OperatorDrive::move(double seconds) {
+  const std::set<int>& wanted = seat_.keys();
+  for (const int key : std::set<int>(down_))
+    if (wanted.count(key) == 0) drive_.keyUp(key), down_.erase(key);
+  for (const int key : wanted)
+    if (down_.insert(key).second) drive_.keyDown(key);
+  const rviz_plugins::DriveSpeeds speeds;
+  for (std::size_t joint = 0; joint < kAxes; ++joint)
+    if (seat_.axes()[joint] != 0)
+      drive_.displace(static_cast<int>(joint), seat_.axes()[joint] * speeds.keys[joint] * seconds);
+}
+
+void OperatorDrive::tell(WebServer& server) {
+  const rviz_plugins::DriveView view = drive_.view();
+  json joints = json::array();
+  for (const double joint : view.joints) joints.push_back(numberOrNull(joint));
+  const std::string now = text({{"seat", seat_.holder() != 0 ? seats_ : 0},
+                                {"driving", view.driving},
+                                {"trouble", seat_.holder() != 0 ? view.trouble : ""},
+                                {"step", view.step.text},
+                                {"keys", view.keys_down},
+                                {"gear", static_cast<int>(view.gear)},
+                                {"buttons", view.buttons},
+                                {"joints", joints}});
+  if (now == told_) return;
+  told_ = now;
+  server.publish(Kind::Operator, textMessage(Kind::Operator, now));
+}
+
+void OperatorDrive::goodbye() {
+  if (!started_) return;
+  drive_.stop();
+  for (int k = 0; k < 10 && !drive_.isSilent(); ++k) {
+    ros::WallDuration(kButtonPeriod).sleep();
+    drive_.tick();
+  }
+}
+
+}  // namespace vibe::web

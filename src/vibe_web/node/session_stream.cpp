@@ -1,0 +1,197 @@
+#include "session_stream.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include <vibe_msgs/ReplayStatus.h>
+
+#include "protocol/byte_writer.hpp"
+#include "protocol/shape_message.hpp"
+#include "protocol/suture_stream.hpp"
+#include "protocol/topology_message.hpp"
+#include "vibe_graphics/geometry/blood_shapes.hpp"
+#include "vibe_graphics/geometry/deformable_surface.hpp"
+#include "vibe_graphics/geometry/mucosa_map.hpp"
+#include "vibe_graphics/geometry/mucosa_pattern.hpp"
+#include "vibe_graphics/geometry/suture_shapes.hpp"
+#include "vibe_graphics/messages/suture_messages.hpp"
+#include "vibe_graphics/messages/tissue_messages.hpp"
+
+namespace vibe::web {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr std::uint32_t kQueue = 2;  // a state that is not the newest is of no use
+constexpr std::uint32_t kEventQueue = 1000;
+constexpr int kSlowTicks = 2;  // of tick(): folds, heat and thread five times a second
+const char* const kBase = "scope_base";
+
+PageFile pageFile(const std::string& type, std::string content) {
+  PageFile file;
+  file.type = type;
+  file.content = std::make_shared<const std::string>(std::move(content));
+  return file;
+}
+
+std::string contentOf(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+}  // namespace
+
+struct SessionStream::Organ {
+  graphics::TissueMesh mesh;
+  graphics::MucosaMap map;
+  WallLook look;
+  graphics::DeformableSurface surface;  // on which blood lies
+  graphics::BleedingShape bleeding;
+  explicit Organ(graphics::TissueMesh read)
+      : mesh(std::move(read)), map(graphics::mapMucosa(mesh)), look(mesh, map), surface(mesh) {
+    bleeding.setMesh(&mesh);
+  }
+};
+
+SessionStream::~SessionStream() = default;
+
+SessionStream::SessionStream(ros::NodeHandle& handle, WebServer& server, const std::string& description)
+    : server_(server), scene_(constantText()) {
+  try {
+    const RobotText robot = readRobot(description);
+    scene_["robot"] = robot.json;
+    provideFiles(robot);
+    for (const std::string& problem : robot.problems) ROS_WARN("%s", problem.c_str());
+  } catch (const std::exception& error) {
+    ROS_WARN("%s", error.what());
+  }
+  const graphics::MucosaPattern pattern = graphics::makeMucosaPattern();
+  server_.provide("/pattern", pageFile("application/octet-stream", {pattern.voxels.begin(), pattern.voxels.end()}));
+  const auto add = [this](ros::Subscriber subscriber) { subscribers_.push_back(std::move(subscriber)); };
+  add(handle.subscribe("tissue/topology", kQueue, &SessionStream::takeTopology, this));
+  add(handle.subscribe("tissue/particles", kQueue, &SessionStream::takeParticles, this,
+                       ros::TransportHints().tcpNoDelay()));
+  add(handle.subscribe("joint_states", kQueue, &SessionStream::takeJoints, this, ros::TransportHints().tcpNoDelay()));
+  add(handle.subscribe("sutures", kQueue, &SessionStream::takeSutures, this));
+  add(handle.subscribe("/tf_static", kEventQueue, &SessionStream::takeTransforms, this));
+  add(handle.subscribe<geometry_msgs::WrenchStamped>("scope/measured_cf", kQueue, [this](const auto& message) {
+    const auto &f = message->wrench.force, &t = message->wrench.torque;
+    const std::array<double, 6> wrench{f.x, f.y, f.z, t.x, t.y, t.z};
+    std::transform(wrench.begin(), wrench.end(), content_.wrench.begin(),
+                   [](double v) { return static_cast<float>(v); });
+  }));
+  add(handle.subscribe<vibe_msgs::ProcedureState>("procedure/state", kQueue, [this](const auto& m) { state_ = m; }));
+  add(handle.subscribe<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kQueue,
+                                                [this](const auto& m) { skill_ = m; }));
+  add(handle.subscribe<vibe_msgs::ProcedureEvent>("procedure/events", kEventQueue, [this](const auto& message) {
+    events_.add(*message);
+    events_changed_ = true;
+  }));
+  add(handle.subscribe<vibe_msgs::ReplayStatus>("replay/status", kQueue, [this](const auto& message) {
+    server_.publish(Kind::Replay, textMessage(Kind::Replay, replayText(*message)));
+  }));
+}
+
+void SessionStream::provideFiles(const RobotText& robot) {
+  for (const auto& [path, file] : robot.meshes) server_.provide(path, pageFile("text/plain", contentOf(file)));
+}
+
+void SessionStream::publishScene() {
+  if (organ_)
+    server_.publish(Kind::Scene, textMessage(Kind::Scene, scene_.dump(-1, ' ', false, json::error_handler_t::replace)));
+}
+
+void SessionStream::takeTopology(const vibe_msgs::TissueTopology& message) {
+  graphics::TissueMesh mesh;
+  const std::string wrong = graphics::readTopology(message, mesh);
+  if (!wrong.empty()) return complain(wrong);
+  organ_ = std::make_unique<Organ>(std::move(mesh));
+  has_frame_ = false;
+  frame_ = {};
+  scene_["name"] = organ_->mesh.name;
+  scene_["revision"] = organ_->mesh.revision;
+  publishScene();
+  server_.publish(Kind::Topology, encodeTopology(organ_->mesh, organ_->map));
+}
+
+void SessionStream::takeParticles(const sensor_msgs::PointCloud2& message) {
+  if (!organ_ || server_.clients() == 0) return;
+  const std::string wrong = graphics::readParticles(message, organ_->mesh, frame_);
+  if (!wrong.empty()) return complain(wrong);
+  organ_->look.see(frame_);
+  has_frame_ = true;
+  content_.revision = frame_.revision;
+  content_.time = frame_.time;
+  content_.smoke = organ_->look.smoke();
+  server_.publish(Kind::Frame, encodeFrame(content_, frame_.positions));
+}
+
+void SessionStream::takeJoints(const sensor_msgs::JointState& message) {
+  content_.joints.assign(message.position.begin(), message.position.end());
+  if (scene_.contains("joints") && scene_["joints"] == message.name) return;
+  scene_["joints"] = message.name;
+  publishScene();
+}
+
+void SessionStream::takeTransforms(const tf2_msgs::TFMessage& message) {
+  for (const auto& each : message.transforms) {
+    if (each.child_frame_id != kBase) continue;
+    const auto& p = each.transform.translation;
+    const auto& q = each.transform.rotation;
+    scene_["base"] = {{"link", kBase}, {"place", {p.x, p.y, p.z}}, {"turn", {q.x, q.y, q.z, q.w}}};
+    publishScene();
+  }
+}
+
+void SessionStream::takeSutures(const vibe_msgs::SutureArray::ConstPtr& message) {
+  sutures_ = message;
+  sutures_changed_ = true;
+}
+
+void SessionStream::tick() {
+  ++ticks_;
+  if (events_changed_) server_.publish(Kind::Events, textMessage(Kind::Events, events_.text()));
+  events_changed_ = false;
+  if (ticks_ % kSlowTicks != 0) return;
+  if (sutures_changed_) publishSutures();
+  publishWall();
+  if (!state_) return;
+  std::string text = stateText(*state_, skill_.get(), sutures_.get());
+  if (text == state_text_) return;
+  state_text_ = std::move(text);
+  server_.publish(Kind::State, textMessage(Kind::State, state_text_));
+}
+
+void SessionStream::publishSutures() {
+  sutures_changed_ = false;
+  graphics::SutureDrawing drawing;
+  const std::string wrong = graphics::readSutures(*sutures_, drawing);
+  if (!wrong.empty()) return complain(wrong);
+  server_.publish(Kind::Sutures, encodeSutures(drawing));
+  graphics::ColouredShape threads;
+  graphics::appendSutures(drawing, graphics::naturalSutures(), threads);
+  Bytes shape = encodeShape(Kind::Threads, threads);
+  if (shape != threads_) server_.publish(Kind::Threads, shape);
+  threads_ = std::move(shape);
+  if (organ_) organ_->bleeding.setWounds(drawing, {});
+}
+
+void SessionStream::publishWall() {
+  if (!organ_ || !has_frame_ || server_.clients() == 0) return;
+  if (auto folds = organ_->look.folds(frame_)) server_.publish(Kind::Folds, std::move(*folds));
+  if (auto heat = organ_->look.heat(frame_)) server_.publish(Kind::Heat, std::move(*heat));
+  if (!sutures_ || (sutures_->bleedings.empty() && organ_->bleeding.shape().triangles.empty())) return;
+  organ_->surface.update(frame_.positions);
+  if (organ_->bleeding.update(&organ_->surface.vertices(), Eigen::Isometry3d::Identity()))
+    server_.publish(Kind::Blood, encodeShape(Kind::Blood, organ_->bleeding.shape()));
+}
+
+void SessionStream::complain(const std::string& sentence) {
+  if (sentence == complaint_) return;
+  complaint_ = sentence;
+  ROS_WARN("%s", sentence.c_str());
+}
+
+}  // namespace vibe::web

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/node_handle.h>
+#include <sensor_msgs/JointState.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <tf2_msgs/TFMessage.h>
+#include <vibe_msgs/TissueTopology.h>
+
+#include "protocol/frame_message.hpp"
+#include "protocol/wall_look.hpp"
+#include "scene_text.hpp"
+#include "server/web_server.hpp"
+#include "state_text.hpp"
+
+namespace vibe::web {
+
+/// Follows the topics of a simulator, or of vibe_player, and gives a server what pages show of them. While no page
+/// looks it reads the small topics only.
+class SessionStream {
+ public:
+  SessionStream(ros::NodeHandle& handle, WebServer& server, const std::string& description);
+  ~SessionStream();
+
+  /// Ten times a second: what changes slowly.
+  void tick();
+
+ private:
+  void takeTopology(const vibe_msgs::TissueTopology& message);
+  void takeParticles(const sensor_msgs::PointCloud2& message);
+  void takeJoints(const sensor_msgs::JointState& message);
+  void takeTransforms(const tf2_msgs::TFMessage& message);
+  void takeSutures(const vibe_msgs::SutureArray::ConstPtr& message);
+  void provideFiles(const RobotText& robot);
+  void publishScene();
+  void publishSutures();
+  void publishWall();
+  void complain(const std::string& sentence);
+
+  struct Organ;  // a topology, and what follows from it
+
+  WebServer& server_;
+  nlohmann::json scene_;
+  std::unique_ptr<Organ> organ_;
+  graphics::TissueFrame frame_;
+  FrameContent content_;
+  std::vector<ros::Subscriber> subscribers_;
+  vibe_msgs::ProcedureState::ConstPtr state_;
+  vibe_msgs::SkillMetrics::ConstPtr skill_;
+  vibe_msgs::SutureArray::ConstPtr sutures_;
+  EventList events_;
+  Bytes threads_;  // as last sent
+  std::string complaint_, state_text_;
+  bool has_frame_ = false, events_changed_ = true, sutures_changed_ = false;
+  int ticks_ = 0;
+};
+
+}  // namespace vibe::web

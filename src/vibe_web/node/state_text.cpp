@@ -1,0 +1,104 @@
+#include "state_text.hpp"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "vibe_rviz_plugins/messages/reference_values.hpp"
+#include "vibe_rviz_plugins/messages/table_rows.hpp"
+
+namespace vibe::web {
+
+using nlohmann::json;
+
+namespace {
+
+json measureText(const rviz_plugins::ShownMeasure& measure, const rviz_plugins::SessionMessages& session) {
+  const double value = measure.value(session);
+  const rviz_plugins::Rating rating = rviz_plugins::rate(measure, value, session.state.phase == "done");
+  return {{"label", measure.label},
+          {"unit", measure.unit},
+          {"decimals", measure.decimals},
+          {"value", std::isfinite(value) ? json(value) : json(nullptr)},
+          {"range", rviz_plugins::rangeText(measure)},
+          {"rating", rviz_plugins::ratingText(rating)},
+          {"outside", rating == rviz_plugins::Rating::Outside},
+          {"explained", rviz_plugins::explain(measure)}};
+}
+
+json setText(const rviz_plugins::SutureRow& row) {
+  return {{"set", row.set},     {"bites", row.bites},     {"technique", row.technique},
+          {"stage", row.stage}, {"tension", row.tension}, {"warns", row.warns},
+          {"help", row.help}};
+}
+
+/// Texts of messages may hold any bytes.
+std::string dumped(const json& text) {
+  return text.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string stateText(const vibe_msgs::ProcedureState& state, const vibe_msgs::SkillMetrics* skill,
+                      const vibe_msgs::SutureArray* sutures) {
+  json text = {{"scene", state.scene},
+               {"time", state.time},
+               {"paused", static_cast<bool>(state.paused)},
+               {"phase", state.phase},
+               {"tool", state.tool_state},
+               {"held", state.held_particles},
+               {"pressure", state.pressure},
+               {"volume", state.volume},
+               {"marks", state.marks},
+               {"burns", state.burns},
+               {"bites", state.bites},
+               {"sutures", state.sutures},
+               {"cinched", state.sutures_cinched},
+               {"bleeding", state.bleeding},
+               {"blood", state.blood_lost},
+               {"needle", !state.needle_loaded  ? "none"
+                          : state.needle_on_arm ? "on the arm"
+                                                : "in the exchange"},
+               {"measures", json::array()},
+               {"sets", json::array()}};
+  if (skill != nullptr)
+    for (const auto& measure : rviz_plugins::measures())
+      text["measures"].push_back(measureText(measure, {state, *skill, sutures}));
+  if (sutures != nullptr)
+    for (const auto& row : rviz_plugins::sutureRows(*sutures)) text["sets"].push_back(setText(row));
+  return dumped(text);
+}
+
+std::string replayText(const vibe_msgs::ReplayStatus& status) {
+  json marks = json::array();
+  for (std::size_t i = 0; i < status.marks.size() && i < status.mark_times.size(); ++i)
+    marks.push_back({{"time", status.mark_times[i]}, {"text", status.marks[i]}});
+  return dumped({{"file", status.file.substr(status.file.rfind('/') + 1)},
+                 {"time", status.time},
+                 {"duration", status.duration},
+                 {"playing", static_cast<bool>(status.playing)},
+                 {"rate", status.rate},
+                 {"marks", marks},
+                 {"difference", status.difference}});
+}
+
+void EventList::add(const vibe_msgs::ProcedureEvent& event) {
+  if (!rviz_plugins::isListed(event)) return;
+  entries_.push_back({++last_, event.header.stamp.toSec(),
+                      rviz_plugins::severityName(rviz_plugins::severityOf(event.kind)), rviz_plugins::eventText(event),
+                      event.kind});
+  if (entries_.size() > kKept) entries_.pop_front();
+}
+
+std::string EventList::text() const {
+  json list = json::array();
+  for (const Entry& entry : entries_)
+    list.push_back({{"number", entry.number},
+                    {"time", entry.time},
+                    {"kind", entry.kind},
+                    {"severity", entry.severity},
+                    {"text", entry.text}});
+  return dumped(list);
+}
+
+}  // namespace vibe::web

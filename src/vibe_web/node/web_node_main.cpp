@@ -1,0 +1,72 @@
+// web_node: the session in any browser, and in any headset that a browser knows.
+
+#include <cstdio>
+#include <exception>
+
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+
+#include "operator_drive.hpp"
+#include "session_stream.hpp"
+#include "vibe_node/startup.hpp"
+#include "web_options.hpp"
+
+namespace web = vibe::web;
+
+namespace {
+
+constexpr int kFailure = 1;
+constexpr int kUsage = 2;
+constexpr double kMasterPatience = 10;  // [s]
+constexpr double kTick = 0.01;          // [s]
+
+const char* const kHelp =
+    "Usage: rosrun vibe_web web_node [--lan] [_port:=8890] [_lan:=true] [_page:=FOLDER] [_certificates:=FOLDER]\n"
+    "Shows the session of a simulator, or of vibe_player, to browsers of this machine; with --lan to those of its\n"
+    "network, with a token and TLS. docs/web.md has more.\n";
+
+int fail(const std::exception& error, int status) {
+  std::fprintf(stderr, "web_node: %s\n", error.what());
+  return status;
+}
+
+void run(const web::ServerOptions& options) {
+  ros::NodeHandle handle;
+  web::OperatorDrive drive(handle);
+  web::WebServer server(
+      options, [&](web::ClientId client, const web::Command& command) { drive.hear(client, command); },
+      [&](web::ClientId client) { drive.leave(client); });
+  std::string description;
+  handle.getParam("robot_description", description);
+  web::SessionStream stream(handle, server, description);
+  std::printf("%s\n", web::invitation(options, server.port()).c_str());
+  std::fflush(stdout);
+  int ticks = 0;
+  const ros::WallTimer timer = handle.createWallTimer(ros::WallDuration(kTick), [&](const ros::WallTimerEvent&) {
+    drive.tick(server);
+    if (++ticks % 10 == 0) stream.tick();
+  });
+  while (ros::ok() && vibe::node::stopSignal() == 0)
+    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.1));
+  drive.goodbye();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (vibe::node::asksForHelp(argc, argv)) return std::fputs(kHelp, stdout), 0;
+  web::ServerOptions options;
+  try {
+    vibe::node::initWithGoodbye(argc, argv, "web_node");
+    if (!vibe::node::waitForMaster(kMasterPatience)) return 0;
+    options = web::serverOptions(web::readOptions(ros::NodeHandle("~"), argc, argv));
+  } catch (const std::exception& error) {
+    return fail(error, kUsage);
+  }
+  try {
+    run(options);
+  } catch (const std::exception& error) {
+    return fail(error, kFailure);
+  }
+  return 0;
+}

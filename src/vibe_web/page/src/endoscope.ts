@@ -1,0 +1,121 @@
+// The endoscope's picture: two plane pictures, bent by the lens, as vibe_graphics/graphics/endoscope_lens does it.
+
+import {
+  FloatType, HalfFloatType, LinearFilter, Mesh, OrthographicCamera, PerspectiveCamera, PlaneGeometry, Scene, Vector2, WebGLRenderTarget,
+  type Object3D, type RawShaderMaterial, type WebGLRenderer, DoubleSide, BufferAttribute,
+} from 'three';
+import { AutoExposure } from './exposure';
+import type { Lens, Source } from './messages';
+import { kEndoscopeLayer } from './organ';
+import { castShadow, type Capsule } from './shadow';
+import { materialOf } from './shaders';
+
+const kMeter = 32; // edge of the picture that measures the level [px]
+
+const degrees = (halfWidth: number) => (2 * Math.atan(halfWidth) * 180) / Math.PI;
+
+export class EndoscopeView {
+  readonly camera = new PerspectiveCamera(90, 1, 0.0005, 2);
+  readonly target: WebGLRenderTarget;
+  private whole: WebGLRenderTarget;
+  private middle: WebGLRenderTarget;
+  private meter = new WebGLRenderTarget(kMeter, kMeter);
+  private quad: Mesh<PlaneGeometry, RawShaderMaterial>;
+  private screen = new Scene();
+  private flat = new OrthographicCamera(-1, 1, 1, -1, 0, 1);
+  private exposure: AutoExposure;
+  private pixels = new Uint8Array(4 * kMeter * kMeter);
+
+  constructor(private renderer: WebGLRenderer, private lens: Lens, private mucosa: RawShaderMaterial) {
+    const type = renderer.extensions.has('EXT_color_buffer_float') && renderer.extensions.has('OES_texture_float_linear') ? FloatType : HalfFloatType;
+    const plane = ({ size }: Source) => new WebGLRenderTarget(size, size, { type, minFilter: LinearFilter, magFilter: LinearFilter });
+    this.whole = plane(lens.whole);
+    this.middle = plane(lens.middle.size > 0 ? lens.middle : lens.whole);
+    this.target = new WebGLRenderTarget(lens.size, lens.size, { depthBuffer: false });
+    this.exposure = new AutoExposure(lens.exposure);
+    this.camera.layers.set(kEndoscopeLayer);
+    this.quad = new Mesh(new PlaneGeometry(2, 2), this.lensMaterial());
+    const place = this.quad.geometry.getAttribute('uv').array as Float32Array;
+    this.quad.geometry.setAttribute('texcoord0', new BufferAttribute(place, 2));
+    this.quad.frustumCulled = false;
+    this.screen.add(this.quad);
+  }
+
+  dispose() {
+    for (const target of [this.whole, this.middle, this.meter, this.target]) target.dispose();
+    this.quad.material.dispose();
+  }
+
+  private lensMaterial() {
+    const { lens } = this;
+    const material = materialOf({
+      vertex: 'endoscope.vert', fragment: 'endoscope.frag', side: DoubleSide,
+      uniforms: {
+        picture: { value: this.whole.texture }, middle: { value: this.middle.texture }, picture_size: { value: new Vector2() },
+        radius: { value: 0 }, half_angle: { value: lens.field_of_view / 2 }, equidistant: { value: 1 },
+        source_half_width: { value: lens.whole.half_width }, source_size: { value: lens.whole.size },
+        middle_half_width: { value: lens.middle.size > 0 ? lens.middle.half_width : 0 }, middle_size: { value: lens.middle.size },
+        gain: { value: 1 },
+      },
+    });
+    material.depthTest = material.depthWrite = false;
+    return material;
+  }
+
+  /** Draws into `target` what the lens at this frame (z ahead, x right, y down) sees at this time [s]. */
+  draw(scene: Scene, frame: Object3D, capsules: Capsule[], time: number) {
+    const { renderer, camera } = this;
+    const wasXr = renderer.xr.enabled;
+    renderer.xr.enabled = false;
+    frame.updateWorldMatrix(true, false);
+    frame.matrixWorld.decompose(camera.position, camera.quaternion, camera.scale);
+    camera.rotateX(Math.PI);
+    camera.updateMatrixWorld();
+    scene.updateMatrixWorld();
+    const { capsules: numbers, capsule_count: count } = this.mucosa.uniforms;
+    count.value = castShadow(capsules, camera, numbers.value);
+    this.drawPlane(scene, this.whole, this.lens.whole.half_width);
+    if (this.lens.middle.size > 0) this.drawPlane(scene, this.middle, this.lens.middle.half_width);
+    do {
+      this.bend(this.target, this.lens.size);
+      this.exposure.see(this.level(), time);
+    } while (this.exposure.isLost);
+    renderer.setRenderTarget(null);
+    renderer.xr.enabled = wasXr;
+  }
+
+  private drawPlane(scene: Scene, target: WebGLRenderTarget, halfWidth: number) {
+    this.camera.fov = degrees(halfWidth);
+    this.camera.updateProjectionMatrix();
+    this.mucosa.uniforms.window.value.set(target.width, target.height);
+    this.renderer.setRenderTarget(target);
+    this.renderer.setClearColor(0, 1);
+    this.renderer.clear();
+    this.renderer.render(scene, this.camera);
+  }
+
+  private bend(target: WebGLRenderTarget | null, size: number) {
+    const { uniforms } = this.quad.material;
+    uniforms.picture_size.value.set(size, size);
+    uniforms.radius.value = size / 2;
+    uniforms.gain.value = this.exposure.gain;
+    this.renderer.setRenderTarget(target);
+    this.renderer.render(this.screen, this.flat);
+  }
+
+  /** Mean of the picture, weighted to its centre, as EndoscopeLens::level(). */
+  private level(): number {
+    this.bend(this.meter, kMeter);
+    this.renderer.readRenderTargetPixels(this.meter, 0, 0, kMeter, kMeter, this.pixels);
+    let sum = 0, weights = 0;
+    for (let y = 0; y < kMeter; y++)
+      for (let x = 0; x < kMeter; x++) {
+        const share = Math.hypot(x + 0.5 - kMeter / 2, y + 0.5 - kMeter / 2) / (kMeter / 2);
+        if (share > 1) continue;
+        const weight = 1 - 0.75 * share * share, at = 4 * (y * kMeter + x), p = this.pixels;
+        sum += (weight * (0.299 * p[at] + 0.587 * p[at + 1] + 0.114 * p[at + 2])) / 255;
+        weights += weight;
+      }
+    return sum / weights;
+  }
+}

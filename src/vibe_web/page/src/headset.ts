@@ -1,0 +1,208 @@
+// The session in a headset, through WebXR: a room with the endoscope's picture on a monitor, the organ as a model to walk
+// around, and controllers that hold the handle of the scope.
+
+import {
+  BufferAttribute, BufferGeometry, CircleGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial, PlaneGeometry, Quaternion, Vector3,
+  type WebXRManager, type XRTargetRaySpace,
+} from 'three';
+import type { Drive } from './drive';
+import type { Lens } from './messages';
+import { kPlainLayer } from './organ';
+import type { Stage } from './stage';
+
+const kMonitor = 0.9; // edge of the monitor [m]
+const kAhead = 1.3, kBelow = 0.1; // where its centre is: in front of the eyes and below them [m]
+const kModelAhead = 0.65, kModelBelow = 0.45; // the same of the organ's model
+const kModelScale = 1.2;
+const kDome = 1.6; // radius of the picture around the viewer [m]
+const kInsertion = 0.03, kRotation = 0.8; // speeds of the hand that are those of a key: [m/s], [rad/s]
+const kStrong = 8; // force of the strongest pulse [N]
+
+const enum Pad { Trigger = 0, Squeeze = 1, Stick = 3, Lower = 4, Upper = 5 }
+const kGrab = 'G'.charCodeAt(0), kGas = 'I'.charCodeAt(0), kPedal = ' '.charCodeAt(0);
+
+/** The picture as the lens took it, on a part of a ball around the eye: equidistant, so angles are true. */
+function dome(fieldOfView: number): BufferGeometry {
+  const rings = 24, sectors = 64, place: number[] = [], uv: number[] = [], triangles: number[] = [];
+  for (let r = 0; r <= rings; r++)
+    for (let s = 0; s < sectors; s++) {
+      const share = r / rings, theta = (share * fieldOfView) / 2, phi = (2 * Math.PI * s) / sectors;
+      place.push(kDome * Math.sin(theta) * Math.cos(phi), kDome * Math.sin(theta) * Math.sin(phi), -kDome * Math.cos(theta));
+      uv.push(0.5 + 0.5 * share * Math.cos(phi), 0.5 + 0.5 * share * Math.sin(phi));
+      if (r === rings) continue;
+      const a = r * sectors + s, b = r * sectors + ((s + 1) % sectors);
+      triangles.push(a, b, a + sectors, b, b + sectors, a + sectors);
+    }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(new Float32Array(place), 3));
+  geometry.setAttribute('uv', new BufferAttribute(new Float32Array(uv), 2));
+  geometry.setIndex(triangles);
+  return geometry;
+}
+
+/** A controller, and how it was held in the frame before. */
+interface Grip { space: XRTargetRaySpace; source: XRInputSource | null; held: boolean; place: Vector3; turn: Quaternion; pressed: boolean[] }
+
+export class Headset {
+  private room = new Group();
+  private model = new Group(); // the organ upright, at the height of a table
+  private monitor: Mesh<PlaneGeometry, MeshBasicMaterial>;
+  private around: Mesh<BufferGeometry, MeshBasicMaterial>;
+  private grips: Grip[] = [];
+  private last = 0;
+  private placed = false;
+  force = 0; // [N]
+
+  constructor(private stage: Stage, private drive: Drive, lens: Lens) {
+    const { xr } = stage.renderer;
+    xr.enabled = true;
+    xr.setReferenceSpaceType('local-floor');
+    const picture = new MeshBasicMaterial({ side: DoubleSide });
+    this.monitor = new Mesh(new PlaneGeometry(kMonitor, kMonitor), picture);
+    this.around = new Mesh(dome(lens.field_of_view), picture);
+    const floor = new Mesh(new CircleGeometry(3, 48).rotateX(-Math.PI / 2), new MeshBasicMaterial({ color: 0x2c3238 }));
+    const rim = new Mesh(new PlaneGeometry(kMonitor + 0.06, kMonitor + 0.06).translate(0, 0, -0.01), new MeshBasicMaterial({ color: 0x0a0c0e }));
+    this.monitor.add(rim);
+    this.room.add(floor, this.monitor, this.around, this.model);
+    this.room.traverse((part) => part.layers.set(kPlainLayer));
+    this.around.visible = false;
+    this.room.visible = false;
+    stage.scene.add(this.room);
+    for (const k of [0, 1]) this.addGrip(xr, k);
+    xr.addEventListener('sessionstart', () => this.begin());
+    xr.addEventListener('sessionend', () => this.end());
+  }
+
+  /** Asked by a click; says why not in one sentence. */
+  async enter(): Promise<string> {
+    const { xr } = this.stage.renderer;
+    if (xr.isPresenting) return (await xr.getSession()?.end(), '');
+    try {
+      await xr.setSession(await navigator.xr!.requestSession('immersive-vr', { optionalFeatures: ['local-floor', 'hand-tracking'] }));
+      return '';
+    } catch (error) {
+      return `The browser cannot enter a headset (${(error as Error).message}); is one connected, and is the address https?`;
+    }
+  }
+
+  private addGrip(xr: WebXRManager, k: number) {
+    const grip: Grip = { space: xr.getController(k), source: null, held: false, place: new Vector3(), turn: new Quaternion(), pressed: [] };
+    grip.space.addEventListener('connected', ({ data }) => (grip.source = data));
+    grip.space.addEventListener('disconnected', () => ((grip.source = null), (grip.held = false)));
+    // hands pinch instead of squeezing
+    for (const word of ['squeeze', 'select'] as const) {
+      grip.space.addEventListener(`${word}start`, () => word === 'select' && !grip.source?.hand ? undefined : this.hold(grip));
+      grip.space.addEventListener(`${word}end`, () => word === 'select' && !grip.source?.hand ? undefined : ((grip.held = false), undefined));
+    }
+    this.grips.push(grip);
+    this.stage.scene.add(grip.space);
+  }
+
+  /** One hand holds the handle, whichever it is: left- and right-handed people need no setting. */
+  private hold(grip: Grip) {
+    for (const other of this.grips) other.held = other === grip;
+    grip.place.copy(grip.space.position);
+    grip.turn.copy(grip.space.quaternion);
+  }
+
+  private begin() {
+    this.placed = false;
+    this.room.visible = true;
+    this.model.add(this.stage.body);
+    this.model.rotation.set(-Math.PI / 2, 0, -Math.PI / 2); // z of the simulator is up, and its front faces the viewer
+    this.last = performance.now();
+  }
+
+  private end() {
+    this.room.visible = false;
+    this.stage.scene.add(this.stage.body);
+    this.drive.headset.keys.clear();
+    this.drive.headset.axes.fill(0);
+    this.stage.dirty = true;
+  }
+
+  /** Puts the room in front of the eyes, at their height: sitting or standing. */
+  recentre() {
+    const { xr } = this.stage.renderer, camera = xr.getCamera();
+    const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld), ahead = new Vector3(0, 0, -1).transformDirection(camera.matrixWorld);
+    if (eye.lengthSq() === 0) return;
+    ahead.setY(0).normalize();
+    this.room.position.set(eye.x, 0, eye.z);
+    this.room.rotation.y = Math.atan2(-ahead.x, -ahead.z);
+    this.monitor.position.set(0, eye.y - kBelow, -kAhead);
+    this.around.position.set(0, eye.y, 0);
+    this.model.position.set(0, eye.y - kModelBelow, -kModelAhead);
+    this.placed = true;
+  }
+
+  /** Called for each frame of the headset. */
+  draw() {
+    const { stage } = this, now = performance.now(), seconds = Math.min(0.1, (now - this.last) / 1000) || 0.011;
+    this.last = now;
+    if (!this.placed) this.recentre();
+    stage.body.position.copy(stage.organ.centre).negate(); // the model stands where its middle is
+    this.readHands(seconds);
+    stage.renderer.info.reset();
+    this.model.visible = true; // the endoscope is in it, and its light falls off with true distances
+    this.model.scale.setScalar(1);
+    stage.drawEndoscope();
+    this.model.scale.setScalar(kModelScale);
+    this.model.visible = !this.around.visible;
+    if (stage.endoscope && this.monitor.material.map !== stage.endoscope.target.texture) {
+      this.monitor.material.map = stage.endoscope.target.texture;
+      this.monitor.material.needsUpdate = true;
+    }
+    stage.renderer.xr.getCamera().layers.enable(kPlainLayer);
+    stage.camera.layers.set(kPlainLayer);
+    stage.renderer.setClearColor(0x3a424b, 1);
+    stage.renderer.clear();
+    stage.renderer.render(stage.scene, stage.camera);
+    stage.counts = { calls: stage.renderer.info.render.calls, triangles: stage.renderer.info.render.triangles };
+  }
+
+  private readHands(seconds: number) {
+    const { axes, keys } = this.drive.headset;
+    axes.fill(0);
+    keys.clear();
+    for (const grip of this.grips) {
+      if (grip.held) this.moveHandle(grip, seconds, axes);
+      this.readPad(grip, axes, keys);
+    }
+  }
+
+  private moveHandle(grip: Grip, seconds: number, axes: number[]) {
+    const ahead = new Vector3(0, 0, -1).applyQuaternion(grip.turn);
+    const along = grip.space.position.clone().sub(grip.place).dot(ahead);
+    const turned = grip.turn.clone().invert().multiply(grip.space.quaternion);
+    const roll = 2 * Math.atan2(-turned.z, turned.w);
+    axes[0] += along / seconds / kInsertion;
+    axes[1] += Math.atan2(Math.sin(roll), Math.cos(roll)) / seconds / kRotation;
+    grip.place.copy(grip.space.position);
+    grip.turn.copy(grip.space.quaternion);
+  }
+
+  private readPad(grip: Grip, axes: number[], keys: Set<number>) {
+    const pad = grip.source?.gamepad;
+    if (!pad) return;
+    const down = (button: Pad) => pad.buttons[button]?.pressed ?? false;
+    const pressed = (button: Pad) => down(button) && !grip.pressed[button];
+    axes[3] -= pad.axes[2] ?? 0;
+    axes[2] -= pad.axes[3] ?? 0;
+    if (down(Pad.Trigger)) keys.add(kPedal);
+    if (grip.source!.handedness === 'left') {
+      if (pressed(Pad.Lower)) this.toggleAround();
+      if (pressed(Pad.Upper)) this.recentre();
+    } else {
+      if (down(Pad.Lower)) keys.add(kGrab);
+      if (down(Pad.Upper)) keys.add(kGas);
+    }
+    if (grip.held && this.force > 0.3) void pad.hapticActuators?.[0]?.pulse(Math.min(1, this.force / kStrong), 30);
+    grip.pressed = pad.buttons.map((button) => button.pressed);
+  }
+
+  /** The picture on the monitor, or all around the eyes. */
+  toggleAround() {
+    this.around.visible = !this.around.visible;
+    this.monitor.visible = !this.around.visible;
+  }
+}

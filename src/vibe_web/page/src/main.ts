@@ -1,0 +1,96 @@
+// The page: the session of a simulator, or a recording, in a browser.
+
+import { savePicture, VideoRecorder } from './capture';
+import { Drive } from './drive';
+import { Headset } from './headset';
+import { Kind, readFrame, readShape, readSutures, readText, readTopology, type Frame, type SceneText } from './messages';
+import { element, Panel } from './panel';
+import { Stage } from './stage';
+import { Stream } from './stream';
+
+const kRate = 60; // frames asked for [Hz]
+const options = new URLSearchParams(location.hash.slice(1));
+
+const canvas = element<HTMLCanvasElement>('canvas');
+const stage = new Stage(canvas, Number(options.get('size') ?? 0));
+const stream = new Stream(options.get('token') ?? '', Number(options.get('rate') ?? kRate), (open, text) => {
+  panel.status(text);
+  if (!open) drive.lost();
+  panel.showDriving();
+});
+const drive = new Drive(stream);
+const panel = new Panel(stream, drive);
+const video = new VideoRecorder(canvas);
+let scene: SceneText | null = null, headset: Headset | null = null, frame: Frame | null = null, pattern = false;
+let undrawn = 0; // frames that have come since the last picture
+
+/** For tests and for the curious: what has been received and drawn. */
+const stats = { frames: 0, drawn: 0, firstPicture: 0, latencies: [] as number[], received: () => stream.received };
+
+async function takeScene(text: SceneText) {
+  scene = text;
+  stage.robot.setScene(text);
+  if (stage.endoscope) return;
+  stage.setLens(text.lens);
+  drive.setTable(text.keys);
+  panel.showKeys(text.keys);
+  headset = new Headset(stage, drive, text.lens);
+  element('headset').hidden = !((await navigator.xr?.isSessionSupported('immersive-vr').catch(() => false)) ?? false);
+  const bytes = await (await fetch(text.pattern.path.slice(1))).arrayBuffer();
+  stage.organ.setPattern(new Uint8Array(bytes), text.pattern.size);
+  pattern = true;
+  stage.dirty = true;
+}
+
+stream.on(Kind.Scene, (bytes) => void takeScene(readText(bytes)));
+stream.on(Kind.Topology, (bytes) => stage.organ.setTopology(readTopology(bytes)));
+stream.on(Kind.Frame, (bytes) => {
+  frame = readFrame(bytes);
+  stats.frames++;
+  undrawn++;
+});
+stream.on(Kind.Folds, (bytes) => stage.organ.setFolds(bytes, scene?.tallest_fold ?? 0));
+stream.on(Kind.Heat, (bytes) => stage.organ.setHeat(bytes));
+stream.on(Kind.Sutures, (bytes) => stage.sutures.set(readSutures(bytes)));
+stream.on(Kind.Threads, (bytes) => stage.sutures.setThreads(readShape(bytes)));
+stream.on(Kind.Blood, (bytes) => stage.sutures.setBlood(readShape(bytes)));
+
+drive.onChange = () => panel.showDriving();
+element('swap').onclick = () => {
+  stage.endoscopeLarge = !stage.endoscopeLarge;
+  stage.dirty = true;
+};
+stage.endoscopeLarge = options.get('view') === 'endoscope';
+element('control').onclick = () => {
+  if (drive.driving) drive.giveBack();
+  else drive.take();
+  canvas.focus();
+};
+element('headset').onclick = async () => panel.status((await headset?.enter()) || 'Connected');
+element('picture').onclick = () => savePicture(canvas);
+element('video').onclick = () => {
+  video.toggle();
+  element('video').setAttribute('aria-pressed', String(video.running));
+};
+
+stage.renderer.setAnimationLoop(() => {
+  const shown = frame;
+  if (shown) {
+    frame = null;
+    stage.setFrame(shown);
+    const force = Math.hypot(...shown.wrench.subarray(0, 3));
+    panel.showForce(force);
+    if (headset) headset.force = force;
+  }
+  if (stage.renderer.xr.isPresenting) headset?.draw();
+  else stage.draw();
+  if (undrawn > 0) stream.send(Uint8Array.of(7, Math.min(255, undrawn))); // then the server sends more
+  undrawn = 0;
+  if (!shown || !pattern) return;
+  stats.drawn++;
+  stats.firstPicture ||= performance.now();
+  stats.latencies.push(Date.now() - 1000 * shown.time);
+  if (stats.latencies.length > 600) stats.latencies.shift();
+});
+
+Object.assign(window, { vibe: { stage, stream, drive, stats, headset: () => headset } });

@@ -1,0 +1,194 @@
+// What is drawn: the organ with the endoscope from outside, and the endoscope's picture, one large and one small.
+
+import {
+  AmbientLight, ArrowHelper, ColorManagement, DirectionalLight, Group, LinearSRGBColorSpace, Mesh, MeshBasicMaterial,
+  OrthographicCamera, PerspectiveCamera, PlaneGeometry, Scene, Vector3, Vector4, WebGLRenderer,
+} from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { EndoscopeView } from './endoscope';
+import type { Frame, Lens } from './messages';
+import { kPlainLayer, Organ } from './organ';
+import { Robot } from './robot';
+import { smoke } from './shaders';
+import { SutureView } from './sutures';
+
+const kSizes = [720, 480, 320, 240]; // of the endoscope's picture: a smaller one where drawing takes too long [px]
+const kTooLong = 60; // [ms]
+const kArrow = 0.02; // length of a newton [m]
+const kLensFrame = 'scope_camera_optical', kTipFrame = 'scope_tip';
+
+ColorManagement.enabled = false; // shaders give shades as screens show them
+
+export class Stage {
+  readonly scene = new Scene();
+  readonly body = new Group(); // world of the simulator: x to the front, y to the left, z to the head
+  readonly organ = new Organ();
+  readonly robot = new Robot();
+  readonly sutures = new SutureView();
+  readonly renderer: WebGLRenderer;
+  readonly camera = new PerspectiveCamera(40, 1, 0.01, 10);
+  readonly controls: OrbitControls;
+  endoscope: EndoscopeView | null = null;
+  endoscopeLarge = false;
+  time = 0; // of the frame that is shown [s]
+  dirty = true;
+  drawMs = 0;
+  counts = { calls: 0, triangles: 0 }; // of the last picture of each kind, summed
+  private lens: Lens | null = null;
+  private size = 0;
+  private slow = 0;
+  private framed = -1;
+  private drawnTime = NaN;
+  private arrow = new ArrowHelper(new Vector3(1, 0, 0), new Vector3(), 0.01, 0xffd200);
+  private screen = new Scene();
+  private flat = new OrthographicCamera(-1, 1, 1, -1, 0, 1);
+  private picture = new Mesh(new PlaneGeometry(2, 2), new MeshBasicMaterial({ depthTest: false, depthWrite: false }));
+
+  constructor(readonly canvas: HTMLCanvasElement, private fixedSize: number) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer.outputColorSpace = LinearSRGBColorSpace;
+    this.renderer.autoClear = false;
+    this.renderer.info.autoReset = false;
+    this.scene.add(this.body);
+    this.body.add(this.organ.root, this.robot.root, this.sutures.root, this.arrow);
+    this.light();
+    this.arrow.traverse((part) => part.layers.set(kPlainLayer));
+    this.arrow.visible = false;
+    this.camera.layers.set(kPlainLayer);
+    this.camera.up.set(0, 0, 1);
+    this.camera.position.set(0.4, -0.19, 0.08);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener('change', () => (this.dirty = true));
+    this.screen.add(this.picture);
+    this.size = fixedSize || kSizes[0];
+    new ResizeObserver(() => this.resize()).observe(canvas);
+  }
+
+  private light() {
+    const key = new DirectionalLight(0xffffff, 2.2), fill = new AmbientLight(0xffffff, 0.9);
+    key.position.set(1, -0.6, 1);
+    for (const light of [key, fill]) {
+      light.layers.enable(kPlainLayer);
+      this.scene.add(light);
+    }
+  }
+
+  setLens(lens: Lens) {
+    this.lens = lens;
+    this.makeEndoscope();
+  }
+
+  private makeEndoscope() {
+    if (!this.lens) return;
+    const part = this.size / this.lens.size;
+    const scaled = (source: Lens['whole']) => ({ ...source, size: Math.round(source.size * part) });
+    this.endoscope?.dispose();
+    this.endoscope = new EndoscopeView(this.renderer, { ...this.lens, size: this.size, whole: scaled(this.lens.whole), middle: scaled(this.lens.middle) }, this.organ.mucosa);
+    this.picture.material.map = this.endoscope.target.texture;
+    this.picture.material.needsUpdate = true;
+    this.drawnTime = NaN;
+  }
+
+  setFrame(frame: Frame) {
+    if (frame.revision !== this.organ.revision) return;
+    this.organ.setFrame(frame);
+    this.robot.setJoints(frame.joints);
+    smoke.value = [frame.smoke, frame.time % 1000, 0, 0];
+    this.showForce(frame.wrench);
+    if (this.framed !== frame.revision) this.lookAtOrgan(frame.revision);
+    this.time = frame.time;
+    this.dirty = true;
+  }
+
+  private showForce(wrench: Float32Array) {
+    const force = new Vector3(...wrench.subarray(0, 3)), newton = force.length();
+    this.arrow.visible = newton > 0.05 && this.robot.has(kTipFrame);
+    if (!this.arrow.visible) return;
+    const tip = this.robot.frame(kTipFrame);
+    tip.updateWorldMatrix(true, false);
+    const toBody = this.body.matrixWorld.clone().invert().multiply(tip.matrixWorld);
+    this.arrow.position.setFromMatrixPosition(toBody);
+    this.arrow.setDirection(force.transformDirection(toBody));
+    this.arrow.setLength(Math.max(0.008, kArrow * newton), 0.006, 0.004);
+  }
+
+  private lookAtOrgan(revision: number) {
+    this.framed = revision;
+    const to = this.camera.position.clone().sub(this.controls.target);
+    this.controls.target.copy(this.organ.centre);
+    this.camera.position.copy(this.organ.centre).add(to);
+    this.controls.update();
+  }
+
+  private resize() {
+    const { clientWidth, clientHeight } = this.canvas;
+    if (this.renderer.xr.isPresenting || !clientWidth || !clientHeight) return;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.dirty = true;
+  }
+
+  /** The endoscope's picture of the present frame, unless there is one. */
+  drawEndoscope() {
+    if (!this.endoscope || !this.robot.has(kLensFrame) || this.drawnTime === this.time) return;
+    const begin = performance.now();
+    this.endoscope.draw(this.scene, this.robot.frame(kLensFrame), this.robot.capsules, this.time);
+    this.drawnTime = this.time;
+    this.slow = 0.8 * this.slow + 0.2 * (performance.now() - begin);
+    const next = kSizes[kSizes.indexOf(this.size) + 1];
+    if (this.fixedSize || this.slow < kTooLong || !next) return;
+    this.size = next;
+    this.slow = 0;
+    this.makeEndoscope();
+  }
+
+  draw() {
+    if (!this.dirty) return;
+    this.dirty = false;
+    const begin = performance.now(), { renderer } = this;
+    renderer.info.reset();
+    this.drawEndoscope();
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const edge = Math.round(0.42 * Math.min(width, height)), inset = new Vector4(width - edge - 8, 8, edge, edge);
+    const square = Math.min(width, height);
+    renderer.setRenderTarget(null);
+    renderer.setClearColor(0x101418, 1);
+    renderer.setViewport(0, 0, width, height);
+    renderer.setScissorTest(false);
+    renderer.clear();
+    if (this.endoscopeLarge) {
+      this.drawPicture(new Vector4((width - square) / 2, (height - square) / 2, square, square));
+      this.drawOutside(inset);
+    } else {
+      this.drawOutside(new Vector4(0, 0, width, height));
+      this.drawPicture(inset);
+    }
+    this.counts = { calls: renderer.info.render.calls, triangles: renderer.info.render.triangles };
+    this.drawMs = performance.now() - begin;
+  }
+
+  private drawOutside(place: Vector4) {
+    this.camera.aspect = place.z / place.w;
+    this.camera.updateProjectionMatrix();
+    this.renderer.setViewport(place);
+    this.renderer.setScissor(place);
+    this.renderer.setScissorTest(true);
+    this.renderer.clear();
+    this.renderer.render(this.scene, this.camera);
+    this.renderer.setScissorTest(false);
+  }
+
+  private drawPicture(place: Vector4) {
+    if (!this.endoscope) return;
+    this.renderer.setViewport(place);
+    this.renderer.render(this.screen, this.flat);
+  }
+
+  /** Level of red, green and blue of the endoscope's picture, rows from below: for pictures that are compared. */
+  pictureBytes(): { size: number; bytes: Uint8Array } {
+    const size = this.endoscope!.target.width, bytes = new Uint8Array(4 * size * size);
+    this.renderer.readRenderTargetPixels(this.endoscope!.target, 0, 0, size, size, bytes);
+    return { size, bytes };
+  }
+}
+

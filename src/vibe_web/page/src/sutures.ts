@@ -1,0 +1,139 @@
+// Threads, T-tags, cinches, bites and bleeding: from outside drawn here, with the tension of threads as their colour; as
+// the endoscope sees them, the shapes of vibe_graphics, which the server sends.
+
+import { BufferAttribute, BufferGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial, Vector3 } from 'three';
+import { CylinderGeometry, SphereGeometry, type Material } from 'three';
+import type { Shape as SentShape, Sutures } from './messages';
+import { kEndoscopeLayer, kPlainLayer } from './organ';
+import { kReach, materialOf, smoke } from './shaders';
+
+const kThread = 0.16e-3; // radius of 2-0 polypropylene [m]
+const kEmphasis = 3; // of the view from outside, as in vibe.rviz
+const kSides = 6;
+const kSteel = [0.72, 0.72, 0.74, 0.5], kPolymer = [0.85, 0.86, 0.88, 1];
+const kStrong = 8; // tension at the end of the colours [N]
+
+/** From blue (slack) over yellow to red. */
+function tensionColour(tension: number): number[] {
+  if (tension <= 0) return [0.93, 0.95, 1, 1];
+  const t = Math.min(1, tension / kStrong);
+  return [Math.min(1, 0.15 + 1.7 * t), 0.85 - 0.7 * Math.abs(t - 0.4), Math.max(0.1, 0.9 - 2 * t), 1];
+}
+
+class Shape {
+  private positions: number[] = [];
+  private normals: number[] = [];
+  private colours: number[] = [];
+  private triangles: number[] = [];
+
+  tube(points: Vector3[], radius: number, colour: number[]) {
+    const first = this.positions.length / 3, along = new Vector3(), side = new Vector3(), up = new Vector3(), out = new Vector3();
+    points.forEach((point, k) => {
+      along.subVectors(points[Math.min(k + 1, points.length - 1)], points[Math.max(k - 1, 0)]).normalize();
+      if (k === 0) side.set(Math.abs(along.x) < 0.8 ? 1 : 0, Math.abs(along.x) < 0.8 ? 0 : 1, 0);
+      side.addScaledVector(along, -side.dot(along)).normalize();
+      up.crossVectors(along, side);
+      for (let s = 0; s < kSides; s++) {
+        const angle = (2 * Math.PI * s) / kSides;
+        out.copy(side).multiplyScalar(Math.cos(angle)).addScaledVector(up, Math.sin(angle));
+        this.positions.push(point.x + radius * out.x, point.y + radius * out.y, point.z + radius * out.z);
+        this.normals.push(out.x, out.y, out.z);
+        this.colours.push(...colour);
+      }
+    });
+    for (let k = 0; k + 1 < points.length; k++)
+      for (let s = 0; s < kSides; s++) {
+        const a = first + k * kSides + s, b = first + k * kSides + ((s + 1) % kSides);
+        this.triangles.push(a, b, a + kSides, b, b + kSides, a + kSides);
+      }
+  }
+
+  body(geometry: BufferGeometry, colour: number[]) {
+    const first = this.positions.length / 3, count = geometry.getAttribute('position').count;
+    this.positions.push(...geometry.getAttribute('position').array);
+    this.normals.push(...geometry.getAttribute('normal').array);
+    for (let k = 0; k < count; k++) this.colours.push(...colour);
+    for (const corner of geometry.index!.array) this.triangles.push(first + corner);
+    geometry.dispose();
+  }
+
+  geometry(): BufferGeometry {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new BufferAttribute(new Float32Array(this.positions), 3));
+    geometry.setAttribute('normal', new BufferAttribute(new Float32Array(this.normals), 3));
+    geometry.setAttribute('color', new BufferAttribute(new Float32Array(this.colours), 4));
+    geometry.setIndex(this.triangles);
+    return geometry;
+  }
+}
+
+const kFull = [0.1, 0.75, 0.3, 1], kPartial = [0.95, 0.55, 0.1, 1], kBleeding = [0.7, 0.03, 0.03, 1], kStopped = [0.3, 0.12, 0.08, 1];
+
+export class SutureView {
+  readonly root = new Group();
+  private plain = this.mesh(kPlainLayer, new MeshBasicMaterial({ vertexColors: true }));
+  private natural = this.mesh(kEndoscopeLayer, materialOf({
+    vertex: 'surface.vert', fragment: 'suture.frag', side: DoubleSide, uniforms: { reach: { value: kReach }, smoke },
+  }));
+  private blood = this.mesh(kEndoscopeLayer, materialOf({
+    vertex: 'surface.vert', fragment: 'blood.frag', side: DoubleSide, transparent: true, uniforms: { reach: { value: kReach }, smoke },
+  }));
+
+  private mesh(layer: number, material: Material): Mesh {
+    const mesh = new Mesh(new BufferGeometry(), material);
+    mesh.layers.set(layer);
+    mesh.frustumCulled = false;
+    mesh.visible = false;
+    this.root.add(mesh);
+    return mesh;
+  }
+
+  set(sutures: Sutures) {
+    replace(this.plain, this.shapeOf(sutures).geometry());
+  }
+
+  setThreads(shape: SentShape) {
+    replace(this.natural, geometryOf(shape));
+  }
+
+  setBlood(shape: SentShape) {
+    replace(this.blood, geometryOf(shape));
+  }
+
+  private shapeOf(sutures: Sutures): Shape {
+    const shape = new Shape();
+    for (const set of sutures.sets) {
+      for (const { tension, points } of set.threads) {
+        const line = Array.from({ length: points.length / 3 }, (_, k) => new Vector3().fromArray(points, 3 * k));
+        if (line.length > 1) shape.tube(line, kThread * kEmphasis, tensionColour(tension));
+      }
+      if (set.tTag) shape.body(at(new CylinderGeometry(0.45e-3, 0.45e-3, 6.5e-3, 10), set.tTag), kSteel);
+      if (set.cinch) shape.body(at(new CylinderGeometry(0.95e-3, 1.3e-3, 6e-3, 12), set.cinch), kPolymer);
+      for (const bite of set.bites) shape.body(at(new SphereGeometry(1.5e-3, 8, 6), bite.place), bite.full ? kFull : kPartial);
+    }
+    for (const wound of sutures.wounds) shape.body(at(new SphereGeometry(woundRadius(wound.amount), 16, 10), wound.place), wound.rate > 0 ? kBleeding : kStopped);
+    return shape;
+  }
+}
+
+const at = <T extends BufferGeometry>(body: T, place: number[]): T => body.translate(place[0], place[1], place[2]);
+
+/** Of a ball with a third of what is lost, so that it is seen from outside [m]. */
+const woundRadius = (millilitres: number) => Math.min(0.02, 0.01 * Math.cbrt(0.3 * millilitres + 0.02));
+
+function geometryOf({ places, triangles, colours, normals }: SentShape): BufferGeometry {
+  const geometry = new BufferGeometry(), unit = new Float32Array(places.length);
+  for (let v = 0; 3 * v < unit.length; v++) for (let k = 0; k < 3; k++) unit[3 * v + k] = normals[4 * v + k] / 127;
+  geometry.setAttribute('position', new BufferAttribute(places, 3));
+  geometry.setAttribute('normal', new BufferAttribute(unit, 3));
+  geometry.setAttribute('vertex_colour', new BufferAttribute(colours, 4, true));
+  geometry.setAttribute('texcoord0', new BufferAttribute(new Float32Array(places.length), 3));
+  geometry.setIndex(new BufferAttribute(triangles, 1));
+  return geometry;
+}
+
+function replace(mesh: Mesh, geometry: BufferGeometry) {
+  mesh.geometry.dispose();
+  mesh.geometry = geometry;
+  mesh.visible = geometry.index!.count > 0;
+}

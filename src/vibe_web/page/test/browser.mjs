@@ -1,0 +1,170 @@
+// The page in Chromium, without a display and without a graphics card. Arguments: PORT CHROMIUM FOLDER; pictures go into
+// the folder.
+
+import { readFileSync, writeFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { fileURLToPath } from 'node:url';
+import { check, expect, launch, until, wait } from './checks.mjs';
+
+const [port, chromium, folder] = process.argv.slice(2);
+const find = createRequire(import.meta.url);
+const kPicture = 240; // edge of the endoscope's picture [px]
+
+const browser = await launch(chromium);
+
+const errors = [];
+async function openPage(prepare = async () => {}) {
+  const page = await browser.newPage();
+  await page.setViewport({ width: 800, height: 600 });
+  page.on('pageerror', (error) => errors.push(String(error)));
+  page.on('console', (message) => message.type() === 'error' && errors.push(message.text()));
+  await prepare(page);
+  await page.goto(`http://localhost:${port}/#size=${kPicture}&rate=15`);
+  await until(() => page.evaluate(() => window.vibe?.stats.drawn > 2), 'a picture of the organ', 120);
+  return page;
+}
+
+const save = (page, name) => page.screenshot({ path: `${folder}/${name}.png` });
+const operator = (page) => page.evaluate(() => window.vibe.drive.operator);
+const insertion = async (page) => (await operator(page)).joints[0];
+
+/** Mean and deviation of the grey levels of the endoscope's picture within this share of its radius, and beyond it. */
+const levels = (page) => page.evaluate(() => {
+  const { size, bytes } = window.vibe.stage.pictureBytes();
+  const inside = [], corners = [];
+  for (let y = 0; y < size; y++)
+    for (let x = 0; x < size; x++) {
+      const at = 4 * (y * size + x), grey = (bytes[at] + bytes[at + 1] + bytes[at + 2]) / 3;
+      const share = Math.hypot(x - size / 2, y - size / 2) / (size / 2);
+      if (share < 0.9) inside.push(grey);
+      if (share > 1.05) corners.push(grey);
+    }
+  const mean = inside.reduce((a, b) => a + b) / inside.length;
+  return { mean, deviation: Math.sqrt(inside.reduce((a, b) => a + (b - mean) ** 2, 0) / inside.length), corner: Math.max(...corners) };
+});
+
+async function takeControl(page) {
+  await page.bringToFront();
+  await page.click('#control');
+  await until(async () => (await operator(page))?.driving && page.evaluate(() => window.vibe.drive.driving), 'control of the scope');
+}
+
+async function rest(page) {
+  for (let last = NaN; ; last = await insertion(page)) {
+    await wait(700);
+    if ((await insertion(page)) === last) return last;
+  }
+}
+
+let page;
+await check('the page shows the organ', async () => {
+  page = await openPage();
+  await until(() => page.evaluate(() => window.vibe.stage.counts.calls > 15), 'the robot');
+  await wait(1000);
+  await save(page, 'organ');
+  const numbers = await page.evaluate(() => ({ ...window.vibe.stage.counts, first_picture_ms: window.vibe.stats.firstPicture }));
+  expect(numbers.calls <= 75 && numbers.triangles <= 360000, JSON.stringify(numbers)); // three pictures of the scene
+  return numbers;
+});
+
+await check('the endoscope sees a round, lit and exposed picture', async () => {
+  await page.click('#swap');
+  await wait(1500);
+  await save(page, 'endoscope');
+  const seen = await levels(page);
+  expect(seen.corner === 0, `corners at ${seen.corner}`);
+  expect(seen.mean > 50 && seen.mean < 200 && seen.deviation > 10, JSON.stringify(seen));
+  return seen;
+});
+
+await check('nothing was wrong in the console', async () => expect(errors.length === 0, errors.join('\n')));
+
+await check('accessibility (axe)', async () => {
+  await page.evaluate(readFileSync(find.resolve('axe-core/axe.min.js'), 'utf8'));
+  const found = await page.evaluate(async () => (await window.axe.run()).violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`));
+  expect(found.length === 0, found.join('\n'));
+});
+
+await check('a key drives', async () => {
+  await takeControl(page);
+  const begin = await rest(page);
+  await page.keyboard.down('w');
+  await until(async () => (await insertion(page)) > begin + 0.01, 'motion');
+  await page.keyboard.up('w');
+  const end = await rest(page);
+  await save(page, 'driving');
+  return { joints: (await operator(page)).joints, way: end - begin };
+});
+
+await check('a gamepad drives', async () => {
+  const begin = await rest(page);
+  await page.evaluate(() => {
+    const buttons = Array.from({ length: 17 }, () => ({ pressed: false, value: 0 }));
+    navigator.getGamepads = () => [{ mapping: 'standard', axes: [0, 0, 0, 1], buttons }]; // the right stick towards the person: back
+  });
+  await until(async () => (await insertion(page)) < begin - 0.005, 'motion');
+  await page.evaluate(() => (navigator.getGamepads = () => []));
+  await rest(page);
+  return { joints: (await operator(page)).joints };
+});
+
+await check('a page that hangs lets go', async () => {
+  const begin = await rest(page), watcher = await openPage();
+  await page.bringToFront();
+  await page.keyboard.down('w');
+  await until(async () => (await insertion(page)) > begin, 'motion');
+  void page.evaluate(() => { for (const end = Date.now() + 4000; Date.now() < end; ); });
+  const end = await rest(watcher);
+  expect(end - begin < 0.06, `moved by ${end - begin} m`);
+  await wait(3000);
+  await page.keyboard.up('w');
+  await page.close();
+  await watcher.close();
+});
+
+await check('a headset enters, drives with the handle and sees in stereo', async () => {
+  const iwer = readFileSync(fileURLToPath(new URL('../node_modules/iwer/build/iwer.min.js', import.meta.url)), 'utf8');
+  page = await openPage(async (fresh) => {
+    await fresh.evaluateOnNewDocument(iwer);
+    await fresh.evaluateOnNewDocument(() => {
+      window.device = new window.IWER.XRDevice(window.IWER.metaQuest3);
+      window.device.installRuntime();
+      window.device.stereoEnabled = true;
+      window.device.position.set(0, 1.6, 0);
+    });
+  });
+  await takeControl(page);
+  await page.click('#headset');
+  await until(() => page.evaluate(() => window.vibe.stage.renderer.xr.isPresenting), 'a headset');
+  await wait(3000);
+  await save(page, 'headset');
+  const begin = await rest(page);
+  await page.evaluate(() => {
+    const { right } = window.device.controllers;
+    right.position.set(0.2, 1.2, -0.3);
+    right.updateButtonValue('squeeze', 1);
+  });
+  await wait(1000);
+  await page.evaluate(async () => {
+    const { right } = window.device.controllers;
+    for (let k = 1; k <= 40; k++) {
+      right.position.set(0.2, 1.2, -0.3 - 0.0015 * k); // forwards: in
+      await new Promise((resolve) => setTimeout(resolve, 50));
+    }
+  });
+  const moved = (await rest(page)) - begin;
+  await page.evaluate(() => window.device.controllers.right.updateButtonValue('squeeze', 0));
+  await page.evaluate(() => window.vibe.headset().toggleAround());
+  await wait(2000);
+  await save(page, 'around');
+  const counts = await page.evaluate(() => window.vibe.stage.counts);
+  const seen = await levels(page);
+  expect(moved > 0.005, `moved by ${moved} m`);
+  expect(seen.mean > 50 && seen.deviation > 10, JSON.stringify(seen));
+  return { moved, counts, seen };
+});
+
+await check('nothing was wrong in the console at the end', async () => expect(errors.length === 0, errors.join('\n')));
+writeFileSync(`${folder}/errors.txt`, errors.join('\n'));
+await browser.close();
+process.exit(0);

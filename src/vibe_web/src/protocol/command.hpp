@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace vibe::web {
+
+constexpr std::size_t kMaxCommand = 128;  ///< longest command [bytes]
+constexpr std::size_t kMaxKeys = 16;      ///< held at the same time
+constexpr std::size_t kAxes = 7;          ///< joints, in the order of StepInput
+
+/// What a page asks for. Any bytes may come, so nothing here is trusted before decodeCommand() has looked at it.
+struct Command {
+  enum class Kind : std::uint8_t { Rate = 1, Take = 2, GiveBack = 3, Drive = 4, Replay = 5, Ping = 6, Drawn = 7 };
+  Kind kind = Kind::Ping;
+
+  int rate = 0;   ///< Rate: frames per second, 1 to 60
+  int drawn = 0;  ///< Drawn: frames that the page has done with since it last said so; at first 0: it will say so
+
+  // Drive: all that is held now. It says who was allowed to drive and which of its messages this is, so that none is
+  // obeyed twice or from another connection.
+  std::uint32_t grant = 0, number = 0;
+  std::array<double, kAxes> axes{};  ///< share of the speed of a key, -1 to 1, by joint
+  std::vector<int> keys;             ///< as in the key table of the scene
+
+  // Replay: what vibe_msgs/ReplayCommand says.
+  bool play = false, seek = false;
+  double speed = 1;  ///< 0.01 to 100
+  double time = 0;   ///< to go to with `seek` [s]
+
+  std::array<std::uint8_t, 8> ping{};
+};
+
+/// The command that these bytes are; nothing if they are none. Layouts, little-endian:
+///   1 Rate      u8 1, u8 rate
+///   2 Take      u8 2
+///   3 GiveBack  u8 3
+///   4 Drive     u8 4, u8 keys, u16 0, u32 grant, u32 number, i16 axis[7] in 1/32767, u16 0, u32 key[keys]
+///   5 Replay    u8 5, u8 play (1) and seek (2), u16 0, f32 speed, f64 time
+///   6 Ping      u8 6, u8 0[7], u8 any[8]
+///   7 Drawn     u8 7, u8 frames
+std::optional<Command> decodeCommand(const std::uint8_t* bytes, std::size_t size);
+
+}  // namespace vibe::web

@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+"""Pages and other clients at the server of a running simulator: what the scripts in page/test find, as tests. They run in
+Node and Chromium, and are skipped by name where those, or the page, are missing."""
+
+import http.client
+import json
+import os
+import re
+import shutil
+import ssl
+import subprocess
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from sensor_msgs.msg import JointState
+from vibe_testing.program import Program, find_program
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+NODE = shutil.which("node")
+SIMULATOR = "stomach.yaml"
+
+
+def page_work():
+    """Where the page was built, with the modules that its tests need; empty: it was left out."""
+    path = os.path.join(os.path.dirname(find_program("vibe_web", "web_node")), "../../share/vibe_web/page.work")
+    if not os.path.exists(path):
+        return ""
+    with open(path, encoding="utf-8") as file:
+        return file.read().strip()
+
+
+def port_of(server):
+    """Of the address that it prints."""
+    wait_until(lambda: re.search(r"https?://[^:/]+:\d+", server.output()))
+    found = re.search(r"https?://[^:/]+:(\d+)", server.output())
+    return int(found.group(1)) if found else 0
+
+
+class Web(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = os.environ.get("VIBE_WEB_PICTURES") or tempfile.mkdtemp()
+        cls.work = page_work()
+        cls.simulator = Program(
+            "vibe_sim", "sim_node", name="sim_node", scene="package://vibe_core/scenes/" + SIMULATOR, time_source="wall"
+        )
+        cls.server = Program("vibe_web", "web_node", name="web_node", port=0)
+        cls.port = port_of(cls.server)
+        cls.setpoint = Recorder("/scope/setpoint_js", JointState)
+        cls.setpoint.waits_for()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.status = cls.server.stop()
+        cls.simulator.stop()
+        if "VIBE_WEB_PICTURES" not in os.environ:
+            shutil.rmtree(cls.folder)
+
+    def run_script(self, script, *arguments):
+        """Each check of a script is a subtest."""
+        if not NODE or not self.work:
+            self.skipTest("the page has not been built: it needs nodejs and npm")
+        run = subprocess.run(
+            [NODE, os.path.join(self.work, "test", script), str(self.port), *arguments],
+            cwd=self.work,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=700,
+        )
+        checks = [json.loads(line) for line in run.stdout.splitlines() if line.startswith("{")]
+        print(run.stdout)
+        self.assertEqual(run.returncode, 0, run.stdout)
+        self.assertTrue(checks, run.stdout)
+        for check in checks:
+            with self.subTest(check["name"]):
+                self.assertTrue(check["ok"], check["problem"] + "\n" + self.server.last_words())
+        return {check["name"]: check.get("detail") for check in checks}
+
+    def test_1_stream(self):
+        self.run_script("stream.mjs")
+        self.assertTrue(self.server.is_running(), self.server.last_words())
+
+    def test_2_browser(self):
+        if not CHROMIUM:
+            self.skipTest("Chromium is not installed")
+        found = self.run_script("browser.mjs", CHROMIUM, self.folder)
+        for name in ("a key drives", "a gamepad drives"):
+            shown = found[name]["joints"][:4]
+            nearest = min(max(abs(a - b) for a, b in zip(m.position, shown)) for m in self.setpoint.messages)
+            self.assertLess(nearest, 1e-6, name + ": the simulator's joints never were where the page says")
+        self.assertTrue(self.server.is_running(), self.server.last_words())
+
+    def test_3_lan_needs_token_and_tls(self):
+        with tempfile.TemporaryDirectory() as folder:
+            server = Program("vibe_web", "web_node", "--lan", name="web_node_lan", port=0, certificates=folder)
+            self.addCleanup(server.stop)
+            port = port_of(server)
+            token = re.search(r"#token=([0-9a-f]{32})", server.output()).group(1)
+            context = ssl.create_default_context(cafile=folder + "/certificate.pem")
+            self.assertEqual(os.stat(folder + "/key.pem").st_mode & 0o777, 0o600)
+            upgrade = {
+                "Connection": "Upgrade",
+                "Upgrade": "websocket",
+                "Sec-WebSocket-Version": "13",
+                "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA==",
+            }
+
+            def status(target, kind=http.client.HTTPSConnection, **options):
+                connection = kind("localhost", port, timeout=20, **options)
+                try:
+                    connection.request("GET", target, headers=upgrade)
+                    return connection.getresponse().status
+                finally:
+                    connection.close()
+
+            self.assertEqual(status("/stream", context=context), 403)
+            self.assertEqual(status("/stream?token=" + "0" * 32, context=context), 403)
+            self.assertEqual(status("/stream?token=" + token, context=context), 101)
+            with self.assertRaises((OSError, http.client.HTTPException)):
+                status("/stream?token=" + token, http.client.HTTPConnection)
+            with self.assertRaises(ssl.SSLError):  # signed by nobody that a machine knows
+                status("/stream?token=" + token, context=ssl.create_default_context())
+            self.assertEqual(server.stop(), 0)
+
+    def test_4_wrong_options_are_refused(self):
+        for arguments, parameters in ((["--wan"], {}), ([], {"port": 70000}), ([], {"lann": True})):
+            server = Program("vibe_web", "web_node", *arguments, name="web_node_wrong", **parameters)
+            self.assertEqual(server.ends(), 2, server.output())
+            self.assertEqual(len([line for line in server.lines if line.startswith("web_node:")]), 1, server.output())
+
+
+if __name__ == "__main__":
+    rospy.init_node("web_test")
+    rostest.rosrun("vibe_web", "browser", Web)
