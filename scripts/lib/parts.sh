@@ -19,6 +19,7 @@ keysOf() {
   case $1 in
     session) echo @build @run ;;
     firmware) echo @firmware ;;
+    packages) echo @package ;;
     tests) echo @test @lint ;;
   esac
 }
@@ -37,7 +38,7 @@ newerSources() {
     -o -name package.xml -o -name setup.py \)
 }
 
-parts=(session devices vision measurements python firmware tests)
+parts=(session devices vision measurements python firmware packages tests)
 
 # checkPart PART: ends the script if there is no such part
 checkPart() {
