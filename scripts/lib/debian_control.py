@@ -58,8 +58,9 @@ def paragraph(name, depends, title, text):
 
 def runtime_paragraph(package, dependencies):
     depends = {name for name in dependencies.of(package, ["exec_depends"]) if not name.endswith("-dev")}
-    return paragraph(debian_name(package.name), {"${misc:Depends}", "${python3:Depends}", "${shlibs:Depends}", *depends},
-                     "endoscopic suturing simulated: " + package.name, package.description)
+    depends |= {"${{{}:Depends}}".format(kind) for kind in ("misc", "python3", "scripts", "shlibs")}
+    return paragraph(debian_name(package.name), depends, "endoscopic suturing simulated: " + package.name,
+                     package.description)
 
 
 def development_paragraph(packages, dependencies):
