@@ -20,6 +20,7 @@ keysOf() {
   case $1 in
     session) echo @build @run ;;
     firmware) echo @firmware ;;
+    packages) echo @package ;;
     tests) echo @test @lint ;;
   esac
 }
@@ -38,7 +39,7 @@ newerSources() {
     -o -name package.xml -o -name setup.py \)
 }
 
-parts=(session devices vision measurements python web firmware tests)
+parts=(session devices vision measurements python web firmware packages tests)
 
 # checkPart PART: ends the script if there is no such part
 checkPart() {

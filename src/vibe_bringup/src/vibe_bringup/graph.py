@@ -10,6 +10,8 @@ import threading
 import time
 import xmlrpc.client
 
+from vibe_sessions.headless import find_in_package
+
 from . import places
 
 PR_SET_PDEATHSIG = 1
@@ -46,11 +48,7 @@ def write_all(descriptor, data):
 
 def loopback_library():
     """What, preloaded, keeps the TCP servers of a program on the loopback interface; None if it is not built."""
-    for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep):
-        path = os.path.join(prefix, "lib", "libvibe_loopback.so")
-        if os.path.exists(path):
-            return path
-    return None
+    return find_in_package("vibe_node", "libvibe_loopback.so")
 
 
 class Process:

@@ -1,5 +1,6 @@
 """The plan of a cohort: its sessions by name, the files they read, and the versions that perform them."""
 import dataclasses
+import glob
 import hashlib
 import itertools
 import os
@@ -81,14 +82,14 @@ def digest(address):
 def versions():
     """Of the package, and of the library that computes the numbers."""
     program = find_program()
-    prefix = os.path.dirname(os.path.dirname(os.path.dirname(program)))
-    library = os.path.join(prefix, "lib", "libvibe_core.so")
+    folder = os.path.dirname(os.path.dirname(program))
+    library, *_ = [path for place in ("", "*") for path in glob.glob(os.path.join(folder, place, "libvibe_core.so"))] + [program]
     try:  # not get_manifest(): it loads rosdep, which prints where nobody has initialised it
         description = os.path.join(rospkg.RosPack().get_path("vibe_core"), "package.xml")
         version = ElementTree.parse(description).findtext("version").strip()
     except rospkg.ResourceNotFound:
         version = "unknown"
-    return {"vibe_core": version, "build": digest(library if os.path.exists(library) else program)[:16]}
+    return {"vibe_core": version, "build": digest(library)[:16]}
 
 
 def stem(address):

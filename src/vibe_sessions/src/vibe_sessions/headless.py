@@ -21,13 +21,22 @@ class Stopped(Exception):
     """The session was no longer wanted."""
 
 
+def find_in_package(package, name):
+    """The path of a program, or of what else is private to a package: in a workspace that is sourced, or where packages of
+    the system are; None if it is not there."""
+    for prefix in [*os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep), "/usr"]:
+        path = os.path.join(prefix, "lib", package, name)
+        if prefix and os.access(path, os.R_OK):
+            return path
+    return None
+
+
 def find_program():
-    """vibe_headless of the sourced workspace."""
-    for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(":"):
-        program = os.path.join(prefix, "lib", "vibe_core", "vibe_headless")
-        if prefix and os.access(program, os.X_OK):
-            return program
-    raise SessionError("There is no vibe_headless; build vibe_core and source its workspace.")
+    """vibe_headless."""
+    program = find_in_package("vibe_core", "vibe_headless")
+    if program is None:
+        raise SessionError("There is no vibe_headless; build vibe_core and source its workspace.")
+    return program
 
 
 def _wait(child, stopped):
