@@ -36,7 +36,8 @@ constexpr double kKnownPlace = 3;                      // greatest deviation of 
 constexpr double kKnownRotation = 0.3;  // greatest deviation of a prediction that a fit may start from [rad]
 constexpr double kNear = 3;             // deviations of a prediction
 constexpr double kNearbyReach = 2.5;    // the same
-constexpr double kSearchDoubt = 0.1;    // about size, tilt and blur that a search found
+constexpr double kSameMotion = 0.2, kSameBend = 0.03;  // during the exposure, between prediction and fit [px]
+constexpr double kSearchDoubt = 0.1;                   // about size, tilt and blur that a search found
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double bandHalfWidth(const MarkerPattern& pattern, const InstrumentConfig& config) {
@@ -120,8 +121,9 @@ InstrumentTracker::Prediction InstrumentTracker::predict(double stamp) {
   return p;
 }
 
-double InstrumentTracker::motionAt(const MotionFilter::State& slide, double exposure) const {
-  return slide.mean[1] * exposure * pixelsPerMetre(config_.axis, slide.mean[0]);
+MarkerMotion InstrumentTracker::motionAt(const MotionFilter::State& slide, double exposure) const {
+  const double scale = pixelsPerMetre(config_.axis, slide.mean[0]);
+  return {slide.mean[1] * exposure * scale, slide.mean[2] * square(exposure) / 16 * scale};
 }
 
 double InstrumentTracker::fastestMotion(const Frame& frame) const {
@@ -148,13 +150,25 @@ bool InstrumentTracker::follow(const Frame& frame, const Prediction& prediction)
   const FitPrior prior = slow_.prior(slide);
   FitVector start = startAt(slide, prior, prediction);
   start[kLateral] = measurement_.tracked() ? measurement_.lateral : 0;
-  const MarkerFit fit = fitter_.follow(map_, frame, start, prior, motionAt(prediction.slide, frame.exposure),
-                                       prediction.slide.deviation() * scale);
+  MarkerFit fit = fitter_.follow(map_, frame, start, prior, motionAt(prediction.slide, frame.exposure),
+                                 prediction.slide.deviation() * scale);
+  if (fit.valid) correctMotion(frame, prior, fit);
   reason_ = gates_.judge(fit, slow_.nominal(slide), isNear(fit, prediction));
   if (reason_ == LostReason::None && !isExpected(fit, prediction, frame.stamp)) reason_ = LostReason::Jump;
   if (reason_ != LostReason::None) return false;
   accept(frame, fit, prediction, false);
   return true;
+}
+
+/// Where the marker is now tells its speed during the exposure better than what was predicted.
+void InstrumentTracker::correctMotion(const Frame& frame, const FitPrior& prior, MarkerFit& fit) {
+  MotionFilter filter = slide_;
+  const double slide = slideOf(config_.axis, fit.x[kAlong]);
+  filter.update(frame.stamp, slide, fit.covariance(kAlong, kAlong) / square(pixelsPerMetre(config_.axis, slide)));
+  const MarkerMotion motion = motionAt(filter.predict(frame.stamp), frame.exposure);
+  const bool same =
+      std::abs(motion.length - fit.motion.length) < kSameMotion && std::abs(motion.bend - fit.motion.bend) < kSameBend;
+  if (!same) fitter_.repeat(fit, prior, motion);
 }
 
 bool InstrumentTracker::search(const Frame& frame, const Prediction& prediction) {
@@ -177,7 +191,7 @@ bool InstrumentTracker::searchNearby(const Frame& frame, const Prediction& predi
   const double scale = pixelsPerMetre(config_.axis, slide), deviation = prediction.slide.deviation() * scale;
   if (deviation > kKnownPlace) return false;
   const FitPrior prior = slow_.prior(slide);
-  const double motion = std::abs(motionAt(prediction.slide, frame.exposure));
+  const double motion = std::abs(motionAt(prediction.slide, frame.exposure).length);
   const bool known_rotation = prediction.rotation.deviation() < kKnownRotation;
   const MarkerFit fit = fitter_.acquire(map_, frame, startAt(slide, prior, prediction), prior, motion,
                                         fastestMotion(frame), known_rotation, kNearbyReach * deviation);

@@ -27,9 +27,10 @@ class InstrumentTracker {
     bool close = false;  ///< well enough to fit right away
   };
   Prediction predict(double stamp);
-  double motionAt(const MotionFilter::State& slide, double exposure) const;
+  MarkerMotion motionAt(const MotionFilter::State& slide, double exposure) const;
   FitVector startAt(double slide, const FitPrior& prior, const Prediction& prediction) const;
   bool follow(const Frame& frame, const Prediction& prediction);
+  void correctMotion(const Frame& frame, const FitPrior& prior, MarkerFit& fit);
   bool search(const Frame& frame, const Prediction& prediction);
   bool searchNearby(const Frame& frame, const Prediction& prediction);
   double fastestMotion(const Frame& frame) const;  ///< [px]
