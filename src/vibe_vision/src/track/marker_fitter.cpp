@@ -81,7 +81,15 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
 
 void MarkerFitter::repeat(MarkerFit& fit, const FitPrior& prior, const MarkerMotion& motion) {
   fit.motion = motion;
+  useAll();
   refine(fit, prior, 0, kFollowSteps);
+}
+
+Shear MarkerFitter::shear(const MarkerFit& fit, const FitPrior& prior) {
+  useHalf();
+  fit_.evaluate(fit.x, pixels_);
+  const FitStep step = fit_.step(fit.x, prior, pixels_, {});
+  return step.valid ? fit_.shear(fit.x, prior, pixels_) : Shear{};
 }
 
 MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
@@ -229,11 +237,12 @@ void MarkerFitter::chooseRotation(MarkerFit& fit) {
   fit.x = best;
 }
 
-/// Loss of a pixel against the motion that is assumed: a parabola through three places, coarse and then fine, since it
-/// is one near the least loss only.
+/// Loss of a pixel against the motion that is assumed: a parabola through three places. Of a ring, coarse and then fine,
+/// since it is one near the least loss only, and together with the blur, which the edges along the motion tell. Of a
+/// sleeve, blur and motion look too much alike.
 void MarkerFitter::chooseMotion(MarkerFit& fit, const FitPrior& prior, double max_motion) {
   for (const double distance : kMotionTrials)
-    if (!tryMotions(fit, prior, max_motion, distance)) return;
+    if (!tryMotions(fit, prior, max_motion, distance) || observed_[kRotation]) return;
 }
 
 /// @return false if they do not tell the motion
@@ -245,11 +254,14 @@ bool MarkerFitter::tryMotions(MarkerFit& fit, const FitPrior& prior, double max_
     MarkerFit trial = start;
     trial.motion = middle + (k - 1) * distance;
     pattern_->prepare(poseOf(trial.x), trial.motion, middle < kTellingMotion);
-    fit_.evaluate(trial.x, pixels_);
-    const FitStep step = fit_.step(trial.x, prior, pixels_, {kMotionUncertainty, FitScope::All});
-    if (!step.valid) return false;
-    loss[k] = step.loss;
-    take(step, trial);
+    for (int i = 0; i < (observed_[kRotation] ? 2 : 1); ++i) {
+      fit_.evaluate(trial.x, pixels_);
+      const FitScope scope = observed_[kRotation] ? FitScope::Shape : FitScope::All;
+      const FitStep step = fit_.step(trial.x, prior, pixels_, {kMotionUncertainty, scope});
+      if (!step.valid) return false;
+      loss[k] = step.loss;
+      take(step, trial);
+    }
     if (k == 0 || loss[k] < *std::min_element(loss.begin(), loss.begin() + k)) fit = trial;
   }
   const double bend = loss[0] - 2 * loss[1] + loss[2];

@@ -38,6 +38,8 @@ class MarkerFitter {
                    const MarkerMotion& motion, double uncertainty);
   /// The last fit again, with what it told of the motion.
   void repeat(MarkerFit& fit, const FitPrior& prior, const MarkerMotion& motion);
+  /// Of the picture in the last fit.
+  Shear shear(const MarkerFit& fit, const FitPrior& prior);
   /// From a candidate of the search: from coarse to fine, with any rotation.
   /// @param known_rotation  start.rotation is a prediction
   /// @param reach  from the start, within which the marker is [px]; 0: the search knows it well
