@@ -237,9 +237,9 @@ void MarkerFitter::chooseRotation(MarkerFit& fit) {
   fit.x = best;
 }
 
-/// Loss of a pixel against the motion that is assumed: a parabola through three places. Of a ring, coarse and then fine,
-/// since it is one near the least loss only, and together with the blur, which the edges along the motion tell. Of a
-/// sleeve, blur and motion look too much alike.
+/// Loss of a pixel against the motion that is assumed: a parabola through three places. Of a ring, coarse and then
+/// fine, since it is one near the least loss only, and together with the blur, which the edges along the motion tell.
+/// Of a sleeve, blur and motion look too much alike.
 void MarkerFitter::chooseMotion(MarkerFit& fit, const FitPrior& prior, double max_motion) {
   for (const double distance : kMotionTrials)
     if (!tryMotions(fit, prior, max_motion, distance) || observed_[kRotation]) return;
