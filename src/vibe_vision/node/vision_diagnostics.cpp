@@ -71,6 +71,7 @@ void InstrumentDiagnostics::add(const Measurement& measurement, const JointSampl
   ++frames[static_cast<std::size_t>(sample.reason)];
   if (sample.tracked() && measurement.reacquired) ++reacquired;
   score = measurement.score;
+  if (sample.tracked()) doubt = measurement.doubt;
   last = sample;
 }
 
@@ -93,6 +94,7 @@ void fillInstrumentDiagnostics(const InstrumentDiagnostics& instrument, Instrume
   } else {
     status.summary(DiagnosticStatus::OK, "tracked");
   }
+  warnIf(instrument.doubt != Doubt::None && tracked > 0, toText(instrument.doubt), status);
   status.add("tracked frames", instrument.frames[0]);
   for (std::size_t i = 1; i < kLostReasons; ++i)
     status.add(std::string("lost frames: ") + toText(static_cast<LostReason>(i)), instrument.frames[i]);

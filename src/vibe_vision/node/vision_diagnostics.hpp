@@ -44,6 +44,7 @@ constexpr std::size_t kLostReasons = 10;
 struct InstrumentDiagnostics {
   std::array<std::uint64_t, kLostReasons> frames{};  ///< by LostReason; the first: tracked
   std::uint64_t reacquired = 0;
+  Doubt doubt = Doubt::None;  ///< of the last tracked frame
   double score = 0;
   JointSample last;
 

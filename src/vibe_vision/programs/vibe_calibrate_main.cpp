@@ -1,4 +1,4 @@
-// vibe_calibrate: lens and axes of a rig from images. No ROS.
+// vibe_calibrate: lens and axes of a rig from images, or the lens from files of other programs. No ROS.
 
 #include <cmath>
 #include <cstdio>
@@ -11,6 +11,7 @@
 #include "vibe_vision/calibrate/lens_calibration.hpp"
 #include "vibe_vision/calibrate/marker_finder.hpp"
 #include "vibe_vision/calibrate/stop_list.hpp"
+#include "vibe_vision/config/camera_files.hpp"
 
 namespace vision = vibe::vision;
 
@@ -20,7 +21,7 @@ constexpr double kDegree = M_PI / 180;
 constexpr std::size_t kMostImages = 60;  // of a free motion; more are left out evenly
 
 struct Options {
-  std::string config, output, images, stops, instrument;
+  std::string config, output, images, stops, instrument, camera_file, camera_name, ros_file, kalibr_file;
   std::string board = "9x6", square = "5 mm";
   double lowest_scale = 4, highest_scale = 25;        // [px/mm]
   double print_tolerance = 0.5, slant_tolerance = 5;  // [%], [deg]
@@ -29,6 +30,16 @@ struct Options {
 void addCommon(vibe::OptionList& line, Options& options) {
   line.option("--config", options.config, "YAML file of the rig; everything but the result is kept").required();
   line.option("--output", options.output, "Write the rig with the result to this YAML file").required();
+}
+
+void addFileOptions(vibe::OptionList& import_lens, vibe::OptionList& export_lens, Options& options) {
+  addCommon(import_lens, options);
+  import_lens.option("--camera", options.camera_file, "camera_info of ROS or camchain of Kalibr, YAML").required();
+  import_lens.option("--name", options.camera_name, "Camera of a camchain with several ones, for example cam0");
+  export_lens.option("--config", options.config, "YAML file of the rig").required();
+  vibe::OptionList format = export_lens.oneRequired("format");
+  format.option("--ros", options.ros_file, "Write a camera_info file of ROS, plumb_bob");
+  format.option("--kalibr", options.kalibr_file, "Write a camchain of Kalibr, pinhole-radtan");
 }
 
 void addOptions(vibe::OptionList& lens, vibe::OptionList& axis, Options& options) {
@@ -65,6 +76,18 @@ void printWarnings(const std::vector<std::string>& warnings) {
 void save(const vision::VisionConfig& config, const std::string& file) {
   vibe::writeFile(file, vision::toYaml(config), "The configuration");
   std::printf("Written to %s.\n", file.c_str());
+}
+
+/// The rig with another lens.
+void saveLens(vision::VisionConfig config, const vision::CameraModel& camera, const std::string& file) {
+  config.camera = camera;
+  bool had_axes = false;
+  for (vision::InstrumentConfig& instrument : config.instruments) {
+    had_axes = had_axes || instrument.axis.isCalibrated();
+    instrument.axis = {};
+  }
+  if (had_axes) std::printf("The axes belong to the old camera and are left out; run vibe_calibrate axis.\n");
+  save(config, file);
 }
 
 void requireOneSize(const std::string& name, const vision::Frame& frame, const vision::Frame& first) {
@@ -109,21 +132,30 @@ void printLens(const vision::LensCalibration& lens) {
 }
 
 int calibrateLens(const Options& options) {
-  vision::VisionConfig config = vision::VisionConfig::load(options.config, vision::AxisRule::Optional);
+  const vision::VisionConfig config = vision::VisionConfig::load(options.config, vision::AxisRule::Optional);
   const vision::BoardSpec board = vision::boardOption(options.board, options.square);
   vision::Frame first;
   const std::vector<vision::BoardView> views = findBoards(vision::filesOf(options.images), board, first);
   const vision::LensCalibration lens = vision::calibrateLens(views, board, first.image.width, first.image.height);
   printLens(lens);
   printWarnings(lens.warnings);
-  config.camera = lens.camera;
-  bool had_axes = false;
-  for (vision::InstrumentConfig& instrument : config.instruments) {
-    had_axes = had_axes || instrument.axis.isCalibrated();
-    instrument.axis = {};
-  }
-  if (had_axes) std::printf("The axes belong to the old camera and are left out; run vibe_calibrate axis.\n");
-  save(config, options.output);
+  saveLens(config, lens.camera, options.output);
+  return 0;
+}
+
+int importLens(const Options& options) {
+  const vision::VisionConfig config = vision::VisionConfig::load(options.config, vision::AxisRule::Optional);
+  saveLens(config, vision::loadCameraFile(options.camera_file, options.camera_name), options.output);
+  return 0;
+}
+
+int exportLens(const Options& options) {
+  const vision::VisionConfig config = vision::VisionConfig::load(options.config, vision::AxisRule::Optional);
+  const bool ros = options.kalibr_file.empty();
+  const std::string& file = ros ? options.ros_file : options.kalibr_file;
+  const auto format = ros ? vision::CameraFileFormat::Ros : vision::CameraFileFormat::Kalibr;
+  vibe::writeFile(file, vision::toCameraFile(config.camera, format), "The camera");
+  std::printf("Written to %s.\n", file.c_str());
   return 0;
 }
 
@@ -229,15 +261,22 @@ int calibrateAxis(const Options& options) {
 
 int main(int argc, char** argv) {
   vibe::CommandLine line(
-      "Calibrates a rig: 'intrinsics' the lens from a chessboard, 'axis' where an instrument slides.",
+      "Calibrates a rig: 'intrinsics' the lens from a chessboard, 'axis' where an instrument slides; 'import' and "
+      "'export' exchange the lens with ROS and Kalibr.",
       "vibe_calibrate");
   Options options;
   vibe::OptionList lens =
       line.subcommand("intrinsics", "Lens from images of a chessboard (vibe_marker_sheet prints it)");
   vibe::OptionList axis =
       line.subcommand("axis", "Axis, direction and scale of an instrument from images of its motion");
+  vibe::OptionList import_lens = line.subcommand("import", "Lens from the calibration of another program");
+  vibe::OptionList export_lens = line.subcommand("export", "Lens as a file for other programs");
   line.requireSubcommand();
   addOptions(lens, axis, options);
-  return vision::runProgram(line, argc, argv,
-                            [&] { return lens.isChosen() ? calibrateLens(options) : calibrateAxis(options); });
+  addFileOptions(import_lens, export_lens, options);
+  return vision::runProgram(line, argc, argv, [&] {
+    if (lens.isChosen()) return calibrateLens(options);
+    if (import_lens.isChosen()) return importLens(options);
+    return export_lens.isChosen() ? exportLens(options) : calibrateAxis(options);
+  });
 }

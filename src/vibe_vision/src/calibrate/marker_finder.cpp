@@ -11,8 +11,7 @@ namespace vibe::vision {
 namespace {
 
 constexpr double kMinScore = 0.6;        // correlation of what is taken for the marker
-constexpr double kSureScore = 0.8;       // nothing else needs to be tried
-constexpr std::size_t kCandidates = 12;  // places that are looked at closely
+constexpr std::ptrdiff_t kPerScale = 3;  // places of a size that are looked at closely
 constexpr double kSamePlace = 10;        // [px]
 constexpr double kScaleStep = 1.06;
 constexpr double kAngleStep = 10 * M_PI / 180;
@@ -74,6 +73,7 @@ double plateauMiddle(const cv::Mat& map, const cv::Point& top, double score) {
 }  // namespace
 
 struct MarkerFinder::Impl {
+  using Confirm = MarkerFinder::Confirm;
   MarkerDesign design;
   MarkerSearch range;
   std::optional<double> last_scale, last_angle;
@@ -159,7 +159,7 @@ struct MarkerFinder::Impl {
     return best;
   }
 
-  /// The whole image at half the resolution: places that may be the marker, the best first.
+  /// The whole image at half the resolution: places that may be the marker, some of every size, the best first.
   std::vector<MarkerSighting> searchRoughly(const cv::Mat& image) const {
     cv::Mat half;
     cv::resize(image, half, {}, 0.5, 0.5, cv::INTER_AREA);
@@ -169,21 +169,32 @@ struct MarkerFinder::Impl {
     for (MarkerSighting& place : searchAt(half, angles(), half_scales)) {
       place.pixel = 2 * place.pixel + Eigen::Vector2d::Constant(0.5);  // of pixel centres
       place.pixels_per_metre *= 2;
-      const auto same = [&place](const MarkerSighting& other) {
-        return (other.pixel - place.pixel).norm() < kSamePlace && other.direction.dot(place.direction) > 0;
+      const auto same_size = [&place](const MarkerSighting& other) {
+        return other.pixels_per_metre == place.pixels_per_metre;
       };
-      if (distinct.size() < kCandidates && std::none_of(distinct.begin(), distinct.end(), same))
+      const auto same = [&](const MarkerSighting& other) {
+        return same_size(other) && (other.pixel - place.pixel).norm() < kSamePlace &&
+               other.direction.dot(place.direction) > 0;
+      };
+      if (std::count_if(distinct.begin(), distinct.end(), same_size) < kPerScale &&
+          std::none_of(distinct.begin(), distinct.end(), same))
         distinct.push_back(place);
     }
     return distinct;
   }
 
-  std::optional<MarkerSighting> search(const cv::Mat& image) const {
+  /// @param confirmed  whether the result is
+  std::optional<MarkerSighting> search(const cv::Mat& image, const Confirm& confirm, bool& confirmed) const {
     MarkerSighting best;
+    confirmed = false;
     for (const MarkerSighting& place : searchRoughly(image)) {
       const MarkerSighting refined = refine(image, place);
+      if (refined.score < kMinScore) continue;
+      if (confirm(refined)) {
+        confirmed = true;
+        return refined;
+      }
       if (refined.score > best.score) best = refined;
-      if (best.score > kSureScore) break;
     }
     if (best.score < kMinScore) return std::nullopt;
     return best;
@@ -225,17 +236,18 @@ MarkerFinder::MarkerFinder(const MarkerDesign& design, const MarkerSearch& searc
 
 MarkerFinder::~MarkerFinder() = default;
 
-std::optional<MarkerSighting> MarkerFinder::find(const ImageView& image) {
+std::optional<MarkerSighting> MarkerFinder::find(const ImageView& image, const Confirm& confirm) {
   // OpenCV does not write to it
   const cv::Mat grey(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.data),
                      static_cast<std::size_t>(image.stride));
-  std::optional<MarkerSighting> best = impl_->search(grey);
+  bool confirmed = false;
+  std::optional<MarkerSighting> best = impl_->search(grey, confirm, confirmed);
   if (!best && impl_->last_scale) {  // perhaps it turned or came nearer
     impl_->last_scale.reset();
     impl_->last_angle.reset();
-    best = impl_->search(grey);
+    best = impl_->search(grey, confirm, confirmed);
   }
-  if (!best) return std::nullopt;
+  if (!confirmed) return best;
   impl_->last_scale = best->pixels_per_metre;
   impl_->last_angle = std::atan2(best->direction.y(), best->direction.x());
   return best;

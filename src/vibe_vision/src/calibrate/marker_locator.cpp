@@ -28,20 +28,51 @@ void checkSizes(const VisionConfig& config, const std::vector<Frame>& images) {
   }
 }
 
+/// A configuration with this instrument alone, whose axis is a piece around a place.
+VisionConfig pieceOf(const VisionConfig& config, std::size_t instrument, const Eigen::Vector2d& place,
+                     const Eigen::Vector2d& direction, double pixels_per_metre) {
+  VisionConfig piece = config;
+  piece.instruments = {config.instruments[instrument]};
+  InstrumentConfig& object = piece.instruments.front();
+  object.axis = {};
+  object.axis.origin = place;
+  object.axis.direction = direction;
+  object.axis.pixels_per_metre = pixels_per_metre;
+  object.lower = -kMargin, object.upper = kMargin;
+  return piece;
+}
+
+void allowRoughPlace(VisionConfig& piece) {
+  double& tolerance = piece.instruments.front().lateral_tolerance;
+  tolerance = std::max(tolerance, kRoughLateral);
+}
+
+/// Whether the tracker, which knows the whole marker, sees it at a place.
+bool isMarker(const VisionConfig& config, std::size_t instrument, const Frame& image, const MarkerSighting& sighting) {
+  const Eigen::Vector2d place = undistort(config.camera, sighting.pixel);
+  if (!place.allFinite()) return false;  // the lens does not show it
+  VisionConfig piece = pieceOf(config, instrument, place, sighting.direction, sighting.pixels_per_metre);
+  allowRoughPlace(piece);
+  Tracker tracker(piece);
+  return tracker.track(image).front().tracked();
+}
+
 /// The search of whole images.
 struct RoughResult {
   std::vector<LocatedMarker> markers;
   Eigen::Vector2d sleeve_direction = Eigen::Vector2d::Zero();
 };
 
-RoughResult searchImages(const VisionConfig& config, const MarkerDesign& design, const std::vector<Frame>& images,
+RoughResult searchImages(const VisionConfig& config, std::size_t instrument, const std::vector<Frame>& images,
                          const MarkerSearch& search) {
+  const MarkerDesign& design = config.instruments[instrument].marker;
   MarkerFinder finder(design, search);
   RoughResult result;
   for (const Frame& image : images) {
     LocatedMarker marker;
     marker.problem = "nothing in the image looks like the marker";
-    if (const auto sighting = finder.find(image.image)) {
+    const auto confirm = [&](const MarkerSighting& place) { return isMarker(config, instrument, image, place); };
+    if (const auto sighting = finder.find(image.image, confirm)) {
       marker.found = true;
       marker.pixel = undistort(config.camera, sighting->pixel);
       marker.pixels_per_metre = sighting->pixels_per_metre;
@@ -54,9 +85,6 @@ RoughResult searchImages(const VisionConfig& config, const MarkerDesign& design,
 
 /// A configuration with this instrument alone, on the line through the markers found so far.
 VisionConfig roughConfig(const VisionConfig& config, std::size_t instrument, const LocatedMarkers& located, int pass) {
-  VisionConfig rough = config;
-  rough.instruments = {config.instruments[instrument]};
-  InstrumentConfig& object = rough.instruments.front();
   std::vector<Eigen::Vector2d> points;
   std::vector<double> scales;
   for (const LocatedMarker& marker : located.markers) {
@@ -66,12 +94,9 @@ VisionConfig roughConfig(const VisionConfig& config, std::size_t instrument, con
   }
   StraightLine line = StraightLine::fit(points);
   if (line.direction.dot(located.direction) < 0) line.direction = -line.direction;
-  object.axis = {};
-  object.axis.origin = line.point;
-  object.axis.direction = line.direction;
-  object.axis.pixels_per_metre = median(scales);
+  VisionConfig rough = pieceOf(config, instrument, line.point, line.direction, median(scales));
   if (pass > 0) return rough;
-  object.lateral_tolerance = std::max(object.lateral_tolerance, kRoughLateral);
+  allowRoughPlace(rough);
   rough.gates.max_scale_error = std::max(rough.gates.max_scale_error, kRoughScaleError);
   return rough;
 }
@@ -139,7 +164,7 @@ LocatedMarkers locateMarkers(const VisionConfig& config, std::size_t instrument,
                              const MarkerSearch& search) {
   checkSizes(config, images);
   const InstrumentConfig& object = config.instruments.at(instrument);
-  const RoughResult rough = searchImages(config, object.marker, images, search);
+  const RoughResult rough = searchImages(config, instrument, images, search);
   LocatedMarkers located{rough.markers, rough.sleeve_direction};
   for (int pass = 0; pass < kPasses; ++pass) {
     requireTwo(located, object.name);

@@ -111,6 +111,7 @@ void TrackSummary::add(const Measurements& measurements, double seconds) {
     }
     ++instrument.tracked;
     if (m.reacquired) ++instrument.reacquired;
+    if (m.doubt != Doubt::None) ++instrument.doubtful[m.doubt];
   }
 }
 
@@ -128,6 +129,8 @@ std::string TrackSummary::text() const {
                     toText(reason));
       text += line;
     }
+    for (const auto& [doubt, count] : instrument.doubtful)
+      text += "  doubtful in " + std::to_string(count) + " frames: " + toText(doubt) + "\n";
   }
   if (seconds_.empty()) return text;
   std::vector<double> sorted = seconds_;

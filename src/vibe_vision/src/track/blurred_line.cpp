@@ -107,35 +107,51 @@ struct Shift {
 
 }  // namespace
 
+/// Chords of the parabola have the same mean as it has if they are all shifted a little.
+MotionParts::MotionParts(float bend) {
+  if (bend == 0) return;
+  count = 4;
+  for (int k = 0; k <= count; ++k) {
+    const float time = static_cast<float>(k) / 2 - 1;  // from -1 to 1
+    place[static_cast<std::size_t>(k)] = time + 2 * bend * (time * time - 3.0F / 8);
+  }
+}
+
 MovingLine::MovingLine(const BlurredLine& line, int levels)
     : line_(line),
       max_levels_(levels),
       size_(static_cast<std::size_t>(line.length() * kPerPixel) + 2),
       table_(size_ * static_cast<std::size_t>(levels) * kFourSize) {}
 
-void MovingLine::compose(float low, float high, float half_motion) {
+void MovingLine::compose(float low, float high, float half_motion, const MotionParts& parts) {
   low_ = low;
   const float range = std::max(high - low, 1e-3F);
   levels_ = std::clamp(1 + static_cast<int>(std::ceil(range / (kVarianceStepRatio * low))), 2, max_levels_);
   step_ = range / static_cast<float>(levels_ - 1);
   half_motion_ = std::min(half_motion, kMaxHalfMotion);
   for (int level = 0; level < levels_; ++level)
-    composeLevel(low_ + static_cast<float>(level) * step_,
+    composeLevel(low_ + static_cast<float>(level) * step_, parts,
                  table_.data() + static_cast<std::size_t>(level) * size_ * kFourSize);
 }
 
-void MovingLine::composeLevel(float variance, float* table) const {
+void MovingLine::composeLevel(float variance, const MotionParts& parts, float* table) const {
   const BlurredLine::Level level = line_.levelOf(variance);
-  const Shift left(-half_motion_, variance - level.variance), right(half_motion_, variance - level.variance);
-  const float scale = 0.5F / half_motion_, mean = line_.mean();
-  const Four factor{scale, scale, scale, 0}, left_drift{left.first[0] * mean, 0, 0, 0},
-      right_drift{right.first[0] * mean, 0, 0, 0}, base{mean, 0, 0, 0};
-  for (std::size_t i = 0; i < size_; ++i) {
-    const int place = static_cast<int>(i) * kStride;
-    const Four a = left.of(loadFour(line_.entry(level, place + left.steps))) - left_drift;
-    const Four b = right.of(loadFour(line_.entry(level, place + right.steps))) - right_drift;
-    store(table + i * kFourSize, (b - a) * factor + base);
+  const float more = variance - level.variance, mean = line_.mean();
+  std::fill_n(table, size_ * kFourSize, 0.0F);
+  float before = 0, base = 1;
+  for (int k = 0; k <= parts.count; ++k) {
+    const float length = k < parts.count ? half_motion_ * (parts.place[k + 1] - parts.place[k]) : 0;
+    const float weight = k < parts.count ? 1 / (length * static_cast<float>(parts.count)) : 0, w = weight - before;
+    const Shift shift(-half_motion_ * parts.place[k], more);
+    const Four factor{w, w, w, 0};
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Four entry = loadFour(line_.entry(level, static_cast<int>(i) * kStride + shift.steps));
+      store(table + i * kFourSize, loadFour(table + i * kFourSize) + shift.of(entry) * factor);
+    }
+    base -= w * shift.first[0];  // integrals are without the mean
+    before = weight;
   }
+  for (std::size_t i = 0; i < size_; ++i) table[i * kFourSize] += mean * base;
 }
 
 VIBE_LANES void MovingLine::look(const Places& places, std::size_t count, const Result& result) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -97,6 +98,16 @@ class BlurredLine {
   std::vector<Entry> entries_;
 };
 
+/// A motion as parts of equal duration and even speed: one, or four of an accelerated one.
+struct MotionParts {
+  int count = 1;
+  std::array<float, 5> place{-1, 1};  ///< where the parts begin and end, in halves of the motion
+
+  /// @param bend  MarkerMotion::bend in halves of the motion, below kMostBend
+  explicit MotionParts(float bend);
+  static constexpr float kMostBend = 0.2F;  ///< of a motion that does not turn back
+};
+
 /// Means of a BlurredLine over one motion, as tables for a few variances of the blur.
 class MovingLine {
  public:
@@ -106,8 +117,9 @@ class MovingLine {
   /// @param levels  tables at most, >= 2
   MovingLine(const BlurredLine& line, int levels);
 
-  /// Makes the tables: variances evenly from `low` to `high` [px^2], for a motion of 2 half_motion [px]. No allocation.
-  void compose(float low, float high, float half_motion);
+  /// Makes the tables: variances evenly from `low` to `high` [px^2], for a motion of 2 half_motion [px] in parts. No
+  /// allocation.
+  void compose(float low, float high, float half_motion, const MotionParts& parts);
 
   /// Blackness, slope and second derivative at places x. Variance and half motion may differ from those of the tables,
   /// which corrects to first order.
@@ -121,7 +133,7 @@ class MovingLine {
   void look(const Places& places, std::size_t count, const Result& result) const;
 
  private:
-  void composeLevel(float variance, float* table) const;
+  void composeLevel(float variance, const MotionParts& parts, float* table) const;
 
   const BlurredLine& line_;
   int max_levels_, levels_ = 2;

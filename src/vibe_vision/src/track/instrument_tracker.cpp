@@ -36,7 +36,10 @@ constexpr double kKnownPlace = 3;                      // greatest deviation of 
 constexpr double kKnownRotation = 0.3;  // greatest deviation of a prediction that a fit may start from [rad]
 constexpr double kNear = 3;             // deviations of a prediction
 constexpr double kNearbyReach = 2.5;    // the same
-constexpr double kSearchDoubt = 0.1;    // about size, tilt and blur that a search found
+constexpr double kSameMotion = 0.2, kSameBend = 0.03;  // during the exposure, between prediction and fit [px]
+constexpr int kFirstLooks = 16, kLookEvery = 4;        // frames; to look for a shear costs as much as a step of the fit
+constexpr double kTellingSpeed = 0.05;                 // from which a picture would be sheared [m/s]
+constexpr double kSearchDoubt = 0.1;                   // about size, tilt and blur that a search found
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double bandHalfWidth(const MarkerPattern& pattern, const InstrumentConfig& config) {
@@ -76,6 +79,7 @@ void InstrumentTracker::reset() {
   slow_.reset();
   fitter_.forget();
   light_.reset();
+  doubts_.reset();
   jumps_ = lost_frames_ = 0;
   lose(LostReason::NoFrame);
 }
@@ -120,8 +124,9 @@ InstrumentTracker::Prediction InstrumentTracker::predict(double stamp) {
   return p;
 }
 
-double InstrumentTracker::motionAt(const MotionFilter::State& slide, double exposure) const {
-  return slide.mean[1] * exposure * pixelsPerMetre(config_.axis, slide.mean[0]);
+MarkerMotion InstrumentTracker::motionAt(const MotionFilter::State& slide, double exposure) const {
+  const double scale = pixelsPerMetre(config_.axis, slide.mean[0]);
+  return {slide.mean[1] * exposure * scale, slide.mean[2] * square(exposure) / 16 * scale};
 }
 
 double InstrumentTracker::fastestMotion(const Frame& frame) const {
@@ -148,13 +153,37 @@ bool InstrumentTracker::follow(const Frame& frame, const Prediction& prediction)
   const FitPrior prior = slow_.prior(slide);
   FitVector start = startAt(slide, prior, prediction);
   start[kLateral] = measurement_.tracked() ? measurement_.lateral : 0;
-  const MarkerFit fit = fitter_.follow(map_, frame, start, prior, motionAt(prediction.slide, frame.exposure),
-                                       prediction.slide.deviation() * scale);
+  MarkerFit fit = fitter_.follow(map_, frame, start, prior, motionAt(prediction.slide, frame.exposure),
+                                 prediction.slide.deviation() * scale);
+  if (fit.valid) correctMotion(frame, prior, fit);
   reason_ = gates_.judge(fit, slow_.nominal(slide), isNear(fit, prediction));
   if (reason_ == LostReason::None && !isExpected(fit, prediction, frame.stamp)) reason_ = LostReason::Jump;
   if (reason_ != LostReason::None) return false;
   accept(frame, fit, prediction, false);
+  lookForShear(frame, prior, fit);
   return true;
+}
+
+/// Rows that are exposed one after the other shear the picture of a marker that moves along them. In the first frames
+/// every picture is looked at.
+void InstrumentTracker::lookForShear(const Frame& frame, const FitPrior& prior, const MarkerFit& fit) {
+  const double scale = pixelsPerMetre(config_.axis, last_slide_);
+  const double speed = slide_.predict(frame.stamp).mean[1] * scale;
+  if (std::abs(speed) < kTellingSpeed * scale || (++looks_ > kFirstLooks && looks_ % kLookEvery != 0)) return;
+  doubts_.addShear(fitter_.shear(fit, prior), speed, config_.axis.direction.x());
+}
+
+/// Where the marker is now tells its speed during the exposure better than what was predicted.
+void InstrumentTracker::correctMotion(const Frame& frame, const FitPrior& prior, MarkerFit& fit) {
+  MotionFilter filter = slide_;
+  const double slide = slideOf(config_.axis, fit.x[kAlong]);
+  filter.update(frame.stamp, slide, fit.covariance(kAlong, kAlong) / square(pixelsPerMetre(config_.axis, slide)));
+  const MotionFilter::State state = filter.predict(frame.stamp);
+  const MarkerMotion motion = motionAt(state, frame.exposure);
+  const double deviation = std::sqrt(state.covariance(1, 1)) * frame.exposure * pixelsPerMetre(config_.axis, slide);
+  const bool same =
+      std::abs(motion.length - fit.motion.length) < kSameMotion && std::abs(motion.bend - fit.motion.bend) < kSameBend;
+  if (!same && deviation < kSameMotion) fitter_.repeat(fit, prior, motion);
 }
 
 bool InstrumentTracker::search(const Frame& frame, const Prediction& prediction) {
@@ -177,7 +206,7 @@ bool InstrumentTracker::searchNearby(const Frame& frame, const Prediction& predi
   const double scale = pixelsPerMetre(config_.axis, slide), deviation = prediction.slide.deviation() * scale;
   if (deviation > kKnownPlace) return false;
   const FitPrior prior = slow_.prior(slide);
-  const double motion = std::abs(motionAt(prediction.slide, frame.exposure));
+  const double motion = std::abs(motionAt(prediction.slide, frame.exposure).length);
   const bool known_rotation = prediction.rotation.deviation() < kKnownRotation;
   const MarkerFit fit = fitter_.acquire(map_, frame, startAt(slide, prior, prediction), prior, motion,
                                         fastestMotion(frame), known_rotation, kNearbyReach * deviation);
@@ -194,6 +223,7 @@ bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& predic
   const AxisSearch::Result& found = search_.run(map_, frame, from - kMargin, to + kMargin, fastest, min_contrast_);
   MarkerFit best;
   best.loss = 1e9;
+  bool is_last = false;  // whose pixels the fitter has
   reason_ = whyNothing(found);
   const bool patient = lost_frames_ > kPatience;
   for (int i = 0; i < found.count && tries_ < (patient ? kTries - 1 : kTries); ++i, ++tries_) {
@@ -202,7 +232,9 @@ bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& predic
     LostReason reason = gates_.judge(fit, slow_.nominal(slideOf(config_.axis, fit.x[kAlong])), false);
     if (reason == LostReason::None && fitter_.shows(kRotation) && isPart(fit) && !isNear(fit, prediction))
       reason = LostReason::Occluded;
-    if (reason == LostReason::None && fit.loss < best.loss) best = fit;
+    const bool better = reason == LostReason::None && fit.loss < best.loss;
+    if (better) best = fit;
+    is_last = better;
     if (reason != LostReason::None && reason_ == LostReason::NotFound) reason_ = reason;
     if (best.valid && best.loss < kGoodLoss) break;
   }
@@ -212,6 +244,7 @@ bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& predic
     return false;
   }
   accept(frame, best, prediction, true);
+  if (is_last && prediction.known) lookForShear(frame, searchPrior(last_slide_), best);
   return true;
 }
 
@@ -276,6 +309,8 @@ void InstrumentTracker::accept(const Frame& frame, const MarkerFit& fit, const P
   }
   updateFilters(frame.stamp, fit, scale, jumps_ >= kJumpsToBelieve || !prediction.known);
   toMiddle(frame, fit, scale);
+  measurement_.along_variance +=
+      square(doubts_.shutterError(slide_.predict(frame.stamp).mean[1] * scale, frame.sensor_height));
   measurement_.slide = slideOf(config_.axis, measurement_.along);
   measurement_.covariance(0, 0) = measurement_.along_variance / square(scale);
   describe(fit);
@@ -307,6 +342,8 @@ void InstrumentTracker::describe(const MarkerFit& fit) {
   measurement_.scale = std::exp(fit.x[kLogScale] - nominal[kLogScale]);
   measurement_.tilt = fit.x[kTilt];
   measurement_.contrast = fit.x[kContrast];
+  doubts_.addSize(std::log(measurement_.scale));
+  measurement_.doubt = doubts_.doubt();
   measurement_.roi_x = fit.roi.x, measurement_.roi_y = fit.roi.y;
   measurement_.roi_width = fit.roi.width, measurement_.roi_height = fit.roi.height;
 }

@@ -27,9 +27,11 @@ class InstrumentTracker {
     bool close = false;  ///< well enough to fit right away
   };
   Prediction predict(double stamp);
-  double motionAt(const MotionFilter::State& slide, double exposure) const;
+  MarkerMotion motionAt(const MotionFilter::State& slide, double exposure) const;
   FitVector startAt(double slide, const FitPrior& prior, const Prediction& prediction) const;
   bool follow(const Frame& frame, const Prediction& prediction);
+  void lookForShear(const Frame& frame, const FitPrior& prior, const MarkerFit& fit);
+  void correctMotion(const Frame& frame, const FitPrior& prior, MarkerFit& fit);
   bool search(const Frame& frame, const Prediction& prediction);
   bool searchNearby(const Frame& frame, const Prediction& prediction);
   double fastestMotion(const Frame& frame) const;  ///< [px]
@@ -54,6 +56,8 @@ class InstrumentTracker {
   SlowState slow_;
   const SlowState unknown_;  ///< at the beginning, always
   LightModel light_;
+  CalibrationDoubts doubts_;
+  int looks_ = 0;  ///< moving frames
   MotionFilter slide_, rotation_;
   double last_slide_ = 0, last_rotation_ = 0;
   int tries_ = 0;  ///< candidates of this frame

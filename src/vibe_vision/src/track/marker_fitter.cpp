@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMinPixels = 48;
 constexpr double kConverged = 0.03;         // a step after which the next would change nothing that matters [px]
 constexpr double kMaxStep = 3;              // [px]
-constexpr double kMotionTrial = 2;          // [px]
+constexpr double kMotionTrials[] = {2, 1};  // [px]
 constexpr double kTellingMotion = 6;        // from which what is seen where edges meet tells the motion [px]
 constexpr double kMotionUncertainty = 0.3;  // of the edges while it is tried [px]
 constexpr double kMinUncertainty = 0.3;     // of a prediction [px]
@@ -23,7 +23,6 @@ constexpr double kUnknownGamma = 0.1;  // standard deviation from which a search
 constexpr double kCommonGamma = 2.2;   // that of many cameras
 constexpr double kStrange = 2.5;       // misfit from which the response may be why
 constexpr double kBothEdges = 0.6;     // of the share of all edges: a curve moves white and black ones apart
-constexpr double kOutOfFocus = 1;      // blur from which its shape is looked for [px]
 constexpr double kLearnVisible = 0.8;  // share of a rod that must be seen to learn the light on it
 constexpr int kGuessAfter = 3;         // tries after which what was learnt of the light is doubted
 constexpr double kHopeless = 0.8;      // loss of a pixel after the coarse alignment
@@ -58,7 +57,7 @@ MarkerFitter::MarkerFitter(std::unique_ptr<MarkerPattern> pattern, const PixelNo
 }
 
 MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
-                               double motion, double uncertainty) {
+                               const MarkerMotion& motion, double uncertainty) {
   MarkerFit fit;
   fit.x = start;
   fit.motion = motion;
@@ -78,6 +77,19 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
     fit_.learnLight(fit.x, pixels_, light_);
   }
   return fit;
+}
+
+void MarkerFitter::repeat(MarkerFit& fit, const FitPrior& prior, const MarkerMotion& motion) {
+  fit.motion = motion;
+  useAll();
+  refine(fit, prior, 0, kFollowSteps);
+}
+
+Shear MarkerFitter::shear(const MarkerFit& fit, const FitPrior& prior) {
+  useHalf();
+  fit_.evaluate(fit.x, pixels_);
+  const FitStep step = fit_.step(fit.x, prior, pixels_, {});
+  return step.valid ? fit_.shear(fit.x, prior, pixels_) : Shear{};
 }
 
 MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
@@ -113,9 +125,8 @@ MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const Fit
   if (!read(map, frame, fit)) return fit;
   useHalf();
   if (!align(fit, prior, FitScope::Shape) || fit.loss > kHopeless) return fit;
-  // The blur is not that of the prior if the camera is out of focus: thin bars tell it before the motion is known.
-  fit.x[kBlur] = observed_[kRotation] ? fit.x[kBlur] : blur;
-  if (observed_[kRotation] && !align(fit, prior, FitScope::All)) return fit;
+  // The blur is not that of the prior if the camera is out of focus: edges along the motion tell it, and thin bars.
+  if (!align(fit, prior, FitScope::All)) return fit;
   if (max_motion > 1) chooseMotion(fit, prior, max_motion);
   if (!read(map, frame, fit)) return fit;
   refine(fit, prior, kMotionUncertainty, kAcquireSteps);
@@ -125,29 +136,12 @@ MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const Fit
     refine(fit, prior, 0, kAcquireSteps);
     if (fit.valid) tries_ = 0;
   }
-  if (!light_.isRound() && fit.x[kBlur] > kOutOfFocus) chooseShape(fit, prior);
   return fit;
 }
 
 void MarkerFitter::forget() {
   light_.reset();
-  roundness_ = seen_ = 0;
-  pattern_->setShape(0);
-}
-
-/// Of a blur that is more than the optics': a Gaussian, a disc or half of each, by the least loss of a pixel.
-void MarkerFitter::chooseShape(MarkerFit& fit, const FitPrior& prior) {
-  const MarkerFit start = fit;
-  const double before = roundness_;
-  for (const double roundness : {0.0, 0.5, 1.0}) {
-    if (roundness == before) continue;
-    MarkerFit trial = start;
-    useGamma(trial.x[kGamma]);
-    pattern_->setShape(roundness);
-    refine(trial, prior, 0, kAcquireSteps);
-    if (trial.loss < fit.loss) fit = trial, roundness_ = roundness;
-  }
-  pattern_->setShape(roundness_);
+  seen_ = 0;
 }
 
 /// From what is seen to what grows with the light.
@@ -174,12 +168,12 @@ void MarkerFitter::useGamma(double gamma) {
 
 bool MarkerFitter::read(AxisMap& map, const Frame& frame, MarkerFit& fit, bool guess_light) {
   const MarkerPose pose = poseOf(fit.x);
-  fit.roi = map.gather(frame, {pose.along, pose.lateral}, pattern_->window(pose, fit.motion), pixels_);
+  fit.roi = map.gather(frame, {pose.along, pose.lateral}, pattern_->window(pose, fit.motion.length), pixels_);
   all_ = 0;
   useGamma(fit.x[kGamma]);
   if (gamma_ != 1) linearise();
   if (guess_light) light_.guess(pose, pixels_);
-  pattern_->select(pose, fit.motion, pixels_);
+  pattern_->select(pose, fit.motion.length, pixels_);
   all_ = pixels_.count;
   light_.shine(pose, pixels_, pixels_.padded());
   return all_ >= kMinPixels;
@@ -243,28 +237,38 @@ void MarkerFitter::chooseRotation(MarkerFit& fit) {
   fit.x = best;
 }
 
-/// Loss of a pixel against the motion that is assumed: a parabola through three places.
+/// Loss of a pixel against the motion that is assumed: a parabola through three places. Of a ring, coarse and then
+/// fine, since it is one near the least loss only, and together with the blur, which the edges along the motion tell.
+/// Of a sleeve, blur and motion look too much alike.
 void MarkerFitter::chooseMotion(MarkerFit& fit, const FitPrior& prior, double max_motion) {
-  const double middle = std::clamp(fit.motion, kMotionTrial, std::max(max_motion - kMotionTrial, kMotionTrial));
+  for (const double distance : kMotionTrials)
+    if (!tryMotions(fit, prior, max_motion, distance) || observed_[kRotation]) return;
+}
+
+/// @return false if they do not tell the motion
+bool MarkerFitter::tryMotions(MarkerFit& fit, const FitPrior& prior, double max_motion, double distance) {
+  const double middle = std::clamp(fit.motion.length, distance, std::max(max_motion - distance, distance));
+  const MarkerFit start = fit;
   std::array<double, 3> loss{};
   for (int k = 0; k < 3; ++k) {
-    MarkerFit trial = fit;
-    trial.motion = middle + (k - 1) * kMotionTrial;
+    MarkerFit trial = start;
+    trial.motion = middle + (k - 1) * distance;
     pattern_->prepare(poseOf(trial.x), trial.motion, middle < kTellingMotion);
-    for (int i = 0; i < 2; ++i) {
+    for (int i = 0; i < (observed_[kRotation] ? 2 : 1); ++i) {
       fit_.evaluate(trial.x, pixels_);
-      const FitStep step = fit_.step(trial.x, prior, pixels_, {kMotionUncertainty, FitScope::Shape});
-      if (!step.valid) return;
+      const FitScope scope = observed_[kRotation] ? FitScope::Shape : FitScope::All;
+      const FitStep step = fit_.step(trial.x, prior, pixels_, {kMotionUncertainty, scope});
+      if (!step.valid) return false;
       loss[k] = step.loss;
       take(step, trial);
     }
-    if (k == 0 || loss[k] < *std::min_element(loss.begin(), loss.begin() + k)) best_ = trial;
+    if (k == 0 || loss[k] < *std::min_element(loss.begin(), loss.begin() + k)) fit = trial;
   }
-  fit = best_;
   const double bend = loss[0] - 2 * loss[1] + loss[2];
-  if (bend <= 0) return;
-  const double vertex = middle + kMotionTrial * std::clamp((loss[0] - loss[2]) / (2 * bend), -1.5, 1.5);
+  if (bend <= 0) return false;
+  const double vertex = middle + distance * std::clamp((loss[0] - loss[2]) / (2 * bend), -1.5, 1.5);
   fit.motion = std::clamp(vertex, 0.0, max_motion);
+  return true;
 }
 
 /// Steps with all parameters until they change no more.

@@ -17,7 +17,7 @@ struct MarkerFit {
   double loss = 0;          ///< mean of the robust loss of a pixel
   double visible = 0;       ///< share of the information about the position that was used
   double weaker_edges = 0;  ///< see FitStep
-  double motion = 0;        ///< along the axis during the exposure, as assumed [px]
+  MarkerMotion motion;      ///< as assumed
   bool valid = false;       ///< the fit converged
   PixelWindow roi;
 };
@@ -30,12 +30,16 @@ class MarkerFitter {
 
   const MarkerPattern& pattern() const { return *pattern_; }
   bool shows(PoseIndex k) const { return observed_[k]; }
-  /// Forgets the light on the rod and the shape of the blur.
+  /// Forgets the light on the rod.
   void forget();
 
   /// From a good prediction. @param uncertainty  of its position, standard deviation [px]
-  MarkerFit follow(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior, double motion,
-                   double uncertainty);
+  MarkerFit follow(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
+                   const MarkerMotion& motion, double uncertainty);
+  /// The last fit again, with what it told of the motion.
+  void repeat(MarkerFit& fit, const FitPrior& prior, const MarkerMotion& motion);
+  /// Of the picture in the last fit.
+  Shear shear(const MarkerFit& fit, const FitPrior& prior);
   /// From a candidate of the search: from coarse to fine, with any rotation.
   /// @param known_rotation  start.rotation is a prediction
   /// @param reach  from the start, within which the marker is [px]; 0: the search knows it well
@@ -46,7 +50,6 @@ class MarkerFitter {
   bool read(AxisMap& map, const Frame& frame, MarkerFit& fit, bool guess_light = false);
   void linearise();
   void useGamma(double gamma);
-  void chooseShape(MarkerFit& fit, const FitPrior& prior);
   MarkerFit tryToAcquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior, double motion,
                          double max_motion, bool known_rotation, double reach);
   void useHalf();
@@ -56,6 +59,7 @@ class MarkerFitter {
   void choosePlace(MarkerFit& fit, double reach);
   void chooseRotation(MarkerFit& fit);
   void chooseMotion(MarkerFit& fit, const FitPrior& prior, double max_motion);
+  bool tryMotions(MarkerFit& fit, const FitPrior& prior, double max_motion, double distance);
   void refine(MarkerFit& fit, const FitPrior& prior, double uncertainty, int max_steps);
   static void doubtCovered(MarkerFit& fit);
   void take(const FitStep& step, MarkerFit& fit);
@@ -67,13 +71,11 @@ class MarkerFitter {
   PixelBlock pixels_;
   std::size_t all_ = 0;  ///< pixels read
   RodLight light_;
-  int tries_ = 0;           ///< by acquire() since the light was learnt
-  double gamma_ = 1;        ///< of pixels_ and light_
-  double table_gamma_ = 0;  ///< of linear_
-  double roundness_ = 0;
+  int tries_ = 0;                    ///< by acquire() since the light was learnt
+  double gamma_ = 1;                 ///< of pixels_ and light_
+  double table_gamma_ = 0;           ///< of linear_
   std::array<float, 256> linear_{};  ///< grey values
   double seen_ = 0;                  ///< share of the marker that follow() saw the last time
-  MarkerFit best_;
   PatternFit fit_;
 };
 

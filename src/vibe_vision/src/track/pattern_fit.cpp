@@ -76,8 +76,6 @@ constexpr double kMeanSquare = 1 - 6 / kCut + 15 / (kCut * kCut);
 constexpr double kScoreSquare = 1 - 12 / kCut + 90 / (kCut * kCut) - 420 / (kCut * kCut * kCut);
 constexpr double kVarianceFactor = kScoreSquare * kMeanWeight / (kMeanSquare * kMeanSquare);
 
-using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kFitParameters, 1>;
-
 /// Median of the pixels that have at least, or at most, this reflectance.
 class LevelHistogram {
  public:
@@ -281,9 +279,26 @@ void PatternFit::learnLight(const FitVector& x, const PixelBlock& pixels, RodLig
   light.learn();
 }
 
-void PatternFit::solve(const FitVector& x, const FitPrior& prior, FitStep& result) const {
-  FitSubmatrix h(columns_, columns_);
-  Column g(columns_);
+Shear PatternFit::shear(const FitVector& x, const FitPrior& prior, const PixelBlock& pixels) {
+  const std::size_t count = pixels.padded();
+  float* sheared = equations_.column(columns_);
+  const auto contrast = static_cast<float>(x[kContrast]), centre = static_cast<float>(x[kLateral]);
+  for (std::size_t i = 0; i < count; ++i)
+    sheared[i] = lit_[i] * contrast * values_.derivative[kAlong][i] * (pixels.lateral[i] - centre);
+  FitSubvector common(columns_);
+  for (int a = 0; a < columns_; ++a) common[a] = dot(equations_.column(a), sheared, count);
+  FitSubmatrix h;
+  FitSubvector g;
+  assemble(x, prior, h, g);
+  const FitSubvector others = h.ldlt().solve(common);
+  const double information = dot(sheared, sheared, count) - others.dot(common);
+  if (!(information > 0)) return {};
+  return {(dot(sheared, equations_.residual(), count) - others.dot(g)) / information, kVarianceFactor / information};
+}
+
+void PatternFit::assemble(const FitVector& x, const FitPrior& prior, FitSubmatrix& h, FitSubvector& g) const {
+  h.resize(columns_, columns_);
+  g.resize(columns_);
   for (int a = 0; a < columns_; ++a) {
     g[a] = equations_.gradient(a);
     for (int b = 0; b < columns_; ++b) {
@@ -291,10 +306,16 @@ void PatternFit::solve(const FitVector& x, const FitPrior& prior, FitStep& resul
       g[a] += prior.information(parameter_[a], parameter_[b]) * (prior.mean[parameter_[b]] - x[parameter_[b]]);
     }
   }
+}
+
+void PatternFit::solve(const FitVector& x, const FitPrior& prior, FitStep& result) const {
+  FitSubmatrix h;
+  FitSubvector g;
+  assemble(x, prior, h, g);
   const Eigen::LDLT<FitSubmatrix> factors(h);
   result.valid = factors.info() == Eigen::Success && factors.vectorD().minCoeff() > 0;
   if (!result.valid) return;
-  const Column change = factors.solve(g);
+  const FitSubvector change = factors.solve(g);
   const FitSubmatrix inverse = factors.solve(FitSubmatrix::Identity(columns_, columns_)) * kVarianceFactor;
   result.valid = change.allFinite();
   for (int a = 0; a < columns_; ++a) {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "track/calibration_doubts.hpp"
 #include "track/rod_light.hpp"
 #include "vibe_vision/track/marker_pattern.hpp"
 
@@ -46,6 +47,7 @@ using FitVector = Eigen::Matrix<double, kFitParameters, 1>;
 using FitMatrix = Eigen::Matrix<double, kFitParameters, kFitParameters>;
 /// Of some of the parameters; on the stack.
 using FitSubmatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kFitParameters, kFitParameters>;
+using FitSubvector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kFitParameters, 1>;
 
 MarkerPose poseOf(const FitVector& x);
 void setPose(const MarkerPose& pose, FitVector& x);
@@ -95,6 +97,9 @@ class PatternFit {
   FitStep step(const FitVector& x, const FitPrior& prior, const PixelBlock& pixels, const FitOptions& options);
   /// FitStep::loss alone.
   double loss(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
+  /// What the pixels of the last step(), which was at x with the same prior, tell of a shear beside all that it looked
+  /// for.
+  Shear shear(const FitVector& x, const FitPrior& prior, const PixelBlock& pixels);
   const PatternValues& values() const { return values_; }
   /// Learns how the light changes around a rod, from the pixels and weights of the last step.
   void learnLight(const FitVector& x, const PixelBlock& pixels, RodLight& light) const;
@@ -105,6 +110,7 @@ class PatternFit {
   void weighPixels(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
   void fillColumns(const FitVector& x, const PixelBlock& pixels);
   void solve(const FitVector& x, const FitPrior& prior, FitStep& result) const;
+  void assemble(const FitVector& x, const FitPrior& prior, FitSubmatrix& h, FitSubvector& g) const;
 
   MarkerPattern& pattern_;
   PixelNoise noise_;

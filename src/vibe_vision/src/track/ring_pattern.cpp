@@ -119,8 +119,8 @@ void RingPattern::select(const MarkerPose& pose, double motion, PixelBlock& pixe
   pixels.pad();
 }
 
-void RingPattern::prepare(const MarkerPose& pose, double motion, bool /*rough*/) {
-  table_.compose(tableBlur(pose), motion * TableFrame(pose).motion, roundness_);
+void RingPattern::prepare(const MarkerPose& pose, const MarkerMotion& motion, bool /*rough*/) {
+  table_.compose(tableBlur(pose), motion.length * TableFrame(pose).motion);
 }
 
 void RingPattern::evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) {

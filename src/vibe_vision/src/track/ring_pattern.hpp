@@ -21,8 +21,7 @@ class RingTable {
   RingTable(double inner, double outer, double reach_u, double reach_v, double max_motion);
 
   /// Makes the table for a blur (standard deviation, with the pixel's own) and a motion along u [px].
-  /// @param roundness  0: a Gaussian, 1: a disc with the Gaussian of a sharp picture
-  void compose(double blur, double motion, double roundness = 0);
+  void compose(double blur, double motion);
 
   const float* row(int u) const { return table_.data() + u * columns_; }
   int rows() const { return rows_; }
@@ -34,20 +33,19 @@ class RingTable {
  private:
   struct Level {
     double blur = 0;
-    double disc = 0;              ///< its radius; the rest of the blur is Gaussian [px]
     std::vector<float> integral;  ///< over u from the centre, as coefficients, by rows of u
   };
   void buildLevel(Level& level) const;
-  std::vector<double> radialProfile(const Level& level) const;
+  std::vector<double> radialProfile(double blur) const;
   void prefilterIntegral(std::vector<float>& integral) const;
-  void mixLevels(const std::vector<Level>& levels, float share);
+  void mixLevels();
   void spreadMotion();
 
   double inner_, outer_, max_motion_;
   int rows_ = 0, columns_ = 0, integral_rows_ = 0;
   double blur_ = 0, motion_ = 0;
-  std::vector<Level> levels_, discs_;  ///< of the same blurs
-  std::vector<float> mixed_;           ///< integral at the blur asked for
+  std::vector<Level> levels_;
+  std::vector<float> mixed_;  ///< integral at the blur asked for
   std::vector<float> table_;
 };
 
@@ -59,9 +57,8 @@ class RingPattern : public MarkerPattern {
   std::array<bool, kPoseParameters> observes() const override;
   Eigen::Vector2d window(const MarkerPose& pose, double motion) const override;
   Eigen::Vector2d maxWindow() const override;
-  void prepare(const MarkerPose& pose, double motion, bool rough = false) override;
+  void prepare(const MarkerPose& pose, const MarkerMotion& motion, bool rough = false) override;
   void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) override;
-  void setShape(double roundness) override { roundness_ = roundness; }
   void select(const MarkerPose& pose, double motion, PixelBlock& pixels) const override;
   double searchHalfWidth() const override;
   void searchProfile(double motion, double scale, std::vector<float>& profile) const override;
@@ -74,7 +71,6 @@ class RingPattern : public MarkerPattern {
   void chain(const MarkerPose& pose, std::size_t begin, const Part& part, PatternValues& values) const;
 
   double inner_, outer_, half_side_;  ///< [px]
-  double roundness_ = 0;
   RingTable table_;
 };
 

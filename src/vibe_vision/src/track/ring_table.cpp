@@ -12,7 +12,6 @@ constexpr double kBlurRatio = 1.25;        // of the blur from one level to the 
 constexpr double kProfileStep = 1.0 / 32;  // of the radial profile [px]
 constexpr double kGaussTail = 6.5;         // standard deviations of a Gaussian that count
 constexpr double kMinRingMotion = 0.05;    // below it the picture is that of 0.05 px [px]
-constexpr double kSharp = 0.67;            // of the discs: the optics and the area of a pixel [px]
 constexpr float kPole = -0.26794919F;      // of the cubic B-spline: sqrt(3) - 2
 
 double gauss(double x) {
@@ -46,26 +45,6 @@ double lookUp(const std::vector<double>& table, double place) {
   const double* p = table.data() + i;
   return p[0] * (f + 1) * (f - 1) * (f - 2) / 2 - p[1] * (f + 1) * f * (f - 2) / 2 - p[-1] * f * (f - 1) * (f - 2) / 6 +
          p[2] * (f + 1) * f * (f - 1) / 6;
-}
-
-/// A radial profile, convolved with a disc: the mean over points of equal weight. From `end` on it is constant.
-std::vector<double> spreadOverDisc(const std::vector<double>& profile, double step, double disc, double end) {
-  constexpr int kRings = 10, kDirections = 20;
-  std::vector<std::pair<double, double>> points;  // along the radius, and squared across it
-  for (int k = 0; k < kRings; ++k)
-    for (int j = 0; j < kDirections; ++j) {  // of half a turn: the other half is the same
-      const double radius = disc * std::sqrt((k + 0.5) / kRings), angle = M_PI * (j + 0.5) / kDirections;
-      points.emplace_back(radius * std::cos(angle), std::pow(radius * std::sin(angle), 2));
-    }
-  std::vector<double> spread = profile;
-  for (std::size_t i = 0; i < profile.size() && static_cast<double>(i) * step < end; ++i) {
-    double sum = 0;
-    const double r = static_cast<double>(i) * step;
-    for (const auto& [along, across] : points)
-      sum += lookUp(profile, std::sqrt((r + along) * (r + along) + across) / step);
-    spread[i] = sum / static_cast<double>(points.size());
-  }
-  return spread;
 }
 
 /// Samples -> coefficients of a cubic B-spline along one dimension, `width` series side by side. Before the first
@@ -109,32 +88,25 @@ RingTable::RingTable(double inner, double outer, double reach_u, double reach_v,
   rows_ = steps(reach_u) + kMargin;
   columns_ = (steps(reach_v) + kMargin + 3) / 4 * 4;
   integral_rows_ = rows_ + steps(max_motion / 2) + 10;  // the filter needs some to settle
-  for (double blur = kMinBlur; blur < kMaxBlur * kBlurRatio; blur *= kBlurRatio) {
-    levels_.push_back({blur, 0, {}});
-    discs_.push_back({blur, 2 * std::sqrt(std::max(blur * blur - kSharp * kSharp, 0.0)), {}});
-  }
+  for (double blur = kMinBlur; blur < kMaxBlur * kBlurRatio; blur *= kBlurRatio) levels_.push_back({blur, {}});
   for (Level& level : levels_) buildLevel(level);
-  for (std::size_t i = 0; i < discs_.size(); ++i)
-    discs_[i].disc > 0 ? buildLevel(discs_[i]) : void(discs_[i].integral = levels_[i].integral);
   mixed_.resize(static_cast<std::size_t>(integral_rows_) * columns_);
   table_.resize(static_cast<std::size_t>(rows_) * columns_);
 }
 
-std::vector<double> RingTable::radialProfile(const Level& level) const {
-  const double blur = level.disc > 0 ? kSharp : level.blur;
+std::vector<double> RingTable::radialProfile(double blur) const {
   const double reach = std::hypot(integral_rows_, columns_) * kStep;
   std::vector<double> profile(static_cast<std::size_t>(reach / kProfileStep) + 4);
   for (std::size_t i = 0; i < profile.size(); ++i) {
     const double r = static_cast<double>(i) * kProfileStep;
     profile[i] = 1 - blurredDisc(r, outer_, blur) + blurredDisc(r, inner_, blur);
   }
-  return level.disc > 0 ? spreadOverDisc(profile, kProfileStep, level.disc, outer_ + level.disc + kGaussTail * blur)
-                        : profile;
+  return profile;
 }
 
 void RingTable::buildLevel(Level& level) const {
   constexpr int kParts = 4;  // of a step, for Simpson's rule
-  const std::vector<double> profile = radialProfile(level);
+  const std::vector<double> profile = radialProfile(level.blur);
   level.integral.resize(static_cast<std::size_t>(integral_rows_) * columns_);
   for (int j = 0; j < columns_; ++j) {
     const double v = (j - kMargin) * kStep;
@@ -160,12 +132,10 @@ void RingTable::prefilterIntegral(std::vector<float>& integral) const {
   }
 }
 
-void RingTable::compose(double blur, double motion, double roundness) {
+void RingTable::compose(double blur, double motion) {
   blur_ = std::clamp(blur, kMinBlur, kMaxBlur);
   motion_ = std::clamp(std::abs(motion), kMinRingMotion, max_motion_);
-  std::fill(mixed_.begin(), mixed_.end(), 0.F);
-  if (roundness < 1) mixLevels(levels_, static_cast<float>(1 - roundness));
-  if (roundness > 0) mixLevels(discs_, static_cast<float>(roundness));
+  mixLevels();
   spreadMotion();
   prefilter([&](int i) { return table_.data() + static_cast<std::ptrdiff_t>(i + kMargin) * columns_; }, rows_ - kMargin,
             columns_, 1);
@@ -173,18 +143,18 @@ void RingTable::compose(double blur, double motion, double roundness) {
     std::copy_n(row(kMargin + i), columns_, table_.data() + static_cast<std::ptrdiff_t>(kMargin - i) * columns_);
 }
 
-/// Adds a share of the picture at blur_: quadratic interpolation in the logarithm of the blur.
-void RingTable::mixLevels(const std::vector<Level>& levels, float share) {
+/// Quadratic interpolation in the logarithm of the blur.
+void RingTable::mixLevels() {
   const double place = std::log(blur_ / kMinBlur) / std::log(kBlurRatio);
-  const auto last = static_cast<std::ptrdiff_t>(levels.size()) - 2;
+  const auto last = static_cast<std::ptrdiff_t>(levels_.size()) - 2;
   const auto middle = std::clamp(static_cast<std::ptrdiff_t>(std::lround(place)), std::ptrdiff_t{1}, last);
   const double f = place - static_cast<double>(middle);
-  const auto a = share * static_cast<float>(f * (f - 1) / 2), b = share * static_cast<float>(1 - f * f),
-             c = share * static_cast<float>(f * (f + 1) / 2);
-  const float* p = levels[middle - 1].integral.data();
-  const float* q = levels[middle].integral.data();
-  const float* r = levels[middle + 1].integral.data();
-  for (std::size_t i = 0; i < mixed_.size(); ++i) mixed_[i] += a * p[i] + b * q[i] + c * r[i];
+  const auto a = static_cast<float>(f * (f - 1) / 2), b = static_cast<float>(1 - f * f),
+             c = static_cast<float>(f * (f + 1) / 2);
+  const float* p = levels_[middle - 1].integral.data();
+  const float* q = levels_[middle].integral.data();
+  const float* r = levels_[middle + 1].integral.data();
+  for (std::size_t i = 0; i < mixed_.size(); ++i) mixed_[i] = a * p[i] + b * q[i] + c * r[i];
 }
 
 /// Samples of the mean over the motion at the rows' places: difference of the integral at its two ends.

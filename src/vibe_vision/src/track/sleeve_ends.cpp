@@ -10,18 +10,41 @@ void SleevePattern::cutAt(std::size_t i, Part& part) const {
   const bool near_begin = u - reach <= helix_begin_, near_end = u + reach >= helix_end_;
   const float cut = near_end ? helix_end_ : helix_begin_, phase = part.w[i] - u + cut;
   Blackness black;
-  if (near_begin != near_end && cut_.edgeDistance(phase) > kCornerReach * std::sqrt(part.stripe_variance[i])) {
+  if (parts_.count > 1) {
+    black = bentCutAt(i, part);
+  } else if (near_begin != near_end && cut_.edgeDistance(phase) > kCornerReach * std::sqrt(part.stripe_variance[i])) {
     black = plainCutAt(part, i, phase, near_end ? 1.0F : -1.0F, near_end ? u - cut : cut - u);
   } else if (rough_ && near_begin != near_end) {
     black = roughCutAt(part, i, near_end ? 1.0F : -1.0F, near_end ? u - cut : cut - u);
   } else {
-    black = near_end ? cutStripeAt(part, i, helix_end_) : stripeAt(part, i);
-    if (near_begin) subtract(cutStripeAt(part, i, helix_begin_), black);
+    black = exactCutAt(part, i);
   }
   part.value[i] += black.value;
   part.by_u[i] += black.by_u;
   part.by_w[i] += black.by_w;
   part.by_blur[i] += black.by_blur;
+}
+
+SleevePattern::Blackness SleevePattern::exactCutAt(const Part& part, std::size_t i) const {
+  const float reach = kEdgeReach * std::sqrt(part.bar_variance[i]) + part.half_motion[i], u = part.u[i];
+  Blackness black = u + reach >= helix_end_ ? cutStripeAt(part, i, helix_end_) : stripeAt(part, i);
+  if (u - reach <= helix_begin_) add(cutStripeAt(part, i, helix_begin_), -1, black);
+  return black;
+}
+
+/// Of an accelerated motion, the mean over its parts.
+SleevePattern::Blackness SleevePattern::bentCutAt(std::size_t i, Part& part) const {
+  const float u = part.u[i], w = part.w[i], half = part.half_motion[i], stripe_half = part.stripe_half_motion[i];
+  Blackness sum;
+  for (int k = 0; k < parts_.count; ++k) {
+    const float middle = (parts_.place[k + 1] + parts_.place[k]) / 2,
+                length = (parts_.place[k + 1] - parts_.place[k]) / 2;
+    part.u[i] = u - middle * half, part.w[i] = w - middle * stripe_half;
+    part.half_motion[i] = length * half, part.stripe_half_motion[i] = length * stripe_half;
+    add(exactCutAt(part, i), 1 / static_cast<float>(parts_.count), sum);
+  }
+  part.u[i] = u, part.w[i] = w, part.half_motion[i] = half, part.stripe_half_motion[i] = stripe_half;
+  return sum;
 }
 
 /// Far from the edges of the stripe, the end of the helix is a step; the rest is the stripe, less what the step has.
@@ -68,11 +91,11 @@ SleevePattern::Blackness SleevePattern::stripeWithin(const Part& part, std::size
           -0.5F * variance * sign * per_motion * begin.slope};
 }
 
-void SleevePattern::subtract(const Blackness& other, Blackness& sum) {
-  sum.value -= other.value;
-  sum.by_u -= other.by_u;
-  sum.by_w -= other.by_w;
-  sum.by_blur -= other.by_blur;
+void SleevePattern::add(const Blackness& other, float weight, Blackness& sum) {
+  sum.value += weight * other.value;
+  sum.by_u += weight * other.by_u;
+  sum.by_w += weight * other.by_w;
+  sum.by_blur += weight * other.by_blur;
 }
 
 SleevePattern::Blackness SleevePattern::stripeAt(const Part& part, std::size_t i) const {

@@ -12,7 +12,9 @@ namespace {
 constexpr double kMinBlur = 0.25, kMaxBlur = 3.5;  // of the optics [px]
 constexpr double kMinSleeveMotion = 0.5;  // replaces shorter ones, and their variance is taken off the blur [px]
 constexpr double kRim = 0.88;             // of the radius: beyond, the print is seen too obliquely
-constexpr float kMaxSine = 0.97F;         // of the angle around the rod: keeps derivatives finite
+constexpr double kNoticeableBend = 0.01;  // of the motion [px]
+constexpr double kLongestBend = 0.7 * (BlurredLine::kMargin - MovingLine::kMaxHalfMotion);  // tables end there [px]
+constexpr float kMaxSine = 0.97F;                 // of the angle around the rod: keeps derivatives finite
 constexpr int kBarLevels = 4, kStripeLevels = 5;  // variances from the middle of the rod to the rim
 constexpr float kTurn = 6.28318530718F;
 
@@ -93,15 +95,19 @@ Eigen::Vector2d SleevePattern::maxWindow() const {
   return Eigen::Vector2d(half_length_, radius_) * 1.2;
 }
 
-void SleevePattern::compose(MovingLine& line, double low, double high, double half_motion) {
+void SleevePattern::compose(MovingLine& line, double low, double high, double half_motion) const {
   low = std::max(low, 0.3 * high);
-  line.compose(static_cast<float>(low), static_cast<float>(high), static_cast<float>(std::max(half_motion, 0.1)));
+  line.compose(static_cast<float>(low), static_cast<float>(high), static_cast<float>(std::max(half_motion, 0.1)),
+               parts_);
 }
 
 /// Tables for the middle of the rod and for its rim. Slopes are those of a line of sight that is not oblique.
-void SleevePattern::prepare(const MarkerPose& pose, double motion, bool rough) {
+void SleevePattern::prepare(const MarkerPose& pose, const MarkerMotion& motion, bool rough) {
   rough_ = rough;
-  motion_ = std::min(std::abs(motion), 2.0 * MovingLine::kMaxHalfMotion);
+  motion_ = std::min(std::abs(motion.length), 2.0 * MovingLine::kMaxHalfMotion);
+  const double most = std::min(MotionParts::kMostBend * motion_ / 2, kLongestBend);
+  const double bend = std::clamp(motion.bend, -most, most);
+  parts_ = MotionParts(static_cast<float>(std::abs(bend) < kNoticeableBend ? 0 : 2 * bend / motion_));
   const View view = viewOf(pose, motion_);
   const double lean = std::tan(pose.slant + (pose.along - view_.principal_along) / view_.focal_length);
   const double rim = 1 / std::sqrt(1 - kRim * kRim), turn = pitch_ / kTurn / radius_, bow = std::abs(lean) * kRim * rim;

@@ -19,7 +19,7 @@ class SleevePattern : public MarkerPattern {
   std::array<bool, kPoseParameters> observes() const override;
   Eigen::Vector2d window(const MarkerPose& pose, double motion) const override;
   Eigen::Vector2d maxWindow() const override;
-  void prepare(const MarkerPose& pose, double motion, bool rough = false) override;
+  void prepare(const MarkerPose& pose, const MarkerMotion& motion, bool rough = false) override;
   void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) override;
   void select(const MarkerPose& pose, double motion, PixelBlock& pixels) const override;
   double searchHalfWidth() const override;
@@ -33,7 +33,7 @@ class SleevePattern : public MarkerPattern {
   struct Blackness;
   View viewOf(const MarkerPose& pose, double motion) const;
   Eigen::Vector2d printWindow(const MarkerPose& pose, double motion) const;
-  static void compose(MovingLine& line, double low, double high, double half_motion);
+  void compose(MovingLine& line, double low, double high, double half_motion) const;
   void measureEdges(const std::vector<Interval>& bars);
   void mark(Part& part) const;
   void placePixels(const View& view, const PixelBlock& pixels, std::size_t begin, Part& part) const;
@@ -42,13 +42,15 @@ class SleevePattern : public MarkerPattern {
   void spread(const View& pose, Part& part) const;
   void look(Part& part) const;
   void cutAt(std::size_t i, Part& part) const;
+  Blackness bentCutAt(std::size_t i, Part& part) const;
+  Blackness exactCutAt(const Part& part, std::size_t i) const;
   void chain(const View& view, std::size_t begin, const Part& part, PatternValues& values) const;
   Blackness stripeAt(const Part& part, std::size_t i) const;
   Blackness cutStripeAt(const Part& part, std::size_t i, float cut) const;
   Blackness plainCutAt(const Part& part, std::size_t i, float phase, float sign, float out) const;
   Blackness roughCutAt(const Part& part, std::size_t i, float sign, float out) const;
   Blackness stripeWithin(const Part& part, std::size_t i, float phase, float sign, float out, float black) const;
-  static void subtract(const Blackness& other, Blackness& sum);
+  static void add(const Blackness& other, float weight, Blackness& sum);
 
   MarkerView view_;
   double radius_, half_length_;  ///< [px]
@@ -57,7 +59,8 @@ class SleevePattern : public MarkerPattern {
   BlurredLine bars_, stripe_;
   MovingLine moving_bars_, moving_stripe_;
   CutStripe cut_;
-  double motion_ = 0;  ///< of prepare() [px]
+  double motion_ = 0;     ///< of prepare() [px]
+  MotionParts parts_{0};  ///< of prepare()
   bool rough_ = false;
 };
 

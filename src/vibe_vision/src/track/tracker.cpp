@@ -30,6 +30,19 @@ const char* toText(LostReason reason) {
   return "unknown";
 }
 
+const char* toText(Doubt doubt) {
+  switch (doubt) {
+    case Doubt::None:
+      return "";
+    case Doubt::Size:
+      return "the marker is not as large as calibrated: the camera may have moved or have another lens, or the print "
+             "another size; calibrate the axis anew, or correct the size";
+    case Doubt::Shutter:
+      return "the picture of the moving marker is sheared, as by a rolling shutter; use a camera with a global shutter";
+  }
+  return "unknown";
+}
+
 struct Tracker::Impl {
   VisionConfig config;
   std::vector<InstrumentTracker> instruments;

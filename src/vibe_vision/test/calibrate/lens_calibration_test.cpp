@@ -125,6 +125,20 @@ TEST(LensCalibration, TheDeviationsAreThoseOfTheErrors) {
   EXPECT_LT(sum, 2);
 }
 
+/// Of a long lens the focal length is the least certain: equations that are badly scaled lose it first.
+TEST(LensCalibration, ALongLensIsUncertainAndSaysSo) {
+  CameraModel camera;
+  camera.width = 728, camera.height = 544;
+  camera.fx = camera.fy = 4530;
+  camera.cx = 361.4, camera.cy = 274.2;
+  const std::vector<Eigen::Isometry3d> poses = boardPoses(camera, kBoard, 0.46, 14, 0.5);
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const LensCalibration lens = calibrateLens(viewsOf(camera, poses, 0.05, seed), kBoard, 728, 544);
+    EXPECT_LT(std::abs(lens.camera.fx - camera.fx), 4 * lens.deviation[0]) << seed;
+    EXPECT_LT(lens.deviation[0], 0.005 * camera.fx) << seed;
+  }
+}
+
 TEST(LensCalibration, CoefficientsThatAreNotSeenAreZero) {
   CameraModel straight = bentLens();
   straight.distortion = {};

@@ -16,7 +16,7 @@ class DrawnSleeve {
   static constexpr int kAcross = 12, kAlong = 48;  ///< points per pixel
 
   DrawnSleeve(const SleeveDesign& design, double pixels_per_metre, const MarkerView& view, const MarkerPose& pose,
-              double motion)
+              const MarkerMotion& motion)
       : design_(design), pixels_per_metre_(pixels_per_metre), focal_(view.focal_length), pose_(pose) {
     const Eigen::Rotation2Dd turn(pose.tilt);
     const Eigen::Vector2d u = turn * Eigen::Vector2d(std::cos(pose.slant), 0);
@@ -58,10 +58,10 @@ class DrawnSleeve {
 
   static double step(double x, double blur) { return 0.5 * std::erfc(-x / blur * M_SQRT1_2); }
 
-  void makeWeights(double motion) {
+  void makeWeights(const MarkerMotion& motion) {
     const double reach = 4.5 * pose_.blur + 0.5;
     across_reach_ = reach;
-    along_reach_ = reach + std::abs(motion) / 2;
+    along_reach_ = reach + std::abs(motion.length) / 2 + 2 * std::abs(motion.bend);
     across_weights_.resize(static_cast<std::size_t>(2 * across_reach_ * kAcross));
     along_weights_.resize(static_cast<std::size_t>(2 * along_reach_ * kAlong));
     double sum = 0;
@@ -75,7 +75,8 @@ class DrawnSleeve {
     for (std::size_t i = 0; i < along_weights_.size(); ++i) {
       const double d = (static_cast<double>(i) + 0.5) / kAlong - along_reach_;
       for (int k = 0; k < 50; ++k) {
-        const double m = d + motion * ((k + 0.5) / 50 - 0.5);
+        const double time = (k + 0.5) / 50 - 0.5;  // of the exposure
+        const double m = d + motion.length * time + motion.bend * (8 * time * time - 2.0 / 3);
         along_weights_[i] += step(m + 0.5, pose_.blur) - step(m - 0.5, pose_.blur);
       }
       sum += along_weights_[i];

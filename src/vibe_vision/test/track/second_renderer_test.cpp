@@ -81,6 +81,22 @@ TEST(SecondRenderer, MarkersAreFoundWhereTheyAre) {
   EXPECT_LE(lost, 1);  // known: the second frame of the sleeve under a response that nobody gave
 }
 
+/// Out of focus, a wrong motion during the exposure explains a blurred ring nearly as well as the right one.
+TEST(SecondRenderer, ADefocusedRingIsFoundInEveryFrame) {
+  for (const bool given : {true, false}) {
+    VisionConfig config = configOf("needle_driver");
+    if (given) config.gamma = 1;
+    int found = 0;
+    for (const Sample& sample : loadSamples()) {
+      if (sample.image.rfind("defocus2_needle", 0) != 0) continue;
+      Tracker tracker(config);  // none knows anything
+      const Measurement m = trackSample(tracker, sample);
+      found += m.tracked() && std::abs(m.slide - sample.slide) < 5e-6 ? 1 : 0;
+    }
+    EXPECT_EQ(found, 3) << (given ? "gamma given" : "gamma unknown");
+  }
+}
+
 /// A wrong response is not tracked silently at a wrong place: it is lost, or right.
 TEST(SecondRenderer, AGivenResponseIsTaken) {
   for (const double gamma : {1.0, 2.2}) {

@@ -15,7 +15,7 @@ const MarkerView kView{4600, -150, 120};
 struct Case {
   const char* name;
   MarkerPose pose;
-  double motion;
+  MarkerMotion motion;
 };
 
 MarkerPose poseWith(double rotation, double tilt = 0, double slant = 0, double log_scale = 0, double blur = 0.6) {
@@ -31,6 +31,8 @@ std::vector<Case> cases() {
           {"rest, turned back", poseWith(-1.7), 0},
           {"1 ms", poseWith(1.3), 5},
           {"4 ms", poseWith(4.1), 20},
+          {"4 ms, accelerated", poseWith(4.1), {19, 0.3}},
+          {"4 ms, turned and braked", poseWith(1.7), {19, -0.3}},
           {"tilt and slant", poseWith(0.9, 0.26, -0.26), 0},
           {"tilt, slant and 1 ms", poseWith(3.5, -0.26, 0.26), 5},
           {"large", poseWith(5.2, 0, 0, 0.095), 3},
@@ -68,8 +70,8 @@ struct Error4 {
 Error4 errorAgainstDrawing(const Case& c) {
   SleevePattern pattern(defaultSleeve(), kPixelsPerMetre, kView);
   const DrawnSleeve drawn(defaultSleeve(), kPixelsPerMetre, kView, c.pose, c.motion);
-  PixelBlock pixels = pixelsOf(pattern, c.pose, c.motion, 7);
-  pattern.select(c.pose, c.motion, pixels);
+  PixelBlock pixels = pixelsOf(pattern, c.pose, c.motion.length, 7);
+  pattern.select(c.pose, c.motion.length, pixels);
   PatternValues values;
   values.allocate(pixels.capacity(), pattern.observes());
   pattern.prepare(c.pose, c.motion);
@@ -92,8 +94,8 @@ TEST(SleevePattern, IsThePictureOfACylinder) {
   for (const Case& c : cases()) {
     const Error4 error = errorAgainstDrawing(c);
     // An oblique or much blurred sleeve tells its place less well: three times the error is less than its noise.
-    const bool hard = c.pose.tilt != 0 || c.pose.blur > 1 || c.motion > 10;
-    const bool hardest = c.pose.tilt != 0 && c.motion > 0;  // the motion is not along the rod
+    const bool hard = c.pose.tilt != 0 || c.pose.blur > 1 || c.motion.length > 10;
+    const bool hardest = c.pose.tilt != 0 && c.motion.length > 0;  // the motion is not along the rod
     EXPECT_LT(error.rms, hardest ? 0.008 : hard ? 0.004 : 0.002) << c.name;
     EXPECT_LT(std::abs(error.along), hard ? 0.003 : 0.001) << c.name;
     EXPECT_LT(std::abs(error.rotation), (hard ? 0.15 : 0.05) * M_PI / 180) << c.name;
@@ -118,7 +120,7 @@ double& parameter(MarkerPose& pose, PoseIndex k) {
 /// Relative error of a derivative against differences of the pattern, root mean square over the pixels.
 double derivativeError(const Case& c, PoseIndex k) {
   SleevePattern pattern(defaultSleeve(), kPixelsPerMetre, kView);
-  const PixelBlock pixels = pixelsOf(pattern, c.pose, c.motion, 1);
+  const PixelBlock pixels = pixelsOf(pattern, c.pose, c.motion.length, 1);
   const double step = k == kAlong || k == kLateral || k == kBlur ? 0.1 : 0.008;
   std::array<PatternValues, 3> values;
   for (int side = -1; side <= 1; ++side) {
@@ -141,7 +143,8 @@ double derivativeError(const Case& c, PoseIndex k) {
 TEST(SleevePattern, DerivativesAreThoseOfThePicture) {
   for (const Case& c : cases())
     for (const PoseIndex k : {kAlong, kLateral, kRotation, kLogScale, kTilt, kBlur, kSlant}) {
-      if (c.motion > 6 && (k == kLogScale || k == kTilt || k == kBlur)) continue;  // change the motion on the print too
+      if (c.motion.length > 6 && (k == kLogScale || k == kTilt || k == kBlur))
+        continue;  // change the motion on the print too
       EXPECT_LT(derivativeError(c, k), k == kBlur ? 0.25 : 0.12) << c.name << ", parameter " << k;
     }
 }
@@ -149,7 +152,7 @@ TEST(SleevePattern, DerivativesAreThoseOfThePicture) {
 TEST(SleevePattern, SelectionKeepsWhatTells) {
   const Case c = cases()[1];
   SleevePattern pattern(defaultSleeve(), kPixelsPerMetre, kView);
-  PixelBlock pixels = pixelsOf(pattern, c.pose, c.motion, 1);
+  PixelBlock pixels = pixelsOf(pattern, c.pose, c.motion.length, 1);
   const auto information = [&](const PixelBlock& block, PoseIndex k) {
     PatternValues values;
     values.allocate(block.capacity(), pattern.observes());
@@ -161,7 +164,7 @@ TEST(SleevePattern, SelectionKeepsWhatTells) {
   };
   const std::size_t all = pixels.count;
   const double along = information(pixels, kAlong), rotation = information(pixels, kRotation);
-  pattern.select(c.pose, c.motion, pixels);
+  pattern.select(c.pose, c.motion.length, pixels);
   EXPECT_LT(pixels.count, 0.75 * static_cast<double>(all));
   EXPECT_GT(information(pixels, kAlong), 0.93 * along);
   EXPECT_GT(information(pixels, kRotation), 0.85 * rotation);

@@ -85,6 +85,12 @@ TEST(SleeveTracking, TurnsWhileTheSlideStandsStill) {
   expectGood(follow(scene, 110), 0.01, 0.3);
 }
 
+TEST(SleeveTracking, KnowsThatALongExposureShowsAnAcceleratedMotion) {
+  const Result result = follow(namedScene("long_exposure"), 90);
+  expectGood(result, 0.04, 0.6);
+  EXPECT_LT(result.nees, 1.6);
+}
+
 TEST(SleeveTracking, FollowsADefocusedPicture) {
   expectGood(follow(namedScene("defocus"), 60), 0.03, 0.6);
 }

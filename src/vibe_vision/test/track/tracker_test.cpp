@@ -159,6 +159,19 @@ TEST(Tracker, ABrightPictureWithClippedPixelsIsTracked) {
   EXPECT_LT(errors.rms(), 0.015);
 }
 
+/// vibe_calibrate writes this perspective by default, also for an axis that has a little of it.
+TEST(Tracker, AnAxisWithoutPerspectiveIsTracked) {
+  const SyntheticScene scene = ringScene("static");
+  ASSERT_NE(scene.instruments[0].nominal.axis.perspective, 0);
+  VisionConfig config = nominalConfig(scene);
+  config.instruments[0].axis.perspective = 0;
+  const Renderer renderer(scene);
+  Tracker tracker(config);
+  int tracked = 0;
+  for (std::uint64_t i = 0; i < 40; ++i) tracked += tracker.track(renderer.render(i).frame)[0].tracked() ? 1 : 0;
+  EXPECT_EQ(tracked, 40);
+}
+
 TEST(Tracker, AStampThatGoesBackStartsAnew) {
   SyntheticScene scene = ringScene("static");
   const RenderedFrame rendered = Renderer(scene).render(0);

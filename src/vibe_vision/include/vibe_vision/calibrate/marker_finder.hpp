@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,6 +29,9 @@ struct MarkerSearch {
 
 /// Finds a marker anywhere in an image, at any angle, without a calibration: correlation with its picture over angles
 /// and sizes. Slow (seconds for the first image); the next images are searched near the angle and size of the last.
+/// A small picture resembles something everywhere, and a large one something of the background: over a wide range of
+/// sizes the best correlation need not be the marker. So a few places of every size are kept, and what knows the marker
+/// better may choose among them.
 class MarkerFinder {
  public:
   MarkerFinder(const MarkerDesign& design, const MarkerSearch& search);
@@ -35,8 +39,11 @@ class MarkerFinder {
   MarkerFinder(const MarkerFinder&) = delete;
   MarkerFinder& operator=(const MarkerFinder&) = delete;
 
-  /// @return nothing if nothing looks enough like the marker
-  std::optional<MarkerSighting> find(const ImageView& image);
+  using Confirm = std::function<bool(const MarkerSighting&)>;
+  /// @param confirm  whether a place is the marker: asked from the best place on, until it says so
+  /// @return the place that is confirmed; if none is, the one that looks most alike; nothing if none looks enough like
+  ///         the marker
+  std::optional<MarkerSighting> find(const ImageView& image, const Confirm& confirm);
 
  private:
   struct Impl;

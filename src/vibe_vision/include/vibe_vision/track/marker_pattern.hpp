@@ -58,6 +58,16 @@ struct PatternValues {
   void allocate(std::size_t capacity, const std::array<bool, kPoseParameters>& observed);
 };
 
+/// How a marker moves along the axis during the exposure, about its mean place.
+struct MarkerMotion {
+  double length = 0;  ///< from the first place to the last [px]
+  /// Of an accelerated motion: the first and the last place are further along by this much than in an even one, the
+  /// middle is as much behind. Acceleration times the square of the exposure, by 16 [px].
+  double bend = 0;
+
+  MarkerMotion(double its_length = 0, double its_bend = 0) : length(its_length), bend(its_bend) {}
+};
+
 /// The picture of a marker as a function of its pose: blurred by optics, the area of a pixel (1 px) and the motion
 /// during the exposure.
 class MarkerPattern {
@@ -73,12 +83,8 @@ class MarkerPattern {
   virtual Eigen::Vector2d maxWindow() const = 0;
 
   /// Makes ready for evaluations near a pose; once per frame. No allocation.
-  /// @param motion  by which the marker moves along the axis during the exposure [px]
   /// @param rough  the picture may be wrong by a few percent in a few places: enough to find the marker
-  virtual void prepare(const MarkerPose& pose, double motion, bool rough = false) = 0;
-  /// The shape of the point spread function from the next prepare() on, for patterns that tell it.
-  /// @param roundness  0: a Gaussian, 1: a disc, as a lens out of focus draws it, blurred by the optics; or between
-  virtual void setShape(double /*roundness*/) {}
+  virtual void prepare(const MarkerPose& pose, const MarkerMotion& motion, bool rough = false) = 0;
   /// The pattern near the prepared pose: exact in position, rotation, size and tilt, to first order in the change of
   /// the blur. Fills values up to pixels.padded(). No allocation.
   virtual void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) = 0;

@@ -27,6 +27,14 @@ enum class LostReason {
 };
 const char* toText(LostReason reason);  ///< a sentence for people
 
+/// What speaks against camera or calibration although the marker is tracked, from many frames.
+enum class Doubt {
+  None,
+  Size,    ///< the marker is not as large as calibrated
+  Shutter  ///< the rows of an image are not exposed at the same time
+};
+const char* toText(Doubt doubt);  ///< a sentence for people, with possible causes; empty for None
+
 /// What one frame says about one instrument.
 struct Measurement {
   LostReason reason = LostReason::NoFrame;
@@ -44,6 +52,8 @@ struct Measurement {
   double contrast = 0;                              ///< white - black [DN]
   int roi_x = 0, roi_y = 0, roi_width = 0, roi_height = 0;  ///< where it was looked for, full image [px]
   bool reacquired = false;                                  ///< found by a search, not near a prediction
+
+  Doubt doubt = Doubt::None;  ///< of a tracked instrument
 
   bool tracked() const { return reason == LostReason::None; }
 };
