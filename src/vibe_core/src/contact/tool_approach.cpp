@@ -14,6 +14,8 @@ namespace {
 
 // The box of a turning shape is larger than that of its ends. Design choice: covers turns of two radians [1].
 constexpr double kTurnMargin = 0.25;
+constexpr std::size_t kBallGroup = 16;  // balls of a group. Design choice: a patch about as wide as a shape [1]
+constexpr double kRounding = 1e-9;      // of positions within a few metres, many times over [m]
 
 }  // namespace
 
@@ -254,16 +256,37 @@ void NearTriangles::find(const SweptTool& tool, const SurfacePath& path, double 
   all.min().array() -= reach, all.max().array() += reach;
   classify(all, path);
   collectBalls(path);
-  for (int s = 0; s < tool.count(); ++s) {
-    const Eigen::Vector3d low = tool.box(s).min(), high = tool.box(s).max();
-    const auto [a, b] = tool.segment(s, 0);
-    const double grown = tool.radius(s) + tool.travel(s) + reach;
-    for (const Ball& ball : balls_) {
-      const double near = ball.radius + ball.move + reach;
-      if (((ball.centre - high).array() > near).any() || ((low - ball.centre).array() > near).any()) continue;
-      const double apart = tool.hasSegment(s) ? (ball.centre - nearestOnSegment(a, b, ball.centre)).norm() : 0;
-      if (apart <= grown + ball.radius + ball.move) found.push_back({s, ball.triangle});
+  groupBalls(reach);
+  for (int s = 0; s < tool.count(); ++s)
+    for (const Group& group : groups_)
+      if (group.box.intersects(tool.box(s))) findIn(group, tool, s, reach, found);
+}
+
+// Triangles that follow each other are mostly neighbours.
+void NearTriangles::groupBalls(double reach) {
+  groups_.clear();
+  for (std::size_t first = 0; first < balls_.size(); first += kBallGroup) {
+    Group group{first, std::min(first + kBallGroup, balls_.size()), {}};
+    for (std::size_t i = group.first; i < group.last; ++i) {
+      const Eigen::Vector3d near = Eigen::Vector3d::Constant(balls_[i].radius + balls_[i].move + reach + kRounding);
+      group.box.extend(balls_[i].centre - near);
+      group.box.extend(balls_[i].centre + near);
     }
+    groups_.push_back(group);
+  }
+}
+
+void NearTriangles::findIn(const Group& group, const SweptTool& tool, int shape, double reach,
+                           std::vector<Pair>& found) const {
+  const Eigen::Vector3d low = tool.box(shape).min(), high = tool.box(shape).max();
+  const auto [a, b] = tool.segment(shape, 0);
+  const double grown = tool.radius(shape) + tool.travel(shape) + reach;
+  for (std::size_t i = group.first; i < group.last; ++i) {
+    const Ball& ball = balls_[i];
+    const double near = ball.radius + ball.move + reach;
+    if (((ball.centre - high).array() > near).any() || ((low - ball.centre).array() > near).any()) continue;
+    const double apart = tool.hasSegment(shape) ? (ball.centre - nearestOnSegment(a, b, ball.centre)).norm() : 0;
+    if (apart <= grown + ball.radius + ball.move) found.push_back({shape, ball.triangle});
   }
 }
 

@@ -116,8 +116,15 @@ class NearTriangles {
   void find(const SweptTool& tool, const SurfacePath& path, double reach, std::vector<Pair>& found);
 
  private:
+  /// Balls that follow each other in the list, and a box around them with their paths.
+  struct Group {
+    std::size_t first, last;
+    Eigen::AlignedBox3d box;
+  };
   void classify(const Eigen::AlignedBox3d& box, const SurfacePath& path);
   void collectBalls(const SurfacePath& path);
+  void groupBalls(double reach);
+  void findIn(const Group& group, const SweptTool& tool, int shape, double reach, std::vector<Pair>& found) const;
 
   std::vector<std::array<int, 3>> triangles_;
   std::vector<unsigned char> outside_;  // per vertex, a bit per side of the tool's box beyond which its path lies
@@ -128,6 +135,7 @@ class NearTriangles {
     double radius, move;
   };
   std::vector<Ball> balls_;
+  std::vector<Group> groups_;
 };
 
 }  // namespace vibe

@@ -137,9 +137,10 @@ const RestStiffness& ImplicitSolver::restStiffness() const {
 }
 
 void ImplicitSolver::advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state,
-                             SolverWorkspace& scratch, ThreadPool&, StepReport& report) const {
+                             SolverWorkspace& scratch, ThreadPool& pool, StepReport& report) const {
   auto& own = static_cast<ImplicitWorkspace&>(scratch);
   own.stepper->stages = own.stages;
+  own.stepper->use(pool, stepper_.body().shell);
   ImplicitStep(model, stepper_, limits_, motion, insufflator_on, state, own, report).run();
 }
 

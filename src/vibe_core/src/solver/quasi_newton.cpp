@@ -163,7 +163,7 @@ bool QuasiNewton::satisfyConstraints() {
   s.schur.eliminate(s.rhs, 0, s.half.data());
   s.schur.holdThreads(false);
   unknowns_.push(s.schur);
-  s.factor->backward(s.half.data());
+  s.factor->backward(s.half.data(), *s.pool);
   s.factor->store(s.half.data(), s.direction.data());
   for (int i = 0; i < body_.nodeCount(); ++i)
     if (body_.fixed[i] != 0)
@@ -255,14 +255,14 @@ void QuasiNewton::applyInverse(const double* alpha) {
   StepperWorkspace& s = scratch_;
   ++solves_;
   loadWork();
-  s.factor->forward(s.half.data());
+  s.factor->forward(s.half.data(), *s.pool);
   {
     const InStage stage(s.stages, StepStage::Rows);
     unknowns_.addTargets(s.rhs);
     s.schur.eliminate(s.rhs, swelling(), s.half.data());
     unknowns_.setDirection(s.schur, s.row_moves);
   }
-  s.factor->backward(s.half.data());
+  s.factor->backward(s.half.data(), *s.pool);
   s.factor->store(s.half.data(), s.direction.data());
   for (int i = 0; i < s.pairs; ++i) {
     const double beta = -s.curvature[i] * (dot(s.change[i], s.direction) + unknowns_.directionTerm(i));

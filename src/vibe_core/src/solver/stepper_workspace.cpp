@@ -8,8 +8,14 @@
 #include "solver/couplings.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/solver/energy_term.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 namespace vibe {
+
+namespace {
+// Into which a shell is divided for more than two threads. Design choice: each share costs copies along its border.
+constexpr int kMostShares = 4;
+}  // namespace
 
 StepperWorkspace::StepperWorkspace(const std::vector<Eigen::Vector3d>& rest_positions,
                                    std::shared_ptr<const FactorPlan> elements_plan, FactorStorage storage_of_factor,
@@ -36,6 +42,19 @@ StepperWorkspace::StepperWorkspace(const std::vector<Eigen::Vector3d>& rest_posi
 
 StepperWorkspace::~StepperWorkspace() {
   making.reset();  // it works on the other members
+}
+
+void StepperWorkspace::use(ThreadPool& threads, const ShellElements* shell) {
+  pool = &threads;
+  if (shared.threads == threads.threads()) return;
+  shared.threads = threads.threads();
+  shared.shares.clear();
+  if (shell == nullptr || shared.threads == 1) return;
+  for (ShellPart& part : shell->partsOf(shared.threads == 2 ? 2 : kMostShares)) {
+    const std::vector<float> zeros(part.size(), 0.0F);
+    shared.shares.push_back({std::move(part), zeros, zeros, zeros});
+  }
+  for (auto* v : {&shared.value, &shared.volume}) v->assign(static_cast<std::size_t>(shell->pieceCount()), 0);
 }
 
 void StepperWorkspace::returnLent() {

@@ -9,12 +9,15 @@
 #include "common/background_worker.hpp"
 #include "solver/constraint_rows.hpp"
 #include "solver/constraint_schur.hpp"
+#include "tissue/shell_part.hpp"
 #include "vibe_core/common/step_stages.hpp"
+#include "vibe_core/common/thread_pool.hpp"
 #include "vibe_core/solver/implicit_stepper.hpp"
 
 namespace vibe {
 
 struct FactorSchedule;
+class ShellElements;
 
 /// What the factor that is made in the background is to be about.
 struct FactorTask {
@@ -36,6 +39,17 @@ struct Evaluation {
   double volume = 0, pressure = 0;      // [m^3], [Pa]
 };
 
+/// The evaluation of a shell by several threads.
+struct SharedEvaluation {
+  struct Share {  // all but the first
+    ShellPart part;
+    std::vector<float> displacement, gradient, volume_gradient;  // of the part
+  };
+  int threads = 1;  // for which the shares are made
+  std::vector<Share> shares;
+  std::vector<double> value, volume;  // per piece
+};
+
 /// Factors that are kept for many workspaces, by what they are about. They are not changed any more.
 class FactorShelf {
  public:
@@ -55,6 +69,9 @@ class StepperWorkspace {
                    std::shared_ptr<FactorShelf> factors);
   ~StepperWorkspace();
 
+  /// The next steps use a pool. The bits of results do not depend on it.
+  /// @param shell  of the body; null: none
+  void use(ThreadPool& threads, const ShellElements* shell);
   /// Afterwards `factor` is the workspace's own, about anything.
   void returnLent();
 
@@ -71,10 +88,11 @@ class StepperWorkspace {
   std::unique_ptr<BackgroundWorker> making;  // of next_factor; null: none was ever made
   ColumnCache columns, next_columns;         // of `factor`, of `next_factor`
   ConstraintSchur schur;
-  std::vector<double> rest;                      // positions [m]
-  std::vector<double> z, z_hat;                  // unknown, where inertia wants it [m]
-  std::vector<double> trial;                     // [m]
-  std::vector<float> gradient, trial_gradient;   // [N]
+  std::vector<double> rest;                     // positions [m]
+  std::vector<double> z, z_hat;                 // unknown, where inertia wants it [m]
+  std::vector<double> trial;                    // [m]
+  std::vector<float> gradient, trial_gradient;  // [N]
+  SharedEvaluation shared;
   Evaluation last, first, kept;                  // of a step; `kept`: at z, while a trial is evaluated
   std::vector<float> direction, work;            // [m]
   std::vector<float> half;                       // in elimination order
@@ -88,6 +106,8 @@ class StepperWorkspace {
   Eigen::VectorXd row_moves;     // of the last direction, beyond what rows give way, to the scale of the rows [m]
   double gas_stiffness = 0;      // at the end of a step [Pa/m^3]
   StageClock* stages = nullptr;  // null: nothing is measured
+  ThreadPool single;
+  ThreadPool* pool = &single;                   // outlives what uses it
   double elastic_energy = 0, usual_length = 0;  // of the memory before the step [J], [m]
 };
 

@@ -1,5 +1,6 @@
 #include "vibe_core/sparse/factor.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -8,6 +9,7 @@
 #include "sparse/factor_plan.hpp"
 #include "sparse/multifrontal.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/thread_pool.hpp"
 
 namespace vibe {
 namespace {
@@ -20,6 +22,29 @@ Number* workOfThread(std::int64_t count) {
   thread_local AlignedBuffer<Number> buffer;
   if (buffer.size() < count) buffer.resize(count);
   return buffer.data();
+}
+
+float* recordOfThread(std::int64_t count) {
+  thread_local AlignedBuffer<float> buffer;
+  if (buffer.size() < count) buffer.resize(count);
+  return buffer.data();
+}
+
+PanelSet partOf(PanelSet set, int first, int last) {
+  set.steps += first;
+  set.step_count = last - first;
+  return set;
+}
+
+// What a branch has recorded.
+void addRecord(const FactorPlan& plan, const FactorPlan::Branch& branch, const float* record, float* vector) {
+  record += branch.record;
+  for (int s = branch.first; s < branch.last; ++s) {
+    const std::int32_t* const begin = plan.row_index.data() + plan.steps[s].first_index;
+    const std::int32_t* const end = begin + plan.steps[s].below_nodes;
+    for (const std::int32_t* row = std::lower_bound(begin, end, branch.end_row); row < end; ++row, record += 3)
+      for (int a = 0; a < 3; ++a) vector[*row + a] += record[a];
+  }
 }
 
 std::int64_t workSize(const FactorPlan& plan) {
@@ -82,6 +107,18 @@ struct Factor::Storage {
         float_scale[3 * k + a] = static_cast<float>(scale[3 * k + a]);
       }
     return true;
+  }
+
+  template <class Visit>
+  void inBranches(ThreadPool& pool, const Visit& visit) const {
+    pool.parallelFor(static_cast<int>(plan->branches.size()), 1,
+                     [&visit, this](int b, int) { visit(plan->branches[static_cast<std::size_t>(b)]); });
+  }
+  void runForward(int first, int last, float* vector) const {
+    kernels.forward(partOf(panels(), first, last), vector, workOfThread<float>(workSize(*plan)));
+  }
+  void runBackward(int first, int last, float* vector) const {
+    kernels.backward(partOf(panels(), first, last), vector, workOfThread<float>(workSize(*plan)));
   }
 
   void take(int s, const FrontPanel<float>& panel) { pack(s, panel, half); }
@@ -178,6 +215,36 @@ void Factor::forward(float* vector) const {
 
 void Factor::backward(float* vector) const {
   storage_->kernels.backward(storage_->panels(), vector, workOfThread<float>(workSize(*plan_)));
+}
+
+void Factor::forward(float* vector, ThreadPool& pool) const {
+  if (pool.threads() == 1) return forward(vector);
+  float* const record = recordOfThread(plan_->record_size);
+  storage_->inBranches(pool, [&](const FactorPlan::Branch& branch) {
+    PanelSet part = partOf(storage_->panels(), branch.first, branch.last);
+    part.end_row = branch.end_row;
+    part.record = record + branch.record;
+    storage_->kernels.forward(part, vector, workOfThread<float>(workSize(*plan_)));
+  });
+  int next = 0;
+  for (const FactorPlan::Branch& branch : plan_->branches) {
+    storage_->runForward(next, branch.first, vector);
+    addRecord(*plan_, branch, record, vector);
+    next = branch.last;
+  }
+  storage_->runForward(next, static_cast<int>(plan_->steps.size()), vector);
+}
+
+void Factor::backward(float* vector, ThreadPool& pool) const {
+  if (pool.threads() == 1) return backward(vector);
+  int next = static_cast<int>(plan_->steps.size());
+  for (auto branch = plan_->branches.rbegin(); branch != plan_->branches.rend(); ++branch) {
+    storage_->runBackward(branch->last, next, vector);
+    next = branch->first;
+  }
+  storage_->runBackward(0, next, vector);
+  storage_->inBranches(
+      pool, [&](const FactorPlan::Branch& branch) { storage_->runBackward(branch.first, branch.last, vector); });
 }
 
 void Factor::solve(const double* b, double* x) const {

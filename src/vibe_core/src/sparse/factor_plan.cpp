@@ -1,6 +1,7 @@
 #include "sparse/factor_plan.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "sparse/elimination.hpp"
 
@@ -8,6 +9,9 @@ namespace vibe {
 namespace {
 
 constexpr int kFirstSeed = 1, kSeeds = 4;
+// A branch has at most this part of the factor. Design choice: small enough that four threads get equal shares, large
+// enough that a branch outlasts its start by far.
+constexpr int kBranchParts = 10;
 
 class Planner {
  public:
@@ -24,6 +28,7 @@ class Planner {
     for (std::size_t s = 0; s < supernodes_.size(); ++s) addRuns(static_cast<int>(s));
     addEntries();
     measureStack();
+    cutBranches();
     return plan_;
   }
 
@@ -120,6 +125,34 @@ class Planner {
       used += size(s);
       plan_->stack_size = std::max(plan_->stack_size, used);
       if (plan_->fronts[s].parent != -1) children[plan_->fronts[s].parent].push_back(s);
+    }
+  }
+
+  // The largest subtrees that are small enough. Supernodes are in postorder: a subtree ends with its root.
+  void cutBranches() {
+    const int count = static_cast<int>(supernodes_.size());
+    std::vector<int> first(count);
+    std::vector<std::int64_t> numbers(count, 0);
+    std::iota(first.begin(), first.end(), 0);
+    for (int s = 0; s < count; ++s) {
+      numbers[s] += panelSize(plan_->steps[s].columns, plan_->steps[s].row_blocks);
+      const int parent = plan_->fronts[s].parent;
+      if (parent == -1) continue;
+      numbers[parent] += numbers[s];
+      first[parent] = std::min(first[parent], first[s]);
+    }
+    const auto isSmall = [&](int s) { return s != -1 && numbers[s] * kBranchParts <= plan_->panel_size; };
+    for (int s = 0; s < count; ++s)
+      if (isSmall(s) && !isSmall(plan_->fronts[s].parent)) addBranch(first[s], s + 1, numbers[s]);
+  }
+
+  void addBranch(int first, int last, std::int64_t numbers) {
+    const std::int32_t end_row = plan_->steps[last - 1].first_row + plan_->steps[last - 1].columns;
+    plan_->branches.push_back({first, last, end_row, plan_->record_size, numbers});
+    for (int s = first; s < last; ++s) {
+      const auto begin = plan_->row_index.begin() + plan_->steps[s].first_index;
+      const auto end = begin + plan_->steps[s].below_nodes;
+      plan_->record_size += 3 * (end - std::lower_bound(begin, end, end_row));
     }
   }
 

@@ -31,6 +31,15 @@ class FactorPlan {
     int first_run = 0, run_count = 0;
   };
 
+  /// A subtree of supernodes, which is solved independently of the others. What its forward substitution adds to rows
+  /// beyond it is recorded and added in the order of the supernodes, so that the sums are those of one pass over all.
+  struct Branch {
+    int first, last;           ///< supernodes, past the last
+    std::int32_t end_row;      ///< past its last row
+    std::int64_t record;       ///< index of its first recorded number
+    std::int64_t numbers = 0;  ///< in its panels
+  };
+
   std::shared_ptr<const BlockPattern> pattern;
   std::vector<NodePair> pairs;  ///< beside the pattern
   std::vector<int> order;       ///< nodes by position in the elimination
@@ -41,7 +50,9 @@ class FactorPlan {
   std::vector<Front> fronts;
   std::vector<Entry> entries;
   std::vector<Run> runs;
-  std::int64_t panel_size = 0;  ///< numbers in total, padding included
+  std::vector<Branch> branches;  ///< ascending; the supernodes between and after them are the trunk
+  std::int64_t record_size = 0;  ///< of all branches
+  std::int64_t panel_size = 0;   ///< numbers in total, padding included
   std::int64_t nonzeros = 0;
   std::int64_t stack_size = 0;  ///< maximum size of all update matrices on the stack [numbers]
   int largest_front = 0;        ///< rows

@@ -1,6 +1,7 @@
 #include "sparse/panel_kernel.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace vibe {
 
@@ -35,8 +36,10 @@ struct PlainKernel {
           visit(column, block * kTile, p);
   }
 
+  // @returns where the next step records
   template <class Real>
-  static void forwardStep(const PanelSet& set, const PanelStep& step, Real* vector, int stride, Real* work) {
+  static Real* forwardStep(const PanelSet& set, const PanelStep& step, Real* vector, int stride, Real* work,
+                           Real* record) {
     std::fill(work, work + step.row_blocks * kTile, Real(0));
     Real* own = vector + step.first_row * stride;
     forEachColumn(set, step, [&](int column, int row, const double* number) {
@@ -44,8 +47,15 @@ struct PlainKernel {
     });
     for (int i = 0; i < step.columns; ++i) own[i * stride] = work[i];
     const Real* update = work + step.columns;
-    for (int i = 0; i < step.below_nodes; ++i)
-      for (int a = 0; a < 3; ++a) vector[(set.row_index[step.first_index + i] + a) * stride] += *update++;
+    for (int i = 0; i < step.below_nodes; ++i) {
+      const std::int32_t row = set.row_index[step.first_index + i];
+      for (int a = 0; a < 3; ++a, ++update)
+        if (row < set.end_row)
+          vector[(row + a) * stride] += *update;
+        else
+          *record++ = *update;
+    }
+    return record;
   }
 
   template <class Real>
@@ -63,7 +73,9 @@ struct PlainKernel {
 
   template <class Real>
   static void forward(const PanelSet& set, Real* vector, Real* work) {
-    for (int s = 0; s < set.step_count; ++s) forwardStep(set, set.steps[s], vector, 1, work);
+    Real* record = nullptr;
+    if constexpr (std::is_same_v<Real, float>) record = set.record;
+    for (int s = 0; s < set.step_count; ++s) record = forwardStep(set, set.steps[s], vector, 1, work, record);
   }
 
   template <class Real>
@@ -72,7 +84,7 @@ struct PlainKernel {
   }
 
   static void stepOfThree(const PanelSet& set, int step, int, float* vectors, float* work) {
-    for (int k = 0; k < 3; ++k) forwardStep(set, set.steps[step], vectors + k, 3, work);
+    for (int k = 0; k < 3; ++k) forwardStep<float>(set, set.steps[step], vectors + k, 3, work, nullptr);
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "common/kernel_path.hpp"
 
@@ -31,7 +32,7 @@ constexpr std::int64_t panelSize(std::int64_t columns, std::int64_t row_blocks) 
   return kTile * (kTile * (tiles * row_blocks - tiles * (tiles - 1) / 2) + rest * (row_blocks - tiles));
 }
 
-/// A non-owning view of a factor, for kernels that must not instantiate code of shared containers.
+/// A non-owning view of a factor or of a part of it, for kernels that must not instantiate code of shared containers.
 struct PanelSet {
   const PanelStep* steps;
   int step_count;
@@ -39,6 +40,9 @@ struct PanelSet {
   const void* numbers;
   const float* column_scale;  ///< W = panel * diag(column_scale), one per row of the vector
   std::ptrdiff_t ahead;       ///< prefetch distance [bytes]
+  /// What the forward substitution adds to rows from here on is recorded instead, in order (3 per node).
+  std::int32_t end_row = std::numeric_limits<std::int32_t>::max();
+  float* record = nullptr;
 };
 
 /// The operations of a kernel on one vector, or on three interleaved ones (x0 y0 z0 x1 ...). `work` holds the rows of

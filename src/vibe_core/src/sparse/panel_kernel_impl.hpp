@@ -127,7 +127,8 @@ struct PanelKernel {
     }
   }
 
-  static void forwardStep(const PanelSet& set, const PanelStep& step, float* vector, float* work) {
+  // @returns where the next step records
+  static float* forwardStep(const PanelSet& set, const PanelStep& step, float* vector, float* work, float* record) {
     const Number* p = static_cast<const Number*>(set.numbers) + step.panel;
     float* own = vector + step.first_row;
     const float* scale = set.column_scale + step.first_row;
@@ -141,17 +142,21 @@ struct PanelKernel {
     }
     for (int i = 0; i < step.columns; ++i) own[i] = work[i];
     const float* update = work + step.columns;
-    const std::int32_t* index = set.row_index + step.first_index;
-    for (int i = 0; i < step.below_nodes; ++i, update += 3) {
-      float* row = vector + index[i];
+    const std::int32_t *index = set.row_index + step.first_index, *end = index + step.below_nodes;
+    for (; index < end && *index < set.end_row; ++index, update += 3) {
+      float* row = vector + *index;
       row[0] += update[0];
       row[1] += update[1];
       row[2] += update[2];
     }
+    for (; index < end; ++index, update += 3, record += 3)
+      for (int a = 0; a < 3; ++a) record[a] = update[a];
+    return record;
   }
 
   static void forward(const PanelSet& set, float* vector, float* work) {
-    for (int s = 0; s < set.step_count; ++s) forwardStep(set, set.steps[s], vector, work);
+    float* record = set.record;
+    for (int s = 0; s < set.step_count; ++s) record = forwardStep(set, set.steps[s], vector, work, record);
   }
 
   // ---- backward: the columns of a tile times the rows; reads from the end to the start, because the data that the

@@ -8,6 +8,7 @@
 
 #include "tissue/shell_fibres.hpp"
 #include "tissue/shell_kernel.hpp"
+#include "tissue/shell_part.hpp"
 
 namespace vibe {
 
@@ -98,10 +99,49 @@ void ShellElements::addBatch(const std::vector<int>& triangles, int rows) {
   ++batch_count_;
 }
 
-double ShellElements::evaluatePiece(int piece, ShellSweep sweep, double* volume) const {
-  const int first = static_cast<int>(static_cast<std::int64_t>(batch_count_) * piece / piece_count_);
-  const int last = static_cast<int>(static_cast<std::int64_t>(batch_count_) * (piece + 1) / piece_count_);
-  sweep.node = batch_node_.data();
+int ShellElements::firstBatch(int piece) const {
+  return static_cast<int>(static_cast<std::int64_t>(batch_count_) * piece / piece_count_);
+}
+
+std::vector<ShellPart> ShellElements::partsOf(int count) const {
+  std::vector<ShellPart> parts;
+  if (count > piece_count_ || !batch_fibre_.empty()) return parts;
+  std::vector<int> place(mesh_.nodes.size(), -1);
+  for (int k = 0; k < count; ++k) {
+    ShellPart part = makePart(piece_count_ * k / count, piece_count_ * (k + 1) / count, place);
+    if (k > 0) parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+// In the order in which the kernel adds.
+// @param place  per node: -1, or that a part before has it
+ShellPart ShellElements::makePart(int first_piece, int last_piece, std::vector<int>& place) const {
+  constexpr int kTaken = -2;
+  const int first = firstBatch(first_piece), last = firstBatch(last_piece);
+  ShellPart part{first_piece, last_piece, first, {}, {}, {}};
+  part.node.assign(batch_node_.begin() + 6 * first, batch_node_.begin() + 6 * last);
+  for (const BatchOffsets& offsets : part.node)
+    for (const std::uint32_t offset : offsets.lane) {
+      int& at = place[offset / 4];
+      if (at != -1) continue;
+      at = static_cast<int>(part.own.size());
+      part.own.push_back(static_cast<int>(offset / 4));
+    }
+  for (BatchOffsets& offsets : part.node)
+    for (std::uint32_t& offset : offsets.lane) {
+      const int at = place[offset / 4];
+      const std::size_t slot = at != kTaken ? static_cast<std::size_t>(at) : part.own.size() + part.copies.size();
+      if (at == kTaken) part.copies.push_back(static_cast<int>(offset / 4));
+      offset = 4 * static_cast<std::uint32_t>(slot);
+    }
+  for (const int node : part.own) place[static_cast<std::size_t>(node)] = kTaken;
+  return part;
+}
+
+// @param first_node_batch  the batch with which the sweep's nodes begin
+double ShellElements::evaluatePiece(int piece, ShellSweep sweep, int first_node_batch, double* volume) const {
+  const int first = firstBatch(piece), last = firstBatch(piece + 1);
   double energy = 0;
   for (const Run& run : runs_) {
     sweep.first = std::max(first, run.first), sweep.last = std::min(last, run.last);
@@ -113,9 +153,10 @@ double ShellElements::evaluatePiece(int piece, ShellSweep sweep, double* volume)
     sweep.law = mesh_.materials[material].law;
     sweep.poisson_ratio = mesh_.materials[material].poisson_ratio;
     sweep.constants = &constants_[material];
+    if (!batch_fibre_.empty()) sweep.fibre = batch_fibre_.data() + static_cast<std::size_t>(kFibreRows * sweep.first);
+    sweep.first -= first_node_batch, sweep.last -= first_node_batch;
     energy += kernel_->sweep(sweep);
     if (batch_fibre_.empty()) continue;
-    sweep.fibre = batch_fibre_.data() + static_cast<std::size_t>(kFibreRows * sweep.first);
     sweep.fibre_stiffening = mesh_.fibres.stiffening;
     energy += kernel_->fibres(sweep);
   }
@@ -125,15 +166,25 @@ double ShellElements::evaluatePiece(int piece, ShellSweep sweep, double* volume)
 
 double ShellElements::evaluate(int piece, const float* displacement4, float* gradient4) const {
   ShellSweep sweep{};
+  sweep.node = batch_node_.data();
   sweep.displacement4 = displacement4, sweep.gradient4 = gradient4;
-  return evaluatePiece(piece, sweep, nullptr);
+  return evaluatePiece(piece, sweep, 0, nullptr);
 }
 
 double ShellElements::evaluate(int piece, const float* displacement4, float* gradient4, float* volume_gradient4,
                                double& volume) const {
   ShellSweep sweep{};
+  sweep.node = batch_node_.data();
   sweep.displacement4 = displacement4, sweep.gradient4 = gradient4, sweep.volume_gradient4 = volume_gradient4;
-  return evaluatePiece(piece, sweep, &volume);
+  return evaluatePiece(piece, sweep, 0, &volume);
+}
+
+double ShellElements::evaluate(const ShellPart& part, int piece, const float* displacement4, float* gradient4,
+                               float* volume_gradient4, double& volume) const {
+  ShellSweep sweep{};
+  sweep.node = part.node.data();
+  sweep.displacement4 = displacement4, sweep.gradient4 = gradient4, sweep.volume_gradient4 = volume_gradient4;
+  return evaluatePiece(piece, sweep, part.first_batch, volume_gradient4 != nullptr ? &volume : nullptr);
 }
 
 void ShellElements::gather(std::size_t triangle, const double* displacement, double (&v)[5][3]) const {

@@ -28,13 +28,22 @@ Scene livelyScene() {
   return scene;
 }
 
-World livelyWorld(int threads = 1) {
-  return World(livelyScene(), plainOrgan(icosphere(kRadius, 3), kWall), "", threads);
+// @param cuts  of the icosphere; a wall of 4 is evaluated in pieces
+World livelyWorld(int threads = 1, int cuts = 3) {
+  return World(livelyScene(), plainOrgan(icosphere(kRadius, cuts), kWall), "", threads);
 }
 
 TEST(ShellScene, SameBitsOnEveryRunAndThreadCount) {
   World a = livelyWorld(), b = livelyWorld(), c = livelyWorld(3);
   for (World* world : {&a, &b, &c}) world->run(0.7);
+  EXPECT_GT(a.maxShift(), 1e-3);
+  EXPECT_EQ(hash(a.state), hash(b.state));
+  EXPECT_EQ(hash(a.state), hash(c.state));
+}
+
+TEST(ShellScene, SameBitsOfALargeWallWithAnyThreadCount) {
+  World a = livelyWorld(1, 4), b = livelyWorld(2, 4), c = livelyWorld(5, 4);
+  for (World* world : {&a, &b, &c}) world->run(0.3);
   EXPECT_GT(a.maxShift(), 1e-3);
   EXPECT_EQ(hash(a.state), hash(b.state));
   EXPECT_EQ(hash(a.state), hash(c.state));

@@ -10,7 +10,9 @@
 
 #include "sparse/closed_mesh.hpp"
 #include "sparse/eigen_matrix.hpp"
+#include "sparse/factor_plan.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/thread_pool.hpp"
 
 namespace vibe::factor_test {
 namespace {
@@ -215,6 +217,32 @@ TEST(FactorTest, GivesTheSameBitsTwice) {
   EXPECT_GT((solveFloat(second, b) - x).norm(), 0);
   ASSERT_TRUE(second.compute(matrix));
   EXPECT_EQ(solveFloat(second, b), x);
+}
+
+TEST(FactorTest, GivesTheSameBitsWithAnyNumberOfThreads) {
+  std::mt19937 generator(19);
+  const BlockMatrix matrix = shellMatrix(closedMesh(12), 1.0, 0.1);
+  const Eigen::VectorXd b = randomVector(3 * matrix.pattern().size, generator);
+  const auto plan = makeFactorPlan(matrix.pattern());
+  ASSERT_GE(plan->branches.size(), 8u);
+  ASSERT_GT(plan->record_size, 0) << "branches that share nothing test nothing";
+  for (const FactorStorage storage : {FactorStorage::Half, FactorStorage::Float, FactorStorage::Double}) {
+    Factor factor(plan, storage);
+    ASSERT_TRUE(factor.compute(matrix));
+    const Eigen::VectorXf start = b.cast<float>();
+    std::vector<float> once(start.begin(), start.end());
+    factor.forward(once.data());
+    const std::vector<float> half_way = once;
+    factor.backward(once.data());
+    for (const int threads : {1, 2, 5}) {
+      ThreadPool pool(threads);
+      std::vector<float> vector(start.begin(), start.end());
+      factor.forward(vector.data(), pool);
+      EXPECT_EQ(vector, half_way);
+      factor.backward(vector.data(), pool);
+      EXPECT_EQ(vector, once);
+    }
+  }
 }
 
 // The pivot of the second node is 2e-6, of which single precision would lose three percent.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "tissue/material_law.hpp"
+#include "tissue/shell_part.hpp"
 #include "tissue/shell_worlds.hpp"
 #include "vibe_core/common/error.hpp"
 
@@ -209,6 +210,39 @@ TEST(Shell, EnergyIsTheSameWithAndWithoutTheVolume) {
   EXPECT_EQ(elements.evaluate(0, u.data(), with.data(), area.data(), volume),
             elements.evaluate(0, u.data(), without.data()));
   EXPECT_EQ(with, without);
+}
+
+TEST(Shell, PartsGiveTheBitsOfPiecesInTurn) {
+  const ShellElements elements(sphere(4, 0.05));
+  const std::vector<float> u = fourFloats(randomDisplacement(elements.nodeCount(), 0.1 * kSide));
+  std::vector<float> gradient(u.size(), 0.0f), area = gradient;
+  std::vector<double> energies;
+  double volume = 0;
+  for (int p = 0; p < elements.pieceCount(); ++p)
+    energies.push_back(elements.evaluate(p, u.data(), gradient.data(), area.data(), volume));
+  for (const int count : {2, 3, 8}) {
+    const std::vector<ShellPart> parts = elements.partsOf(count);
+    ASSERT_EQ(parts.size() + 1, static_cast<std::size_t>(count));
+    std::vector<float> sum(u.size(), 0.0f), sum_area = sum;
+    double ignored = 0;
+    for (int p = 0; p < parts.front().first_piece; ++p)
+      EXPECT_EQ(elements.evaluate(p, u.data(), sum.data(), sum_area.data(), ignored), energies[p]);
+    for (const ShellPart& part : parts) {
+      EXPECT_FALSE(part.copies.empty()) << "parts that share nothing test nothing";
+      std::vector<float> own_u, own(part.size(), 0.0f), own_area = own;
+      for (const auto* nodes : {&part.own, &part.copies})
+        for (const int node : *nodes) own_u.insert(own_u.end(), &u[4 * node], &u[4 * node] + 4);
+      for (int p = part.first_piece; p < part.last_piece; ++p)
+        EXPECT_EQ(elements.evaluate(part, p, own_u.data(), own.data(), own_area.data(), ignored), energies[p]);
+      for (std::size_t i = 0; i < part.size(); ++i) {
+        const bool is_own = i / 4 < part.own.size();
+        const std::size_t node = is_own ? part.own[i / 4] : part.copies[i / 4 - part.own.size()];
+        sum[4 * node + i % 4] += own[i], sum_area[4 * node + i % 4] += own_area[i];
+      }
+    }
+    EXPECT_EQ(sum, gradient);
+    EXPECT_EQ(sum_area, area);
+  }
 }
 
 TEST(Shell, HingeAndClampChangeBendingOnly) {

@@ -8,6 +8,8 @@
 
 namespace vibe {
 
+class ThreadPool;
+
 /// Storage precision of a factor. A factor is read twice per solve, and memory traffic dominates the cost.
 enum class FactorStorage { Half, Float, Double };
 
@@ -65,6 +67,9 @@ class Factor {
   /// L^-1 and L^-T, in place. load, forward, backward and store together solve A x = b.
   void forward(float* vector) const;
   void backward(float* vector) const;
+  /// The same bits by the threads of a pool, which share the branches of the elimination tree.
+  void forward(float* vector, ThreadPool& pool) const;
+  void backward(float* vector, ThreadPool& pool) const;
   /// Complete solve with arithmetic and storage in double precision; slow, for checks. Interleaved (3 * nodes).
   /// @throws Error  if the storage is not FactorStorage::Double
   void solve(const double* b, double* x) const;

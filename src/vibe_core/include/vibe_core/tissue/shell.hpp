@@ -17,6 +17,7 @@ struct BatchOffsets;
 struct BatchReals;
 struct LawConstants;
 struct ShellKernel;
+struct ShellPart;
 struct ShellSweep;
 
 /// Up to two families of fibres in the plane of a wall, which resist only tension. Each adds, per volume, modulus / (2
@@ -78,6 +79,12 @@ class ShellElements : public ElasticElements {
   /// surface, the gradient of the volume. Virtual so that a solver can be tested on other walls.
   virtual double evaluate(int piece, const float* displacement4, float* gradient4, float* volume_gradient4,
                           double& volume) const;
+  /// The pieces after the first of `count` shares, in as many parts less one. The first share adds to the vectors of
+  /// all nodes. Empty where there are fewer pieces, and with fibres, which add to a node once more.
+  std::vector<ShellPart> partsOf(int count) const;
+  /// Like evaluate, with vectors of a part; volume_gradient4 may be null.
+  double evaluate(const ShellPart& part, int piece, const float* displacement4, float* gradient4,
+                  float* volume_gradient4, double& volume) const;
   /// The volume and its gradient, as above, in double precision; interleaved (3 * nodeCount), overwritten.
   double volume(const double* displacement, double* gradient) const;
 
@@ -113,7 +120,9 @@ class ShellElements : public ElasticElements {
   void makeBatches();
   void addRun(const std::vector<int>& triangles, int material, bool ghosts);
   void addBatch(const std::vector<int>& triangles, int rows);
-  double evaluatePiece(int piece, ShellSweep sweep, double* volume) const;
+  int firstBatch(int piece) const;
+  ShellPart makePart(int first_piece, int last_piece, std::vector<int>& place) const;
+  double evaluatePiece(int piece, ShellSweep sweep, int first_node_batch, double* volume) const;
 
   double areaOf(std::size_t triangle) const;
   bool held(int node) const { return !mesh_.fixed.empty() && mesh_.fixed[static_cast<std::size_t>(node)] != 0; }
