@@ -83,7 +83,7 @@ class CrtkTest(unittest.TestCase):
         for recorder in self.recorders:
             recorder.clear()
         self.assertTrue(self.step_service(count).success)
-        for recorder in (self.applied, self.scope, self.pose, self.jacobian):
+        for recorder in (self.applied, self.scope, self.overstitch, self.pose, self.twist, self.jacobian):
             self.assertTrue(wait_until(lambda: len(recorder.messages) >= count))
 
     def check_kinematics(self, recorder):
