@@ -69,7 +69,7 @@ class Factor {
   void backward(float* vector) const;
   /// The same bits by the threads of a pool, which share the branches of the elimination tree.
   void forward(float* vector, ThreadPool& pool) const;
-  void backward(float* vector, ThreadPool& pool) const;
+  void backward(float* vector, ThreadPool& pool) const;  ///< like forward() by threads
   /// Complete solve with arithmetic and storage in double precision; slow, for checks. Interleaved (3 * nodes).
   /// @throws Error  if the storage is not FactorStorage::Double
   void solve(const double* b, double* x) const;

@@ -39,6 +39,7 @@ class MarkerFinder {
   MarkerFinder(const MarkerFinder&) = delete;
   MarkerFinder& operator=(const MarkerFinder&) = delete;
 
+  /// Whether a place is that of the marker.
   using Confirm = std::function<bool(const MarkerSighting&)>;
   /// @param confirm  whether a place is the marker: asked from the best place on, until it says so
   /// @return the place that is confirmed; if none is, the one that looks most alike; nothing if none looks enough like

@@ -43,7 +43,7 @@ class TrackSummary {
   struct Instrument {
     std::string name;
     std::uint64_t tracked = 0, reacquired = 0;
-    std::map<Doubt, std::uint64_t> doubtful;
+    std::map<Doubt, std::uint64_t> doubtful;  ///< measurements with each doubt
     std::map<LostReason, std::uint64_t> lost;
   };
   std::vector<Instrument> instruments_;

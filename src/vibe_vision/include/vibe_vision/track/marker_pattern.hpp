@@ -65,6 +65,7 @@ struct MarkerMotion {
   /// middle is as much behind. Acceleration times the square of the exposure, by 16 [px].
   double bend = 0;
 
+  /// From a length alone it is a motion with even speed [px].
   MarkerMotion(double its_length = 0, double its_bend = 0) : length(its_length), bend(its_bend) {}
 };
 

@@ -29,7 +29,7 @@ const char* toText(LostReason reason);  ///< a sentence for people
 
 /// What speaks against camera or calibration although the marker is tracked, from many frames.
 enum class Doubt {
-  None,
+  None,    ///< nothing does
   Size,    ///< the marker is not as large as calibrated
   Shutter  ///< the rows of an image are not exposed at the same time
 };
