@@ -98,7 +98,7 @@ export class Panel {
   private showState(state: StateText) {
     const terms: [string, string][] = [
       ['Time', seconds(state.time) + (state.paused ? ', paused' : '')], ['Phase', state.phase], ['Tool', state.tool],
-      ['Needle', state.needle], ['Gas', `${(state.pressure / 133.322).toFixed(1)} mmHg, ${(1e6 * state.volume).toFixed(0)} mL`],
+      ['Needle', state.needle], ['Gas', `${(state.pressure / 133.322).toFixed(1).replace('-0.0', '0.0')} mmHg, ${(1e6 * state.volume).toFixed(0)} mL`],
       ['Marks', String(state.marks)], ['Bites', String(state.bites)], ['Sets', `${state.cinched} of ${state.sutures} cinched`],
       ['Bleeding', state.bleeding ? `${state.bleeding} now, ${(1e6 * state.blood).toFixed(1)} mL lost` : 'none'],
     ];
