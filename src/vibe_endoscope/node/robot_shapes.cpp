@@ -4,12 +4,12 @@
 
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
-#include <ros/package.h>
 #include <urdf/model.h>
 #include <assimp/Importer.hpp>
 
 #include "vibe_graphics/geometry/coloured_shape.hpp"
 #include "vibe_graphics/geometry/solid_bodies.hpp"
+#include "vibe_node/mesh_address.hpp"
 
 namespace vibe::endoscope {
 
@@ -63,16 +63,6 @@ std::optional<std::vector<RobotVisual>> robotVisuals(const std::string& descript
 
 namespace {
 
-/// The file of an address; package:// and file:// are understood.
-std::string fileOf(const std::string& address) {
-  const std::string package = "package://", file = "file://";
-  if (address.rfind(file, 0) == 0) return address.substr(file.size());
-  if (address.rfind(package, 0) != 0) return address;
-  const std::string rest = address.substr(package.size());
-  const std::size_t slash = rest.find('/');
-  return ros::package::getPath(rest.substr(0, slash)) + (slash == std::string::npos ? "" : rest.substr(slash));
-}
-
 void appendMesh(const aiMesh& mesh, const aiMatrix4x4& pose, const Eigen::Affine3d& place,
                 graphics::ColouredShape& shape) {
   const auto first = static_cast<std::uint32_t>(shape.vertices.size());
@@ -101,8 +91,8 @@ void appendNode(const aiScene& scene, const aiNode& node, const aiMatrix4x4& par
 std::string appendMeshFile(const RobotVisual& visual, graphics::ColouredShape& shape) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // as rviz
-  const aiScene* scene =
-      importer.ReadFile(fileOf(visual.mesh), aiProcess_SortByPType | aiProcess_GenNormals | aiProcess_Triangulate);
+  const aiScene* scene = importer.ReadFile(node::fileOf(visual.mesh),
+                                           aiProcess_SortByPType | aiProcess_GenNormals | aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr)
     return "The mesh '" + visual.mesh + "' of the robot description cannot be read (" + importer.GetErrorString() +
            ") and is missing in the truth; correct the path or install its package.";

@@ -3,7 +3,6 @@
 #include <fstream>
 #include <stdexcept>
 
-#include <ros/package.h>
 #include <urdf/model.h>
 
 #include "mesh_capsules.hpp"
@@ -11,6 +10,7 @@
 #include "vibe_graphics/geometry/endoscope_optics.hpp"
 #include "vibe_graphics/geometry/mucosa_map.hpp"
 #include "vibe_graphics/geometry/mucosa_pattern.hpp"
+#include "vibe_node/mesh_address.hpp"
 #include "vibe_rviz_plugins/drive/scope_drive.hpp"
 
 namespace vibe::web {
@@ -47,15 +47,6 @@ json jointOf(const urdf::Joint& joint) {
   return link;
 }
 
-std::string fileOf(const std::string& address) {
-  const std::string package = "package://", file = "file://";
-  if (address.rfind(file, 0) == 0) return address.substr(file.size());
-  if (address.rfind(package, 0) != 0) return address;
-  const std::string rest = address.substr(package.size());
-  const std::size_t slash = rest.find('/');
-  return ros::package::getPath(rest.substr(0, slash)) + (slash == std::string::npos ? "" : rest.substr(slash));
-}
-
 /// The material files that an OBJ names, which stand beside it.
 void addMaterials(const std::string& file, std::map<std::string, std::string>& meshes) {
   std::ifstream stream(file);
@@ -75,7 +66,7 @@ json capsuleText(const std::string& file) {
 }
 
 void addMesh(const std::string& address, json& visual, RobotText& robot) {
-  const std::string file = fileOf(address), name = file.substr(file.rfind('/') + 1);
+  const std::string file = node::fileOf(address), name = file.substr(file.rfind('/') + 1);
   const bool known = name.size() > 4 && name.substr(name.size() - 4) == ".obj" && std::ifstream(file).good();
   if (!known) {
     robot.problems.push_back("The mesh '" + address +

@@ -15,7 +15,7 @@ namespace {
 // The box of a turning shape is larger than that of its ends. Design choice: covers turns of two radians [1].
 constexpr double kTurnMargin = 0.25;
 constexpr std::size_t kBallGroup = 16;  // balls of a group. Design choice: a patch about as wide as a shape [1]
-constexpr double kRounding = 1e-9;      // of positions within a few metres, many times over [m]
+constexpr double kRounding = 1e-9;      // far above the rounding of a position in double precision [m]
 
 }  // namespace
 

@@ -143,12 +143,12 @@ class Planner {
     }
     const auto isSmall = [&](int s) { return s != -1 && numbers[s] * kBranchParts <= plan_->panel_size; };
     for (int s = 0; s < count; ++s)
-      if (isSmall(s) && !isSmall(plan_->fronts[s].parent)) addBranch(first[s], s + 1, numbers[s]);
+      if (isSmall(s) && !isSmall(plan_->fronts[s].parent)) addBranch(first[s], s + 1);
   }
 
-  void addBranch(int first, int last, std::int64_t numbers) {
+  void addBranch(int first, int last) {
     const std::int32_t end_row = plan_->steps[last - 1].first_row + plan_->steps[last - 1].columns;
-    plan_->branches.push_back({first, last, end_row, plan_->record_size, numbers});
+    plan_->branches.push_back({first, last, end_row, plan_->record_size});
     for (int s = first; s < last; ++s) {
       const auto begin = plan_->row_index.begin() + plan_->steps[s].first_index;
       const auto end = begin + plan_->steps[s].below_nodes;

@@ -34,10 +34,9 @@ class FactorPlan {
   /// A subtree of supernodes, which is solved independently of the others. What its forward substitution adds to rows
   /// beyond it is recorded and added in the order of the supernodes, so that the sums are those of one pass over all.
   struct Branch {
-    int first, last;           ///< supernodes, past the last
-    std::int32_t end_row;      ///< past its last row
-    std::int64_t record;       ///< index of its first recorded number
-    std::int64_t numbers = 0;  ///< in its panels
+    int first, last;       ///< supernodes, past the last
+    std::int32_t end_row;  ///< past its last row
+    std::int64_t record;   ///< index of its first recorded number
   };
 
   std::shared_ptr<const BlockPattern> pattern;
