@@ -28,10 +28,10 @@ simulation.run(600, insufflate=True)  # ten seconds
 print("{:.0f} mL, {:.0f} mL at {:.1f} mmHg".format(1e6 * empty, 1e6 * simulation.volume, simulation.pressure / 133.322))
 
 x, y, z = 1e3 * simulation.positions.T  # [mm]
-axes = plt.figure(figsize=(5, 4)).add_subplot(projection="3d")
+axes = plt.figure(figsize=(6, 4)).add_subplot(projection="3d")
 surface = axes.plot_trisurf(y, x, z, triangles=model.triangles, cmap="viridis")
 stretch = simulation.strain[model.triangles].mean(axis=1)
 surface.set_array(100 * stretch)
-plt.colorbar(surface, label="strain [%]", shrink=0.7, pad=0.15)
+plt.colorbar(surface, label="strain [%]", shrink=0.7, location="left")
 axes.set(xlabel="left [mm]", ylabel="front [mm]", zlabel="head [mm]", aspect="equal")
 plt.savefig(sys.argv[2], dpi=90)
