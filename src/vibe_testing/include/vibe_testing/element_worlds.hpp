@@ -11,6 +11,7 @@
 /// Materials and displacements for the tests of shells and of tetrahedra.
 namespace vibe::test {
 
+/// Young's modulus [Pa], Poisson's ratio [1] and side of an element [m].
 inline constexpr double kE = 3e4, kNu = 0.45, kSide = 0.01;
 #define VIBE_LAW(name, word, formula) Law::name,
 inline const std::vector<Law> kLaws = {VIBE_MATERIAL_LAWS(VIBE_LAW)};  // every law of the list

@@ -57,10 +57,10 @@ struct ToolJoint {
   Type type = Type::Fixed;
   int parent_link = -1;
   int child_link = -1;
-  Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  ///< joint frame in the parent link
+  Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  ///< joint frame in the parent link [m]
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();           ///< unit, in the joint frame
   int input = -1;         ///< index of the driving input in StepInput::joints; -1: fixed
-  double multiplier = 1;  ///< position = multiplier * input + offset (URDF mimic)
+  double multiplier = 1;  ///< position = multiplier * input + offset (URDF mimic) [1]
   double offset = 0;      ///< [m], [rad]
   int station = -1;   ///< index into ToolModel::shaftStations(): a joint of the shaft that bends under load; -1: none
   int direction = 0;  ///< of such a joint: 0: up, 1: left
@@ -69,7 +69,7 @@ struct ToolJoint {
 /// A convex collision shape of a link: a capsule, cylinder, sphere or box, as a Bullet shape.
 struct ToolShape {
   int link = -1;
-  Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  ///< shape frame in the link
+  Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  ///< shape frame in the link [m]
   std::shared_ptr<const btConvexShape> shape;
   double margin = 0;  ///< distance of the surface from the core of the Bullet shape, outwards [m]
 };

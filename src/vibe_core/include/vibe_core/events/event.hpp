@@ -103,11 +103,11 @@ struct Event {
   RejectReason reason = RejectReason::None;
   Region region = Region::Body;
   Wall wall = Wall::Anterior;
-  double time = 0;    ///< simulated time at the end of the step [s]
-  int particle = -1;  ///< -1: none
-  double value = 0;
-  double limit = 0;            ///< what value or amount is compared with
-  double amount = 0;           ///< a second number
+  double time = 0;             ///< simulated time at the end of the step [s]
+  int particle = -1;           ///< -1: none
+  double value = 0;            ///< what the kind says, in unitOfValue() [m], [N] or [1]
+  double limit = 0;            ///< what value or amount is compared with, in its unit [m], [N] or [1]
+  double amount = 0;           ///< a second number of some kinds, see Kind [N] or [1]
   int suture = -1, bite = -1;  ///< numbers from 0; -1: none
 };
 constexpr int kEventKindCount = 33;

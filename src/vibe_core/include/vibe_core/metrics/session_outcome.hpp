@@ -15,7 +15,7 @@ namespace vibe {
 struct Measure {
   std::string name;
   std::string unit;             ///< SI, as in scene files; "1" for counts and shares
-  std::optional<double> value;  ///< empty: the session so far does not define it
+  std::optional<double> value;  ///< empty: the session so far does not define it; in `unit`
 };
 
 /// All measures of a session that are numbers, always the same names in the same order. Those of a phase have a dot and

@@ -70,7 +70,7 @@ struct SetSkill {
   int bites = 0;                           ///< that hold
   int torn_out = 0;                        ///< bites
   std::optional<double> spacing_mean;      ///< see BiteSkill [m]
-  std::optional<double> along;             ///< mean position on the organ's axis, 0: apex, 1: pylorus
+  std::optional<double> along;             ///< mean position on the organ's axis, 0: apex, 1: pylorus [1]
   std::optional<double> thread;            ///< between first and last bite, now; no value below two bites [m]
   double drawn = 0;                        ///< by the cinch [m]
   double tension = 0;                      ///< max over its segments, now [N]

@@ -14,7 +14,7 @@ class SurfaceSection {
   /// One closed line of a section.
   struct Loop {
     double area = 0;   ///< enclosed; negative if the inside of the surface is outside of the loop (a hole) [m^2]
-    double label = 0;  ///< mean of the labels at the edges it cuts; NaN for none
+    double label = 0;  ///< mean of the labels at the edges it cuts; NaN for none, in their unit
   };
 
   /// @param surface  closed, oriented outwards; only its triangles are used

@@ -38,7 +38,7 @@ struct Model {
 
   std::shared_ptr<const ToolModel> tool;                        ///< null without scope
   std::optional<ScopeSprings> scope_springs;                    ///< empty: the tool is rigid
-  Eigen::Isometry3d tool_base = Eigen::Isometry3d::Identity();  ///< pose of the tool's root link in world
+  Eigen::Isometry3d tool_base = Eigen::Isometry3d::Identity();  ///< pose of the tool's root link in world [m]
   int tip_link = -1;                                            ///< link numbers in tool
   int helix_link = -1;
   int grip_link = -1;    ///< carries the helix, which turns in it
@@ -51,7 +51,7 @@ struct Model {
   RenderSurface render_surface;  ///< empty without scene.render_surface
 
   /// Position of every particle along the axis of the organ at rest, 0: apex of the fundus, 1: pylorus; for an organ
-  /// without these ends, along its entry axis. (particle_count), empty without scene.suture.
+  /// without these ends, along its entry axis [1]. (particle_count), empty without scene.suture.
   std::vector<double> along;
 };
 

@@ -24,7 +24,7 @@ struct SchemaRow {
   SceneAccess access;  ///< also gives the type, and the default: what a fresh Scene holds there
   const char* unit;    ///< SI unit of a number, "1" for a pure number, "" where the type has none
   double low;          ///< smallest allowed value (of each component) in `unit`; unused for texts and flags
-  double high;         ///< largest allowed value
+  double high;         ///< largest allowed value, in `unit`
   const char* help;    ///< one sentence
   const char* source;  ///< where the default comes from
   /// The geometry.kind the key belongs to; empty: every one.

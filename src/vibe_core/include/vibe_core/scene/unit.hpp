@@ -36,7 +36,7 @@ std::vector<std::pair<std::string, double>> knownLengths();
 
 /// A value in SI, or what is wrong with the text (the end of a sentence for an error message, with a remedy).
 struct Quantity {
-  double value = 0;
+  double value = 0;     ///< in the SI unit that was asked for
   std::string problem;  ///< empty if the value is valid
 };
 

@@ -112,9 +112,11 @@ struct ContactConstraint {
   double compliance = 0;                             ///< of the wall's thickness; 0: rigid [m/N]
   double friction = 0;                               ///< Coulomb coefficient [1]
   Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  ///< where the point would be if it stuck to the tool [m]
-  Eigen::Matrix<double, 3, kYieldDofs> yield = Eigen::Matrix<double, 3, kYieldDofs>::Zero();  ///< of the anchor
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< out: tool on the surface, mean over the step [N]
-  double work = 0;                                  ///< out: of this force on the surface over the step [J]
+  Eigen::Matrix<double, 3, kYieldDofs> yield =
+      Eigen::Matrix<double, 3, kYieldDofs>::Zero();  ///< how far the anchor moves per coordinate in which the tool
+                                                     ///< yields [m/rad], [m/m]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< out: tool on the surface, mean over the step [N]
+  double work = 0;                                   ///< out: of this force on the surface over the step [J]
 };
 
 /// The gas inside a closed shell.

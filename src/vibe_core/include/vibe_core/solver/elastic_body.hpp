@@ -38,7 +38,7 @@ struct MotionView {
 struct BodyMotion {
   explicit BodyMotion(const ElasticBody& body);  ///< at rest
   MotionView view();
-  std::array<std::vector<double>, 3> x, v, a;
+  std::array<std::vector<double>, 3> x, v, a;  ///< per axis and node [m], [m/s], [m/s^2]
 };
 
 }  // namespace vibe

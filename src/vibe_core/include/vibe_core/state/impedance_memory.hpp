@@ -19,9 +19,10 @@ struct ImpedanceBasis {
   std::vector<float> gas_direction;  ///< volume gradient (4 * nodes) [m^2]
   double gas_stiffness = 0;          ///< [Pa/m^3]; 0: no gas
   // rows for the mass that moves along; empty: no mass
-  std::vector<int> node;                                     ///< (rows)
-  std::vector<Eigen::Vector3d> direction;                    ///< (rows) unit
-  std::vector<std::array<double, kToolMotions>> row_motion;  ///< (rows) move of the row's target per tool motion
+  std::vector<int> node;                   ///< (rows)
+  std::vector<Eigen::Vector3d> direction;  ///< (rows) unit
+  std::vector<std::array<double, kToolMotions>>
+      row_motion;  ///< (rows) move of the row's target per tool motion [m/m], [m/rad]
 };
 
 /// What SlopeCorrection keeps of the last frames, for N motions.
@@ -47,9 +48,9 @@ struct ImpedanceMemory {
   std::array<double, kToolMotions> last_place{};                      ///< [m], [rad]
   std::array<double, kToolMotions> last_speed{};                      ///< [m/s], [rad/s]
   std::array<double, kToolMotions> last_force{};                      ///< [N], [N m]
-  std::array<double, kToolMotions> last_jump{};                       ///< of the force, beyond what stiffness explains
-  SlopeMemory<3> slope;                                               ///< of the translations
-  SlopeMemory<kScopeJointCount> joint_slope;                          ///< of the joints
+  std::array<double, kToolMotions> last_jump{};  ///< of the force, beyond what stiffness explains [N], [N m]
+  SlopeMemory<3> slope;                          ///< of the translations
+  SlopeMemory<kScopeJointCount> joint_slope;     ///< of the joints
 };
 
 }  // namespace vibe

@@ -15,13 +15,13 @@ namespace vibe {
 /// A point where the needle passed through the wall. The thread acts on the weighted mean of the surrounding particles.
 struct Bite {
   std::vector<int> particle;
-  std::vector<double> weight;  ///< per particle, sum 1
+  std::vector<double> weight;  ///< per particle, sum 1 [1]
   double time = 0;             ///< time of the bite [s]
   double depth = 0;            ///< greatest depth below the mucosa [m]
   double thickness = 0;        ///< of the wall at the bite, at rest [m]
   Region region = Region::Body;
   Wall wall = Wall::Anterior;
-  double along = 0;  ///< position along the organ's axis at rest, 0: apex of the fundus, 1: pylorus
+  double along = 0;  ///< position along the organ's axis at rest, 0: apex of the fundus, 1: pylorus [1]
 
   bool fullThickness() const { return depth >= thickness; }
 };
@@ -39,7 +39,7 @@ struct Suture {
 
   std::vector<Eigen::Vector3d> taken;  ///< the bites of which the technique was recognised, on the wall at rest [m]
   std::uint8_t technique = 0;          ///< Technique, recognised when the T-tag was dropped
-  double technique_margin = 0;         ///< see recogniseTechnique()
+  double technique_margin = 0;         ///< see recogniseTechnique() [1]
   std::array<int, 2> transitions{{-1, -1}};
   std::uint8_t corrected_technique = 0;  ///< Technique by TechniqueRule::Corrected, whichever rule the scene uses
   std::uint8_t printed_technique = 0;    ///< by TechniqueRule::Printed
@@ -85,8 +85,8 @@ struct ProcedureState {
   std::array<std::uint8_t, kButtonCount> pressed{};  ///< buttons of the last step, for edges
 
   // marking; per particle (particle count) in a scene with marking, else empty
-  std::vector<float> heat;          ///< see thermal_dose.hpp
-  std::vector<float> dose;          ///< see thermal_dose.hpp
+  std::vector<float> heat;          ///< energy that the tissue has kept, see thermal_dose.hpp [J]
+  std::vector<float> dose;          ///< largest heat so far, see thermal_dose.hpp [J]
   std::vector<std::uint8_t> grade;  ///< BurnGrade reached
   double beam_energy = 0;           ///< delivered to the tissue so far [J]
   /// While the argon beam deforms the wall in the gradient domain, the wall before the pedal was pressed; while the

@@ -31,19 +31,19 @@ struct ApcParameters {
   // thresholds of the energy applied to one spot at 40 W without pause [J]
   // A mark is visible. Published marks take 40 to 80 J (20 to 40 W for 2 s, Fetz 2021). A line drawn at 5 mm/s with 20
   // W applies 35 J to each place. Design choice below both.
-  double mark_energy = 25;
+  double mark_energy = 25;  ///< from which a mark is visible [J]
   /// Mucosa and submucosa are dead. Published: 600 to 800 J (40 to 80 W for 5 to 25 s on human stomach, J Gastroenterol
   /// Hepatol 2017). 425 is 0.71 of 600: the share that the nearest particle receives when the spot is as far as
   /// possible from all particles, on the insufflated default stomach, with the probe at 3 mm.
   double burn_energy = 425;
-  double deep_energy = 800;  ///< above it the muscularis is at risk (the same publication)
+  double deep_energy = 800;  ///< above it the muscularis is at risk (the same publication) [J]
 
   // cooling: rates of heat loss [1/s]; no published values for the gastric wall
   // By the surrounding tissue. Design choice: heat leaves a spot of radius a sideways in about a^2 / (4 alpha) = 29 s
   // (a = 4 mm, diffusivity of water alpha = 1.4e-7 m^2/s). Together with the argon this gives 1/30.
-  double tissue_cooling = 1.0 / 40;
-  double argon_cooling = 1.0 / 120;         ///< in the footprint, per L/min of argon; design choice
-  double insufflation_cooling = 1.0 / 600;  ///< everywhere, per L/min of the insufflator; design choice
+  double tissue_cooling = 1.0 / 40;         ///< by the surrounding tissue [1/s]; design choice
+  double argon_cooling = 1.0 / 120;         ///< in the footprint, per L/min of argon; design choice [1/s]
+  double insufflation_cooling = 1.0 / 600;  ///< everywhere, per L/min of the insufflator; design choice [1/s]
 
   /// @throws Error if a value is not finite or out of range; the message names the key and the range.
   void check() const;

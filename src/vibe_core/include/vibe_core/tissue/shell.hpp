@@ -28,7 +28,7 @@ struct ShellFibres {
   double stiffening = 1;        ///< above 0 [1]
   std::vector<double> modulus;  ///< per triangle [Pa]; empty: no fibres
   std::vector<std::array<Eigen::Vector3d, 2>>
-      direction;  ///< per triangle, projected onto its plane; 0: the family is absent
+      direction;  ///< per triangle, projected onto its plane; 0: the family is absent; unit vector [1]
 };
 
 /// A thin wall at rest, described by its middle surface.

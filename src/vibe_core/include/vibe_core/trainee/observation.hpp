@@ -20,10 +20,11 @@ struct Observation {
   /// Particle positions, of single precision, in world [m]; empty if no image of the wall belongs to the step, see
   /// imageInterval().
   std::vector<Eigen::Vector3d> wall;
-  std::array<double, kJointCount> joints{};                      ///< of the hand, limits applied [m], [rad]
-  Eigen::Vector3d tip = Eigen::Vector3d::Zero();                 ///< position of scope_tip, in world [m]
-  Eigen::Quaterniond tip_turn = Eigen::Quaterniond::Identity();  ///< its orientation
-  Eigen::Vector3d helix = Eigen::Vector3d::Zero();               ///< position of the helix' tip, in world [m]
+  std::array<double, kJointCount> joints{};       ///< of the hand, limits applied [m], [rad]
+  Eigen::Vector3d tip = Eigen::Vector3d::Zero();  ///< position of scope_tip, in world [m]
+  Eigen::Quaterniond tip_turn =
+      Eigen::Quaterniond::Identity();               ///< its orientation; unit quaternion, from its frame to world
+  Eigen::Vector3d helix = Eigen::Vector3d::Zero();  ///< position of the helix' tip, in world [m]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< tissue on tool, mean over the step, in scope_tip [N]
 
   double pressure = 0;            ///< of the gas, gauge [Pa]

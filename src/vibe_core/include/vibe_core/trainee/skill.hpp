@@ -14,7 +14,7 @@ struct TremorSettings {
   double low_frequency = 8;                     ///< [Hz]
   double high_frequency = 12;                   ///< [Hz]
   std::array<double, kJointCount> amplitude{};  ///< root mean square per joint [m], [rad]
-  double scale = 1;                             ///< multiplies all amplitudes
+  double scale = 1;                             ///< multiplies all amplitudes [1]
 };
 
 /// Involuntary movement of the hands: for each joint a sum of sinusoids with frequencies spread over a band and random
@@ -48,7 +48,7 @@ struct Skill {
   double reaction_time = 0.15;  ///< from what is seen or felt to the motion of the hand [s]
   double aim_error = 1e-3;      ///< standard deviation of the place of a bite or mark, per direction [m]
   double force_limit = 5;       ///< at which a motion is stopped [N]
-  double turns = 3;             ///< revolutions of the helix
+  double turns = 3;             ///< revolutions of the helix [1]
   double drawn = 3e-3;          ///< helix_advance to which it draws the wall in without checks_depth [m]
   int attempts = 5;             ///< per bite or mark
   bool checks_depth = true;     ///< draws the wall in farther if the needle has not penetrated it fully

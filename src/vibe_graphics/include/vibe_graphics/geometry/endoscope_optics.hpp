@@ -77,9 +77,9 @@ LensSources sourcesFor(const RoundCamera& camera, double sharpness, int max);
 /// Parameters of a sensor_msgs/CameraInfo.
 struct CameraNumbers {
   std::string distortion_model;
-  std::vector<double> d;
-  std::array<double, 9> k, r;
-  std::array<double, 12> p;
+  std::vector<double> d;       ///< coefficients of the distortion, in the order of its model [1]
+  std::array<double, 9> k, r;  ///< camera matrix [px] and rotation [1], row by row
+  std::array<double, 12> p;    ///< projection matrix, 3 x 4, row by row [px]
 };
 
 /// @param baseline  distance to the right of the first camera of a stereo pair [m]; 0: first or only camera

@@ -21,7 +21,7 @@ struct TissueMesh {
   // Vertex v is the sum over k in [render_offsets[v], render_offsets[v + 1]) of render_weights[k] times particle
   // render_particles[k]. All empty without a render surface.
   std::vector<std::uint32_t> render_offsets, render_particles;
-  std::vector<float> render_weights;
+  std::vector<float> render_weights;  ///< of the particles of a vertex, sum 1 [1]
   bool subdivided() const { return !render_offsets.empty(); }
 
   // Per particle; empty if the topology does not tell.

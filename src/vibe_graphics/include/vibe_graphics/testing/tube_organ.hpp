@@ -11,7 +11,7 @@ namespace vibe::graphics::test {
 /// turn towards y is the greater curvature.
 struct TubeOrgan {
   std::uint32_t rows = 80, around = 64;
-  double length = 0.2, radius = 0.04;  // [m]
+  double length = 0.2, radius = 0.04;  ///< [m]
   std::uint8_t region = 2;             // body
 
   std::vector<float> places(double wider = 1, double longer = 1) const {
@@ -27,7 +27,7 @@ struct TubeOrgan {
   }
 
   double angleOf(std::uint32_t a) const { return 2 * 3.14159265358979 * a / around; }
-  double waist = 0;  // depth of a waist in the middle of the tube [m]
+  double waist = 0;  ///< depth of a waist in the middle of the tube [m]
   double radiusAt(std::uint32_t row) const {
     const double x = (row / (rows - 1.0) - 0.5) * length / 0.015;
     return radius - waist * std::exp(-x * x);

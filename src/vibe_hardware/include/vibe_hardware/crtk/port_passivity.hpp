@@ -25,7 +25,7 @@ struct PortConfig {
 /// Commands that may act from `begin` on: until the next one begins and `delay` longer.
 struct PortCommand {
   double begin = 0;          ///< [s]
-  double low = 0, high = 0;  ///< of the forces; equal but for merged ones
+  double low = 0, high = 0;  ///< of the forces; equal but for merged ones [N], [N m]
 };
 
 struct PortState {
@@ -33,9 +33,9 @@ struct PortState {
 
   double balance = 0;     ///< energy that may still be given [J]
   double time = 0;        ///< of the last measurement [s]
-  double position = 0;    ///< at that time
-  double velocity = 0;    ///< low-pass filtered
-  double charged = 0;     ///< force that was booked last
+  double position = 0;    ///< at that time [m], [rad]
+  double velocity = 0;    ///< low-pass filtered [m/s], [rad/s]
+  double charged = 0;     ///< force that was booked last [N], [N m]
   bool measured = false;  ///< whether there is a measurement
   bool acts = false;      ///< the last command was lowered
   std::array<PortCommand, kCommands> commands{};

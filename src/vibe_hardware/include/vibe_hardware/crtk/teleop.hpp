@@ -11,9 +11,10 @@ namespace vibe::hardware {
 
 /// What an arm measures at one time: measured_cp.
 struct ArmSample {
-  double time = 0;                                                  ///< [s]
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();               ///< in the base [m]
-  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< of the moving frame in the base
+  double time = 0;                                     ///< [s]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< in the base [m]
+  Eigen::Quaterniond orientation =
+      Eigen::Quaterniond::Identity();  ///< of the moving frame in the base; unit quaternion
 };
 
 /// How the tissue answers to motions of the scope's joints, from haptic/parameters.
@@ -34,8 +35,8 @@ struct TeleopInput {
 
 /// Everything that lasts from step to step.
 struct TeleopState {
-  std::array<double, kJointCount> joints{};           ///< commanded
-  std::array<double, kHandCoordinates> hand{};        ///< coordinates
+  std::array<double, kJointCount> joints{};           ///< commanded [m], [rad]
+  std::array<double, kHandCoordinates> hand{};        ///< coordinates [m], [rad]
   std::array<JointScale, kScopeJointCount> scales{};  ///< joint = offset + scale * coordinate, while engaged
   std::array<PortState, kScopeJointCount> ports{};
   std::array<JointSpring, kScopeJointCount> springs{};  ///< that are rendered
@@ -48,8 +49,9 @@ struct TeleopState {
 
 /// What a step sends.
 struct TeleopOutput {
-  std::array<double, kJointCount> joints{};
-  Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = Eigen::Vector3d::Zero();  ///< in the mapping's frame
+  std::array<double, kJointCount> joints{};          ///< commanded [m], [rad]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< in the mapping's frame [N]
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< in the mapping's frame [N m]
   bool engaged = false;
   bool passivity_acts = false;
   std::string sentence;  ///< one when something has changed that a person should know; else empty

@@ -44,12 +44,12 @@ enum class ForceFrame {
 /// How an arm with a CRTK interface drives the scope. Format: docs/hardware.md, "CRTK arms".
 struct TeleopMapping {
   std::string name;
-  Eigen::Matrix3d hand = Eigen::Matrix3d::Identity();  ///< axes of the hand's frame, as columns in the arm's base
+  Eigen::Matrix3d hand = Eigen::Matrix3d::Identity();  ///< axes of the hand's frame, as columns in the arm's base [1]
   std::array<HandJoint, kScopeJointCount> joints;
   std::array<ArmButton, kButtonCount> buttons;
   ArmButton clutch;  ///< while it is pressed, the scope stays and the arm is free
   std::optional<ArmGripper> gripper;
-  double force_scale = 1;                ///< of the forces of the tissue; 0: no forces
+  double force_scale = 1;                ///< of the forces of the tissue; 0: no forces [1]
   std::string force_topic = "servo_cf";  ///< relative to the arm
   ForceFrame force_frame = ForceFrame::Base;
   double timeout = 0.1;  ///< without a measurement after which the arm lets go of the scope [s]

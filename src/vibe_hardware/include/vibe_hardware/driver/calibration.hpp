@@ -23,7 +23,7 @@ struct JointCalibration {
   int axis = 0;
   JointScale scale;             ///< direction included
   double lower = 0, upper = 0;  ///< positions beyond are published as these [m], [rad]
-  std::optional<double> home;   ///< position when the homing button is pressed
+  std::optional<double> home;   ///< position when the homing button is pressed [m], [rad]
 };
 
 /// One of the three joints of the suturing device, driven by two buttons.

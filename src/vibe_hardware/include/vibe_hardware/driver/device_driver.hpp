@@ -62,7 +62,7 @@ struct DeviceStatistics {
   StreamCounts counts;
   double rate = 0;                ///< of good reports [Hz]
   double age = 0;                 ///< of the last sample [s]; infinite before the first one
-  double drift = 0;               ///< seconds per second
+  double drift = 0;               ///< of the device's clock against the host's [s/s]
   std::uint64_t connections = 0;  ///< times that the device was opened
   std::string path, serial, name, firmware;
   std::uint8_t flags = 0;

@@ -23,7 +23,8 @@ struct EmulatedArmState {
 
 /// Where the person intends to have the handle.
 struct HandIntent {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero(), turn = Eigen::Vector3d::Zero();
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< in the base [m]
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();      ///< rotation vector [rad]
 };
 
 /// One step with forces that act all the time, in the base. A function of its arguments; to be called with steps of 0.1

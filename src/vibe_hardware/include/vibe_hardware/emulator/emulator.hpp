@@ -63,10 +63,11 @@ class OverstitchFingers {
   std::array<int, kOverstitchJointCount> direction_{};  // 1: forward, -1: backward
 };
 
-/// Hand and arm at the axes of the haptic device. Form: see HandImpedance; the values are a design choice: a natural
-/// frequency of 8 Hz (insertion) and 17 Hz (rotation), damping ratios of one half.
-constexpr double kHandMass = 0.2, kHandDamping = 10, kHandStiffness = 500;  // insertion [kg], [N s/m], [N/m]
-constexpr HandImpedance kHandOnKnob{3e-5, 5e-3, 0.5};                       // other axes
+/// Hand and arm at the axes of the haptic device: mass [kg], damping [N s/m] and stiffness [N/m] at the insertion.
+/// Form: see HandImpedance; the values are a design choice: a natural frequency of 8 Hz (insertion) and 17 Hz
+/// (rotation), damping ratios of one half.
+constexpr double kHandMass = 0.2, kHandDamping = 10, kHandStiffness = 500;
+constexpr HandImpedance kHandOnKnob{3e-5, 5e-3, 0.5};  ///< of the other axes
 
 /// How the emulated devices are built and wired.
 struct EmulatorSetup {

@@ -14,7 +14,7 @@ struct DriveState {
   std::array<double, kJointCount> joints{};           ///< commanded [m], [rad]
   std::array<std::uint8_t, kButtonCount> buttons{};   ///< 1 while pressed
   std::array<bool, kJointCount> engaged{};            ///< position mode: the control has picked the joint up
-  std::array<double, kJointCount> targets{};          ///< position mode: where the control was; NaN: unknown
+  std::array<double, kJointCount> targets{};          ///< position mode: where the control was; NaN: unknown [m], [rad]
   std::array<std::uint32_t, kButtonCount> presses{};  ///< of the pad's buttons, already used
 };
 

@@ -24,9 +24,10 @@ struct ShownMeasure {
   double (*value)(const SessionMessages& session) = nullptr;  ///< NaN: not defined by what was done so far
   std::string meaning;                                        ///< one sentence
   std::string source;                                         ///< of the range; empty: none is published
-  double low = 0, high = 0;  ///< range of the reference, either may be infinite; without a source of no meaning
-  double bar_end = 1;        ///< the bar shows 0 to this
-  bool grows = false;        ///< it rises as the session goes on: too little is no fault before the end
+  /// Range of the reference, in `unit`; either may be infinite; without a source of no meaning.
+  double low = 0, high = 0;
+  double bar_end = 1;  ///< the bar shows 0 to this, in `unit`
+  bool grows = false;  ///< it rises as the session goes on: too little is no fault before the end
 };
 
 /// Measures in the order in which they are shown.

@@ -16,10 +16,11 @@ namespace vibe::vision {
 
 /// Where a marker roughly is: within a pixel, 2 % of its size and a few degrees.
 struct MarkerSighting {
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();       ///< centre, as seen (distorted) [px]
-  Eigen::Vector2d direction = Eigen::Vector2d::UnitX();  ///< of +u of a sleeve; of a ring always x
-  double pixels_per_metre = 0;
-  double score = 0;  ///< correlation coefficient, up to 1
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< centre, as seen (distorted) [px]
+  Eigen::Vector2d direction =
+      Eigen::Vector2d::UnitX();  ///< of +u of a sleeve; of a ring always x; unit vector in the image [1]
+  double pixels_per_metre = 0;   ///< from the size at which it is seen [px/m]
+  double score = 0;              ///< correlation coefficient, up to 1
 };
 
 /// What to look for.
@@ -56,13 +57,13 @@ struct LocatedMarker {
   bool found = false;
   std::string problem;                              ///< why it was not found; a sentence
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< centre, undistorted [px]
-  double pixels_per_metre = 0;                      ///< from the size at which it is seen
+  double pixels_per_metre = 0;                      ///< from the size at which it is seen [px/m]
   double rotation = 0;                              ///< of a sleeve [rad]
 };
 
 struct LocatedMarkers {
   std::vector<LocatedMarker> markers;  ///< one per image
-  /// Where positive slide is as a sleeve shows it, undistorted; zero for a ring.
+  /// Where positive slide is as a sleeve shows it: a unit vector in the undistorted image [1]; zero for a ring.
   Eigen::Vector2d direction = Eigen::Vector2d::Zero();
 };
 

@@ -35,7 +35,7 @@ struct FakeCameraOptions {
   std::string serial = "ViBE1";
   double lost_ratio = 0;       ///< share of the packets that are not sent
   double clock_ahead = -1000;  ///< camera's clock less Unix time [s]
-  double clock_drift = 0;      ///< by which it is fast
+  double clock_drift = 0;      ///< by which it is fast [s/s]
   /// Unix times at which the picture jumps between the first and the second of the ring, ascending; empty: all pictures
   /// are shown in turn [s].
   std::vector<double> blinks;

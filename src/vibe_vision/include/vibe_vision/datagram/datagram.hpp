@@ -21,10 +21,10 @@ struct CoordinateSample {
 
 /// One instrument in a datagram.
 struct InstrumentSample {
-  bool tracked = false;       ///< if not, all numbers below are NaN, score is 0 and `reason` says why
-  std::uint8_t reason = 0;    ///< LostReason
-  bool has_rotation = false;  ///< if not, `rotation` is NaN
-  float score = 0;
+  bool tracked = false;              ///< if not, all numbers below are NaN, score is 0 and `reason` says why
+  std::uint8_t reason = 0;           ///< LostReason
+  bool has_rotation = false;         ///< if not, `rotation` is NaN
+  float score = 0;                   ///< how well the picture fits the marker, 0 to 1
   CoordinateSample slide, rotation;  ///< of the joints
 };
 

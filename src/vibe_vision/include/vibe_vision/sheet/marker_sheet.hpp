@@ -25,7 +25,7 @@ struct SheetItem {
   std::string name;     ///< of the instrument; empty for the chessboard
   MarkerDesign marker;  ///< of a chessboard: not used
   /// What is cut out: of a ring its square; of a sleeve `length` along x, u to the right, and one turn and the overlap
-  /// along y, phi growing downwards from -pi; of a chessboard its black and white squares.
+  /// along y, phi growing downwards from -pi; of a chessboard its black and white squares [m].
   double x = 0, y = 0, width = 0, height = 0;
 };
 

@@ -52,8 +52,9 @@ struct PixelBlock {
 /// Reflectance that the camera should see at each pixel (0: black, 1: white), with the derivatives by the pose. Arrays
 /// have the capacity of the PixelBlock; those of parameters that the marker does not show are empty.
 struct PatternValues {
-  std::vector<float> value;
-  std::array<std::vector<float>, kPoseParameters> derivative;
+  std::vector<float> value;  ///< 0 to 1, per pixel
+  std::array<std::vector<float>, kPoseParameters>
+      derivative;  ///< per parameter of the pose, in its unit, and pixel [1/px], [1/rad] or [1]
 
   void allocate(std::size_t capacity, const std::array<bool, kPoseParameters>& observed);
 };
@@ -111,9 +112,9 @@ class MarkerPattern {
 /// From where a camera looks at the slide axis. The picture of a rod is that of a pinhole camera: away from the middle
 /// of the image its bars bend although the rod is parallel to the sensor. MarkerPose::slant is against the sensor.
 struct MarkerView {
-  double focal_length = 1e9;   ///< CameraModel::fx [px]; large: without perspective
-  double principal_along = 0;  ///< of the camera's principal point, relative to SlideAxis::origin [px]
-  double principal_lateral = 0;
+  double focal_length = 1e9;     ///< CameraModel::fx [px]; large: without perspective
+  double principal_along = 0;    ///< of the camera's principal point, relative to SlideAxis::origin [px]
+  double principal_lateral = 0;  ///< across the axis [px]
 };
 MarkerView markerView(const CameraModel& camera, const SlideAxis& axis);
 
