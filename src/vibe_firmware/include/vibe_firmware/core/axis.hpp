@@ -56,10 +56,10 @@ enum class Refusal : std::uint8_t {
 
 /// Result of checking parameters: value and limit are those of the condition that failed.
 struct Verdict {
-  Refusal refusal = Refusal::None;
-  std::uint8_t axis = 0;
-  float value = 0;  ///< that was asked for, in the unit of the parameter
-  float limit = 0;  ///< that it must keep, in the same unit
+  Refusal refusal = Refusal::None;  ///< None: the parameters are accepted
+  std::uint8_t axis = 0;            ///< that was refused, 0 or 1
+  float value = 0;                  ///< that was asked for, in the unit of the parameter
+  float limit = 0;                  ///< that it must keep, in the same unit
 };
 
 }  // namespace vibe_firmware

@@ -13,6 +13,7 @@ constexpr float approach(float value, float target, float step) {
   return target;
 }
 
+/// `value` limited to [-limit, limit]. @param limit  at least 0
 constexpr float clamp(float value, float limit) {
   if (value > limit) return limit;
   if (value < -limit) return -limit;
@@ -28,18 +29,19 @@ constexpr float filteredVelocity(float pole, float velocity, float speed) {
 
 /// Everything that changes in one axis.
 struct AxisState {
-  EncoderState encoder{};
-  float position = 0;      ///< [rad]
-  float velocity = 0;      ///< filtered [rad/s]
-  float torque = 0;        ///< commanded in the last tick [N m]
-  float spring_gain = 0;   ///< of the last tick, from 0 (host silent) to 1 [1]
-  float transition = 0;    ///< torque added to the spring so that new parameters do not jump; fades [N m]
-  float torque_limit = 0;  ///< in force; falls at the slew limit to that of the parameters [N m]
-  EnergyAccount energy{};  ///< that the axis may still give to the hand
-  bool limited = false;    ///< torque or slew limit acts
-  bool passivity_acts = false;
+  EncoderState encoder{};       ///< counts since the start of the device
+  float position = 0;           ///< [rad]
+  float velocity = 0;           ///< filtered [rad/s]
+  float torque = 0;             ///< commanded in the last tick [N m]
+  float spring_gain = 0;        ///< of the last tick, from 0 (host silent) to 1 [1]
+  float transition = 0;         ///< torque added to the spring so that new parameters do not jump; fades [N m]
+  float torque_limit = 0;       ///< in force; falls at the slew limit to that of the parameters [N m]
+  EnergyAccount energy{};       ///< that the axis may still give to the hand
+  bool limited = false;         ///< torque or slew limit acts
+  bool passivity_acts = false;  ///< spring or torque limit were lowered in the last tick: the energy runs low
 };
 
+/// At rest at count 0, with a full account of energy and a torque limit of 0 until parameters come.
 AxisState initialAxisState(const AxisConfig& config);
 
 /// Torque of the spring alone, limited to the parameters' torque limit [N m].

@@ -12,19 +12,19 @@ namespace vibe_firmware {
 /// Constant description of an input device. Of an axis, only what concerns the encoder is used: sample_period,
 /// radians_per_count, full_scale, speed_limit, counts_per_turn.
 struct InputConfig {
-  std::array<AxisConfig, kAxisCount> axes{};
-  std::uint32_t report_ticks = 10;  ///< between two input reports
-  std::uint8_t counter_bits = 16;   ///< of the hardware counters, 1 to 32
-  std::uint8_t debounce_ticks = 5;  ///< for which a button must be still
+  std::array<AxisConfig, kAxisCount> axes{};  ///< hardware of each encoder
+  std::uint32_t report_ticks = 10;            ///< between two input reports
+  std::uint8_t counter_bits = 16;             ///< of the hardware counters, 1 to 32
+  std::uint8_t debounce_ticks = 5;            ///< for which a button must be still
 };
 
 /// Everything that changes.
 struct InputState {
-  std::array<EncoderState, kAxisCount> encoders{};
-  DebouncerState buttons{};
-  std::uint16_t sequence = 0;  ///< of the next input report
-  std::uint32_t time_us = 0;
-  std::uint8_t flags = 0;  ///< DeviceFlag bits
+  std::array<EncoderState, kAxisCount> encoders{};  ///< positions
+  DebouncerState buttons{};                         ///< debounced
+  std::uint16_t sequence = 0;                       ///< of the next input report
+  std::uint32_t time_us = 0;                        ///< of the last tick, on the clock of the board; wraps [us]
+  std::uint8_t flags = 0;                           ///< DeviceFlag bits
 };
 
 /// One tick of the 1 kHz sampling.

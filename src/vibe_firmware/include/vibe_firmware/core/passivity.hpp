@@ -7,8 +7,8 @@ namespace vibe_firmware {
 /// Energy that an axis may still give to the hand [J]: what it has given is taken off, what the hand has put in is
 /// added, up to a capacity. Sums with compensation (Knuth's two-sum), so that a million small amounts do not get lost.
 struct EnergyAccount {
-  float balance = 0;
-  float error = 0;  ///< that rounding has left out of `balance`
+  float balance = 0;  ///< at most the capacity of the axis
+  float error = 0;    ///< that rounding has left out of `balance`
 
   /// @param capacity  upper limit of the balance [J]
   void add(float energy, float capacity);
@@ -65,7 +65,7 @@ struct PassivityLimit {
   float spring = 0;   ///< torque of the spring [N m]
   float damping = 0;  ///< B [N m s/rad]
   float torque = 0;   ///< limit on the sum [N m]
-  bool acts = false;
+  bool acts = false;  ///< the spring or the limit on the sum is lower than asked
 };
 
 /// Limits so that the energy lasts for one period at AxisConfig::speed_limit, whatever the hand does. One tenth of the

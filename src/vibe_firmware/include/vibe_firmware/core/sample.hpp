@@ -19,9 +19,9 @@ struct EncoderState {
   std::int32_t count = 0;        ///< unwrapped since the start; 0 there
   std::uint32_t counter = 0;     ///< hardware counter that belongs to `count`
   std::int32_t index_count = 0;  ///< count of the first index pulse
-  bool started = false;
-  bool indexed = false;
-  bool fault = false;  ///< stays until the device is started again
+  bool started = false;          ///< a sample has been taken
+  bool indexed = false;          ///< an index pulse has been seen; `index_count` is valid
+  bool fault = false;            ///< stays until the device is started again
 };
 
 /// Takes one sample. The first one defines count 0. The index pulse corrects counts that were lost or gained since the
@@ -32,7 +32,7 @@ struct EncoderState {
 /// @return counts by which the axis has moved since the last tick, correction not included
 std::int32_t step(const AxisConfig& config, int counter_bits, const EncoderSample& sample, EncoderState& state);
 
-constexpr int kButtonCount = 16;
+constexpr int kButtonCount = 16;  ///< bits of a report and of the contacts of a board
 
 /// Buttons whose contacts bounce: a button changes when its contact has been in the other position for some ticks
 /// without interruption.
@@ -53,6 +53,7 @@ struct HapticSample {
   bool drive_fault = false;                               ///< the power stage of the motors has switched off
   std::uint32_t time_us = 0;                              ///< free-running
 
+  /// What a sample says of one axis, 0 or 1.
   EncoderSample encoder(std::size_t axis) const { return {counter[axis], index[axis], index_counter[axis]}; }
 };
 

@@ -33,6 +33,7 @@ class TickMonitor {
 template <typename Function>
 class Application final : private ControlHandler {
  public:
+  /// Board, link and function have to outlive it.
   Application(Board& board, UsbLink& link, Function& function)
       : board_(board), link_(link), function_(function), endpoint_(function) {}
 

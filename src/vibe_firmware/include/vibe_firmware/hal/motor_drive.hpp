@@ -22,8 +22,8 @@ float dutyOf(const MotorDrive& drive, float torque);
 
 /// Compare values of the two inputs of one bridge, in counts during which the input is high.
 struct BridgeInputs {
-  std::uint32_t first = 0;
-  std::uint32_t second = 0;
+  std::uint32_t first = 0;   ///< high all the time when the torque is positive [counts]
+  std::uint32_t second = 0;  ///< high all the time when it is negative [counts]
 };
 
 /// Drives a bridge with the truth table of DRV8833 and DRV8871 (1 0 forward, 0 1 reverse, 1 1 brake, 0 0 coast) between

@@ -5,21 +5,22 @@
 
 namespace vibe_firmware {
 
+/// Kind of a report, as the high byte of wValue of GET_REPORT and SET_REPORT has it (HID 1.11, 7.2.1).
 enum class ReportType : std::uint8_t { Input = 1, Output = 2, Feature = 3 };
 
 /// A sequence of constant bytes that somebody else owns.
 struct Bytes {
-  const std::uint8_t* data = nullptr;
-  std::size_t size = 0;
+  const std::uint8_t* data = nullptr;  ///< null only if there are none
+  std::size_t size = 0;                ///< how many
 };
 
 /// A HID device as its USB stack, an emulator or a test sees it: descriptors, and reports that are got and set. Never
 /// called from the control interrupt; an implementation that shares state with it must protect that itself.
 class HidFunction {
  public:
-  virtual Bytes deviceDescriptor() const = 0;
-  virtual Bytes configurationDescriptor() const = 0;  ///< with interface, HID and endpoint descriptors
-  virtual Bytes reportDescriptor() const = 0;
+  virtual Bytes deviceDescriptor() const = 0;          ///< USB 2.0, table 9-8
+  virtual Bytes configurationDescriptor() const = 0;   ///< with interface, HID and endpoint descriptors
+  virtual Bytes reportDescriptor() const = 0;          ///< HID 1.11, 6.2.2
   virtual Bytes string(std::uint8_t index) const = 0;  ///< ASCII; 1 manufacturer, 2 product, 3 serial; empty: none
 
   /// Writes a report, its id included. @return its size; 0: there is no such report (USB stall)
@@ -35,11 +36,11 @@ class HidFunction {
 
 /// Setup stage of a USB control transfer (USB 2.0, table 9-2).
 struct UsbSetup {
-  std::uint8_t request_type = 0;
-  std::uint8_t request = 0;
-  std::uint16_t value = 0;
-  std::uint16_t index = 0;
-  std::uint16_t length = 0;
+  std::uint8_t request_type = 0;  ///< bmRequestType: direction, kind and recipient
+  std::uint8_t request = 0;       ///< bRequest
+  std::uint16_t value = 0;        ///< wValue: depends on the request
+  std::uint16_t index = 0;        ///< wIndex: interface or endpoint, or the language of a string
+  std::uint16_t length = 0;       ///< wLength: bytes of the data stage at most
 };
 
 /// Answers control requests of the host: standard requests (USB 2.0, chapter 9) and those of the HID class (HID 1.11,
@@ -48,8 +49,9 @@ struct UsbSetup {
 /// reset() after a bus reset.
 class ControlEndpoint {
  public:
-  static constexpr int kStall = -1;
+  static constexpr int kStall = -1;  ///< result of handle(): the request is not understood
 
+  /// The host has configured nothing yet. @param function  has to outlive it
   explicit ControlEndpoint(HidFunction& function) : function_(function) {}
 
   /// @param data      of the data stage from the host, setup.length bytes; unused for requests to the host

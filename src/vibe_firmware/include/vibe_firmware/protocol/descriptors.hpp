@@ -11,17 +11,19 @@ namespace vibe_firmware {
 
 /// pid.codes' ids for private tests. A device that is shipped needs ids of its own.
 constexpr std::uint16_t kVendorId = 0x1209;
-constexpr std::uint16_t kHapticProductId = 0x0001;
-constexpr std::uint16_t kInputProductId = 0x0002;
+constexpr std::uint16_t kHapticProductId = 0x0001;  ///< of the haptic device
+constexpr std::uint16_t kInputProductId = 0x0002;   ///< of the input device
 
 namespace descriptor_detail {
+/// Byte of a little-endian number, which comes first.
 constexpr std::uint8_t low(std::size_t value) {
   return static_cast<std::uint8_t>(value & 0xFF);
 }
+/// Byte of a number below 65536, which comes second.
 constexpr std::uint8_t high(std::size_t value) {
   return static_cast<std::uint8_t>(value >> 8);
 }
-constexpr std::size_t kGamepadBytes = 6;  // two axes and sixteen buttons
+constexpr std::size_t kGamepadBytes = 6;  ///< two axes and sixteen buttons
 }  // namespace descriptor_detail
 
 /// A gamepad with two 16-bit axes and 16 buttons. The rest of the input report and the feature reports are
@@ -130,6 +132,7 @@ constexpr std::array<std::uint8_t, 18> deviceDescriptor(std::uint16_t product) {
 /// Configuration with one HID interface and one interrupt endpoint (0x81, 64 bytes, polled every 4 ms: the
 /// firmware sets the rate and answers NAK in between).
 constexpr std::size_t kConfigurationSize = 9 + 9 + 9 + 7;
+/// The same as bytes. @param report_descriptor_size  [bytes], at most 65535
 constexpr std::array<std::uint8_t, kConfigurationSize> configurationDescriptor(std::size_t report_descriptor_size) {
   using descriptor_detail::high;
   using descriptor_detail::low;

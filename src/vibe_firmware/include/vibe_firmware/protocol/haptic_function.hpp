@@ -31,7 +31,7 @@ class HapticFunction final : public HidFunction {
   /// @return whether there is one that was not returned yet
   bool nextReport(std::uint8_t (&bytes)[kInputReportSize]);
 
-  const HapticConfig& config() const { return config_; }
+  const HapticConfig& config() const { return config_; }  ///< as it was given; does not change
 
   /// Of the control loop. Only between two ticks.
   const HapticState& state() const { return state_; }

@@ -25,7 +25,7 @@ class InputFunction final : public HidFunction {
   /// As HapticFunction::nextReport().
   bool nextReport(std::uint8_t (&bytes)[kInputReportSize]);
 
-  const InputConfig& config() const { return config_; }
+  const InputConfig& config() const { return config_; }  ///< as it was given; does not change
 
   /// Of the sampling. Only between two ticks.
   const InputState& state() const { return state_; }

@@ -28,18 +28,19 @@ struct PortCommand {
   double low = 0, high = 0;  ///< of the forces; equal but for merged ones [N], [N m]
 };
 
+/// What an observer knows and remembers; begun by startPort().
 struct PortState {
   static constexpr std::size_t kCommands = 256;  ///< beyond, the oldest two are merged
 
-  double balance = 0;     ///< energy that may still be given [J]
-  double time = 0;        ///< of the last measurement [s]
-  double position = 0;    ///< at that time [m], [rad]
-  double velocity = 0;    ///< low-pass filtered [m/s], [rad/s]
-  double charged = 0;     ///< force that was booked last [N], [N m]
-  bool measured = false;  ///< whether there is a measurement
-  bool acts = false;      ///< the last command was lowered
-  std::array<PortCommand, kCommands> commands{};
-  std::size_t count = 1;  ///< of commands; the first is 0 since ever
+  double balance = 0;                             ///< energy that may still be given [J]
+  double time = 0;                                ///< of the last measurement [s]
+  double position = 0;                            ///< at that time [m], [rad]
+  double velocity = 0;                            ///< low-pass filtered [m/s], [rad/s]
+  double charged = 0;                             ///< force that was booked last [N], [N m]
+  bool measured = false;                          ///< whether there is a measurement
+  bool acts = false;                              ///< the last command was lowered
+  std::array<PortCommand, kCommands> commands{};  ///< on their way or acting, oldest first; the first `count` are valid
+  std::size_t count = 1;                          ///< of commands; the first is 0 since ever
 };
 
 /// The beginning: a full account, and no force. @param now [s]

@@ -20,6 +20,7 @@ struct ArmSample {
 /// How the tissue answers to motions of the scope's joints, from haptic/parameters.
 struct TissueResponse {
   double time = 0;  ///< of arrival [s]
+  /// Spring-dampers about a position of each scope joint [m], [rad], [N], [N m]
   std::array<JointSpring, kScopeJointCount> joints{};
 };
 
@@ -38,13 +39,14 @@ struct TeleopState {
   std::array<double, kJointCount> joints{};           ///< commanded [m], [rad]
   std::array<double, kHandCoordinates> hand{};        ///< coordinates [m], [rad]
   std::array<JointScale, kScopeJointCount> scales{};  ///< joint = offset + scale * coordinate, while engaged
+  /// Observer and limiter of each scope joint's coordinate; idle where the mapping has none.
   std::array<PortState, kScopeJointCount> ports{};
   std::array<JointSpring, kScopeJointCount> springs{};  ///< that are rendered
   std::array<double, kScopeJointCount> blends{};        ///< what is left of the springs before, fading [N], [N m]
-  std::optional<ArmSample> last;
-  double tissue_time = -1e9;  ///< of the springs [s]
-  double time = 0;            ///< of the last step [s]
-  bool engaged = false;
+  std::optional<ArmSample> last;  ///< newest measurement; empty: none yet, or older than the mapping's timeout
+  double tissue_time = -1e9;      ///< of the springs [s]
+  double time = 0;                ///< of the last step [s]
+  bool engaged = false;           ///< the joints follow the hand
 };
 
 /// What a step sends.
@@ -52,11 +54,12 @@ struct TeleopOutput {
   std::array<double, kJointCount> joints{};          ///< commanded [m], [rad]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< in the mapping's frame [N]
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< in the mapping's frame [N m]
-  bool engaged = false;
-  bool passivity_acts = false;
-  std::string sentence;  ///< one when something has changed that a person should know; else empty
+  bool engaged = false;         ///< the joints follow the hand; false: they stay and the forces are 0
+  bool passivity_acts = false;  ///< on some coordinate the force of the tissue was lowered, or damping was added
+  std::string sentence;         ///< one when something has changed that a person should know; else empty
 };
 
+/// Disengaged, with full accounts of energy and no force. @param now  of the clock of step() [s]
 TeleopState startTeleop(const TeleopMapping& mapping, double now);
 
 /// One step: a function of its arguments. No clock, no graph, no memory but for sentences.

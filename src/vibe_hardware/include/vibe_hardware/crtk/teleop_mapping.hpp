@@ -13,7 +13,7 @@ namespace vibe::hardware {
 /// Coordinates of the hand that holds the arm, along and about the axes of its own frame: x away from the person, y to
 /// the left, z up. They are the integrals of its linear and angular velocity, so that force times motion is power.
 enum HandCoordinate : int { HandX, HandY, HandZ, HandRoll, HandPitch, HandYaw };
-constexpr int kHandCoordinates = 6;
+constexpr int kHandCoordinates = 6;  ///< length of arrays indexed by HandCoordinate
 
 /// How a coordinate of the hand moves a joint of the scope.
 struct HandJoint {
@@ -43,15 +43,15 @@ enum class ForceFrame {
 
 /// How an arm with a CRTK interface drives the scope. Format: docs/hardware.md, "CRTK arms".
 struct TeleopMapping {
-  std::string name;
+  std::string name;                                    ///< of the arm, for messages
   Eigen::Matrix3d hand = Eigen::Matrix3d::Identity();  ///< axes of the hand's frame, as columns in the arm's base [1]
-  std::array<HandJoint, kScopeJointCount> joints;
-  std::array<ArmButton, kButtonCount> buttons;
-  ArmButton clutch;  ///< while it is pressed, the scope stays and the arm is free
-  std::optional<ArmGripper> gripper;
-  double force_scale = 1;                ///< of the forces of the tissue; 0: no forces [1]
-  std::string force_topic = "servo_cf";  ///< relative to the arm
-  ForceFrame force_frame = ForceFrame::Base;
+  std::array<HandJoint, kScopeJointCount> joints;      ///< by vibe::Joint; each coordinate moves at most one of them
+  std::array<ArmButton, kButtonCount> buttons;         ///< by vibe::Button; an empty topic: nothing presses that button
+  ArmButton clutch;                                    ///< while it is pressed, the scope stays and the arm is free
+  std::optional<ArmGripper> gripper;                   ///< empty: the gripper moves nothing
+  double force_scale = 1;                              ///< of the forces of the tissue; 0: no forces [1]
+  std::string force_topic = "servo_cf";                ///< relative to the arm
+  ForceFrame force_frame = ForceFrame::Base;           ///< which axes the driver of the arm expects
   double timeout = 0.1;  ///< without a measurement after which the arm lets go of the scope [s]
 };
 

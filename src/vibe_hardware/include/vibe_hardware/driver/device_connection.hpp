@@ -16,7 +16,8 @@ class DeviceConnection {
   /// @throws Error with the remedy if it is not a device of this release; DeviceGone
   DeviceConnection(std::unique_ptr<HidPort> port, const HidInfo& info, DeviceKind kind);
 
-  const HidInfo& info() const { return info_; }
+  const HidInfo& info() const { return info_; }  ///< as the bus listed it
+  /// Resolution, friction and limits of both axes, read and checked once when the device was opened.
   const std::array<vibe_firmware::AxisConfig, vibe_firmware::kAxisCount>& axes() const { return axes_; }
   const vibe_firmware::StatusReport& status() const { return status_; }  ///< as read last
   std::string firmwareVersion() const;                                   ///< "1.2.3"
@@ -26,9 +27,12 @@ class DeviceConnection {
     return port_->read(bytes, capacity, timeout);
   }
 
-  // @throws DeviceGone; Error if the device answers something else than the protocol says
+  /// Reads status() anew. @throws DeviceGone; Error if the device does not answer, or not as the protocol says
   void refreshStatus();
+  /// The set of parameters that the device holds. @throws DeviceGone; Error as refreshStatus()
   vibe_firmware::ParameterReport readParameters();
+  /// Sends a set of parameters. Whether the device takes it over or refuses its values shows in later reports and in
+  /// the status. @throws DeviceGone; Error if the device rejects the form, or does not answer
   void sendParameters(const vibe_firmware::ParameterReport& parameters);
 
  private:

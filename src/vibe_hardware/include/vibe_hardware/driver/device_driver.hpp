@@ -12,6 +12,7 @@
 
 namespace vibe::hardware {
 
+/// Whether a sentence needs attention: a Warning says that something does not work, and the remedy.
 enum class Severity : unsigned char { Info, Warning };
 
 /// Where sentences for the user go.
@@ -22,13 +23,14 @@ class MessageLimiter {
  public:
   static constexpr double kPeriod = 10;  ///< [s]
 
-  explicit MessageLimiter(MessageSink sink) : sink_(std::move(sink)) {}
+  explicit MessageLimiter(MessageSink sink) : sink_(std::move(sink)) {}  ///< `sink` has to be callable
 
-  void info(const std::string& sentence) const { sink_(Severity::Info, sentence); }
+  void info(const std::string& sentence) const { sink_(Severity::Info, sentence); }  ///< at once, however often
+  /// A sentence that may come often. @param kind  word that names what is limited together  @param now  host time [s]
   void warn(const std::string& kind, const std::string& sentence, double now);
   /// A sentence that stays true: said once, and again only after forget().
   void warnOnce(const std::string& kind, const std::string& sentence);
-  void forget(const std::string& kind) { kinds_.erase(kind); }
+  void forget(const std::string& kind) { kinds_.erase(kind); }  ///< the next sentence of that kind is passed on again
 
  private:
   struct Kind {
@@ -43,10 +45,11 @@ class MessageLimiter {
 
 /// Which device to use.
 struct DeviceSelection {
-  std::uint16_t vendor = 0, product = 0;
-  std::string serial;  ///< empty: any
+  std::uint16_t vendor = 0, product = 0;  ///< USB ids, both have to match
+  std::string serial;                     ///< empty: any
 };
 
+/// Whether a device can be used, as far as its driver knows.
 enum class LinkState : unsigned char {
   Absent,    ///< not there
   Unusable,  ///< there, but it cannot be opened or is not of this release
@@ -57,15 +60,16 @@ const char* stateName(LinkState state);  ///< "absent", ...
 
 /// For diagnostics.
 struct DeviceStatistics {
-  LinkState state = LinkState::Absent;
-  std::string problem;  ///< one sentence while the state is Unusable or Silent
-  StreamCounts counts;
-  double rate = 0;                ///< of good reports [Hz]
-  double age = 0;                 ///< of the last sample [s]; infinite before the first one
-  double drift = 0;               ///< of the device's clock against the host's [s/s]
-  std::uint64_t connections = 0;  ///< times that the device was opened
+  LinkState state = LinkState::Absent;  ///< as of the last poll()
+  std::string problem;                  ///< one sentence while the state is Unusable or Silent
+  StreamCounts counts;                  ///< of its reports, over all connections
+  double rate = 0;                      ///< of good reports [Hz]
+  double age = 0;                       ///< of the last sample [s]; infinite before the first one
+  double drift = 0;                     ///< of the device's clock against the host's [s/s]
+  std::uint64_t connections = 0;        ///< times that the device was opened
+  /// Of the open device, texts; empty while none is open or where it states none.
   std::string path, serial, name, firmware;
-  std::uint8_t flags = 0;
+  std::uint8_t flags = 0;        ///< vibe_firmware::DeviceFlag, of the last good report
   std::uint32_t late_ticks = 0;  ///< of the firmware
 };
 
@@ -81,11 +85,13 @@ class DeviceDriver {
 
   static constexpr double kQuiet = 0.05;  ///< without a good report, after which nothing is asked of it [s]
 
+  /// What the driver calls, within poll() or drop(); all have to be set.
   struct Callbacks {
-    std::function<void(const DeviceSample&)> sample;
+    std::function<void(const DeviceSample&)> sample;  ///< one good report, in the order of their times
+    /// A device has been opened and its protocol checked; before its first sample.
     std::function<void(const DeviceConnection&)> connected;
     std::function<void(double now)> lost;  ///< unplugged or silent: its buttons count as released
-    MessageSink message;
+    MessageSink message;                   ///< sentences for the user
   };
 
   /// @param clock  host time [s], never goes back; that of DeviceSample::time
@@ -95,17 +101,17 @@ class DeviceDriver {
   /// Searches if it is time to, or takes all reports that are there; waits for the first one. @param wait  [s]
   void poll(double wait);
 
-  LinkState state() const { return state_; }
+  LinkState state() const { return state_; }  ///< as of the last poll()
   /// The open device; null unless the state is Running or Silent.
   DeviceConnection* connection() { return connection_.get(); }
-  DeviceStatistics statistics() const;
+  DeviceStatistics statistics() const;                          ///< as of now; cheap
   double sinceReport() const { return clock_() - last_good_; }  ///< the last good one, or since opening [s]
 
   /// Tells the driver that the device has gone while its connection was used outside poll().
   void drop(const std::string& reason);
-  MessageLimiter& messages() { return messages_; }
-  double now() const { return clock_(); }
-  DeviceKind kind() const { return kind_; }
+  MessageLimiter& messages() { return messages_; }  ///< for sentences of those who use the device, too
+  double now() const { return clock_(); }           ///< host time of its clock [s]
+  DeviceKind kind() const { return kind_; }         ///< which of the two devices it looks for
 
  private:
   HidBus& bus_;

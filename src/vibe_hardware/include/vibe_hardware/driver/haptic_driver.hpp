@@ -18,11 +18,12 @@ class HapticLink {
   static constexpr double kMinPeriod = 0.010;  ///< 100 Hz
   static constexpr double kHeartbeat = 0.040;  ///< 50 ms less the time for which the caller may wait
   static constexpr double kTimeout = 0.1;      ///< of a target
-  static constexpr double kFade = 0.05;
+  static constexpr double kFade = 0.05;        ///< from the end of a target until its spring is gone [s]
 
+  /// Parameters by axis of the device, each within what is passive there.
   using Springs = std::array<vibe_firmware::AxisParameters, vibe_firmware::kAxisCount>;
 
-  void setTarget(const Springs& springs, double now);
+  void setTarget(const Springs& springs, double now);  ///< from now on, until the next one, release() or kTimeout
   /// The contact has ended: fades out what is left.
   void release(double now);
   /// A device has been opened, perhaps another one with other limits: forgets the target, and sends parameters without
@@ -33,7 +34,7 @@ class HapticLink {
   std::optional<vibe_firmware::ParameterReport> next(double now);
 
   const vibe_firmware::ParameterReport& last() const { return report_; }  ///< sent last; number 0: none yet
-  bool touching() const { return touching_; }
+  bool touching() const { return touching_; }  ///< there is a target; false: none, or its spring fades out
 
  private:
   static constexpr double kNever = -1e9;
@@ -51,7 +52,7 @@ class HapticLink {
 
 /// What became of the parameters.
 struct HapticStatistics {
-  std::uint64_t sent = 0;
+  std::uint64_t sent = 0;        ///< sets of parameters, heartbeats included
   std::uint64_t clamped = 0;     ///< targets that were lowered to what is passive on the device
   std::uint64_t refused = 0;     ///< sets that the device refused
   std::uint64_t mismatched = 0;  ///< sets that read back differently
@@ -64,8 +65,10 @@ struct HapticStatistics {
 /// thread, everything else from one.
 class HapticDriver {
  public:
-  using Targets = std::array<JointSpring, vibe_firmware::kAxisCount>;
+  using Targets = std::array<JointSpring, vibe_firmware::kAxisCount>;  ///< by axis of the device [rad], [N m]
 
+  /// @param clock      host time [s], never goes back; read by every thread that calls setTarget() or release()
+  /// @param callbacks  called from poll(); all have to be set
   HapticDriver(HidBus& bus, DeviceSelection selection, std::function<double()> clock,
                DeviceDriver::Callbacks callbacks);
 
@@ -77,8 +80,8 @@ class HapticDriver {
   /// @param pause  for which targets are ignored, because they may have been computed before [s]
   void release(double pause = 0);
 
-  DeviceDriver& device() { return device_; }
-  HapticStatistics statistics() const { return statistics_; }
+  DeviceDriver& device() { return device_; }                   ///< for state, connection and statistics of the reports
+  HapticStatistics statistics() const { return statistics_; }  ///< since the driver was made
 
  private:
   static constexpr double kVerifyPeriod = 1;    // [s]

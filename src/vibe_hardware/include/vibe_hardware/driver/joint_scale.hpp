@@ -7,23 +7,23 @@ namespace vibe::hardware {
 /// How a joint of the scope follows from an axis of a device: joint = offset + scale * axis.
 /// scale: [m/rad] for insertion (radius of the roller), [rad/rad] otherwise; its sign is the direction; not 0.
 struct JointScale {
-  double scale = 1;
-  double offset = 0;
+  double scale = 1;   ///< [m/rad] or [rad/rad]
+  double offset = 0;  ///< joint where the axis is at 0 [m], [rad]
 };
 
 /// Spring-damper: effort - stiffness (x - position) - damping (v - velocity). In the units of a joint ([m] or [rad],
 /// [N] or [N m]), or of an axis ([rad], [N m]).
 struct JointSpring {
-  double position = 0;
-  double effort = 0;
-  double stiffness = 0;
-  double damping = 0;
-  double velocity = 0;
+  double position = 0;   ///< where the effort is `effort`, at `velocity` [m], [rad]
+  double effort = 0;     ///< there, positive in the direction of growing x [N], [N m]
+  double stiffness = 0;  ///< [N/m], [N m/rad]
+  double damping = 0;    ///< [N s/m], [N m s/rad]
+  double velocity = 0;   ///< at which the damper gives nothing [m/s], [rad/s]
 };
 
-double jointPosition(const JointScale& joint, double axis_position);
-double axisPosition(const JointScale& joint, double joint_position);
-double jointEffort(const JointScale& joint, double axis_torque);
+double jointPosition(const JointScale& joint, double axis_position);  ///< [rad] to [m] or [rad]; nothing is limited
+double axisPosition(const JointScale& joint, double joint_position);  ///< its inverse: [m] or [rad] to [rad]
+double jointEffort(const JointScale& joint, double axis_torque);      ///< by virtual work: [N m] to [N] or [N m]
 
 /// The same spring-damper on the axis. Virtual work makes torque = scale * effort, so that power is the same on both
 /// sides; stiffness and damping scale by scale^2.
@@ -36,7 +36,7 @@ vibe_firmware::AxisParameters axisSpring(const JointScale& joint, const JointSpr
 
 /// The nearest spring-damper that an axis accepts.
 struct PassiveSpring {
-  vibe_firmware::AxisParameters parameters;
+  vibe_firmware::AxisParameters parameters;  ///< as the device takes them, with the torque limit of the axis
   bool clamped = false;  ///< stiffness or damping is lower than asked, or a torque is beyond the motor
 };
 

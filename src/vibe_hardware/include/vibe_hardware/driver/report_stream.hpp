@@ -14,9 +14,9 @@ struct DeviceSample {
   double time = 0;  ///< at which it was taken, host clock; later than that of the sample before [s]
   std::array<double, vibe_firmware::kAxisCount> position{};  ///< [rad]
   std::array<double, vibe_firmware::kAxisCount> torque{};    ///< commanded [N m]
-  std::uint16_t buttons = 0;
-  std::uint8_t flags = 0;  ///< vibe_firmware::DeviceFlag
-  std::uint16_t parameter_number = 0;
+  std::uint16_t buttons = 0;                                 ///< one bit each; 1 while pressed
+  std::uint8_t flags = 0;                                    ///< vibe_firmware::DeviceFlag
+  std::uint16_t parameter_number = 0;                        ///< of the set of parameters in force; 0: none yet
   bool restarted = false;  ///< first sample after the device has started anew: its counts begin at 0
 };
 
@@ -35,6 +35,7 @@ struct StreamCounts {
 /// maps the time to the host's and counts what is wrong. Any bytes may come.
 class ReportStream {
  public:
+  /// What became of a report: Accepted, or why not. StreamCounts says what each reason means.
   enum class Result : std::uint8_t { Accepted, Malformed, Duplicated, Reordered, Implausible };
 
   /// Resolution of the encoders [rad]; both finite, not 0.
@@ -50,7 +51,8 @@ class ReportStream {
   Result take(const std::uint8_t* bytes, std::size_t size, double arrival, DeviceSample& sample);
 
   const std::string& explanation() const { return explanation_; }  ///< one sentence on the last report not accepted
-  const StreamCounts& counts() const { return counts_; }
+  const StreamCounts& counts() const { return counts_; }  ///< of all reports so far, over restarts and reopening
+  /// Relation of the device's time to the host's; learnt anew when the device restarts.
   const DeviceClock& clock() const { return clock_; }
   double rate(double now) const;  ///< accepted reports in the last second, 256 at most [Hz]
 

@@ -15,7 +15,7 @@ namespace vibe::hardware {
 /// their positions are not absolute any more until the homing button is pressed.
 class ScopeJoints {
  public:
-  explicit ScopeJoints(const Calibration& calibration);
+  explicit ScopeJoints(const Calibration& calibration);  ///< no device known yet, joints at 0
 
   /// @return whether the sample has homed the joints: springs about old positions are void
   bool take(DeviceKind device, const DeviceSample& sample);
@@ -30,7 +30,7 @@ class ScopeJoints {
   double effort(int joint) const { return efforts_[static_cast<std::size_t>(joint)]; }  ///< of its axis [N], [N m]
   /// As it is now, after homing and restarts of the device.
   const JointScale& scale(int joint) const { return scales_[static_cast<std::size_t>(joint)]; }
-  const Calibration& calibration() const { return calibration_; }
+  const Calibration& calibration() const { return calibration_; }  ///< as it was given, before homing
 
  private:
   Calibration calibration_;
@@ -52,12 +52,13 @@ class ScopeJoints {
 /// The six buttons of scope/buttons from the bits of both devices.
 class ScopeButtons {
  public:
-  explicit ScopeButtons(const Calibration& calibration) : calibration_(calibration) {}
+  explicit ScopeButtons(const Calibration& calibration) : calibration_(calibration) {}  ///< all released
 
   /// @param bits  of a report; 0 when the device is lost  @return whether one of the six buttons has changed
   bool take(DeviceKind device, std::uint16_t bits);
 
   const std::array<std::uint8_t, kButtonCount>& pressed() const { return pressed_; }  ///< 1 while pressed
+  /// Any button of a device, also one that is none of the six.
   bool isPressed(const DeviceButton& button) const {
     return (bits_[static_cast<std::size_t>(button.device)] >> button.bit & 1) != 0;
   }
@@ -72,8 +73,10 @@ class ScopeButtons {
 /// the instruments.
 class OverstitchDrive {
  public:
+  /// Positions of helix_advance, helix_rotation and needle_driver [m], [rad], [m]
   using Positions = std::array<double, kOverstitchJointCount>;
 
+  /// All three joints begin at 0.
   explicit OverstitchDrive(const std::array<ButtonDrive, kOverstitchJointCount>& drives) : drives_(drives) {}
 
   /// @param elapsed  since the last call; longer gaps than 0.1 s count as that [s]

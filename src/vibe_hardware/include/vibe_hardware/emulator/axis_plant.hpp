@@ -37,8 +37,8 @@ HandImpedance handOnSlide(double mass, double damping, double stiffness, double 
 
 /// Everything that is constant.
 struct AxisPlant {
-  Motor motor;
-  Drive drive = Drive::Voltage;
+  Motor motor;                    ///< that drives the shaft
+  Drive drive = Drive::Voltage;   ///< what back-EMF does
   double ratio = 10;              ///< of the capstan: turns of the motor per turn of the shaft [1]
   double inertia = 5e-6;          ///< of drum and shaft, without motor (design choice) [kg m^2]
   double viscous = 0;             ///< friction beside back-EMF [N m s/rad]
@@ -47,7 +47,7 @@ struct AxisPlant {
   double encoder_step = 3.07e-4;  ///< angle of one count [rad]
   double output_delay = 50e-6;    ///< from sampling the encoder to the new torque; multiple of substep [s]
   double substep = 50e-6;         ///< of the integration [s]
-  HandImpedance hand;
+  HandImpedance hand;             ///< that holds the shaft
 };
 
 /// Viscous friction that the shaft feels, back-EMF included [N m s/rad].
@@ -71,7 +71,7 @@ struct AxisPlantState {
   double velocity = 0;  ///< [rad/s]
   double torque = 0;    ///< made by the current, without back-EMF [N m]
   double intended = 0;  ///< where the hand wants to be [rad]
-  AxisEnergy energy;
+  AxisEnergy energy;    ///< since the start [J]
 };
 
 /// Advances by one period. The torque of the last period acts until output_delay has passed. The midpoint rule keeps

@@ -35,7 +35,7 @@ class DeviceServer {
 /// unplugging a device is.
 class SocketServer : public DeviceServer {
  public:
-  static constexpr std::size_t kMaxHosts = 16;
+  static constexpr std::size_t kMaxHosts = 16;           ///< more are turned away
   static constexpr std::size_t kMaxWaitingReports = 64;  ///< per host, as in hidraw
   static constexpr std::size_t kMaxWaitingReplies = 16;  ///< per host
   static constexpr int kMaxRequestsPerServe = 4;         ///< per host
@@ -51,10 +51,10 @@ class SocketServer : public DeviceServer {
   void serve() override;
   std::uint64_t droppedReports() const override { return dropped_; }
 
-  std::size_t hostCount() const { return hosts_.size(); }
+  std::size_t hostCount() const { return hosts_.size(); }  ///< connected at present
   /// Hosts that were disconnected because of what they did.
   std::uint64_t expelledHosts() const { return expelled_; }
-  const std::string& path() const { return path_; }
+  const std::string& path() const { return path_; }  ///< of the socket file
 
  private:
   struct Host {

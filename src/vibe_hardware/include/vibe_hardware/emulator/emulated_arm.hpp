@@ -15,6 +15,7 @@ struct EmulatedArmConfig {
   double turn_damping = 0.01;   ///< [N m s/rad]
 };
 
+/// Motion of the handle, and the work done on it; begins at rest at the origin of the base.
 struct EmulatedArmState {
   Eigen::Vector3d position = Eigen::Vector3d::Zero(), velocity = Eigen::Vector3d::Zero();  ///< in the base [m], [m/s]
   Eigen::Vector3d turn = Eigen::Vector3d::Zero(), spin = Eigen::Vector3d::Zero();  ///< rotation vector [rad], [rad/s]
@@ -32,6 +33,7 @@ struct HandIntent {
 void stepArm(const EmulatedArmConfig& config, double dt, const Eigen::Vector3d& force, const Eigen::Vector3d& torque,
              const HandIntent& intent, EmulatedArmState& state);
 
+/// Orientation of the handle in the base; unit quaternion.
 Eigen::Quaterniond orientationOf(const EmulatedArmState& state);
 
 }  // namespace vibe::hardware

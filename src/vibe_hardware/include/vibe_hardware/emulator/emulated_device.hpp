@@ -28,6 +28,7 @@ class EmulatedDevice {
  public:
   virtual ~EmulatedDevice() = default;
 
+  /// The next millisecond: firmware and mechanics. @param motion  of the hand at the end of the tick
   virtual void tick(const DeviceMotion& motion) = 0;
 
   /// The input report that is due, if any: every ten ticks. @return whether there is one
@@ -65,7 +66,7 @@ class EmulatedEncoder {
 /// The haptic device: two axes with motors, the firmware, and a hand that holds them.
 class EmulatedHaptic : public EmulatedDevice {
  public:
-  using Plants = std::array<AxisPlant, vibe_firmware::kAxisCount>;
+  using Plants = std::array<AxisPlant, vibe_firmware::kAxisCount>;  ///< by axis of the device
 
   /// @param config  of the firmware. The encoder steps of the plants have to be those of its axes.
   EmulatedHaptic(const vibe_firmware::HapticConfig& config, const Plants& plants, std::string serial);
@@ -75,9 +76,10 @@ class EmulatedHaptic : public EmulatedDevice {
   vibe_firmware::HidFunction& function() override { return *firmware_; }
   void restart() override;
 
-  const AxisPlant& plant(std::size_t axis) const { return plants_[axis]; }
+  const AxisPlant& plant(std::size_t axis) const { return plants_[axis]; }  ///< constant mechanics; axis 0 or 1
+  /// Its motion after the last tick; axis 0 or 1.
   const AxisPlantState& axis(std::size_t axis) const { return axes_[axis]; }
-  const vibe_firmware::HapticFunction& firmware() const { return *firmware_; }
+  const vibe_firmware::HapticFunction& firmware() const { return *firmware_; }  ///< until restart()
   /// Torques that the firmware asked for in the last tick [N m].
   const std::array<float, vibe_firmware::kAxisCount>& torques() const { return torques_; }
 
@@ -95,6 +97,8 @@ class EmulatedHaptic : public EmulatedDevice {
 /// The input device: two wheels and buttons. It has no motors, so the wheels are where the hand wants them to be.
 class EmulatedInput : public EmulatedDevice {
  public:
+  /// @param config  of the firmware: resolution of the wheels, period of the reports
+  /// @param serial  that it states on USB
   EmulatedInput(const vibe_firmware::InputConfig& config, std::string serial);
 
   void tick(const DeviceMotion& motion) override;

@@ -30,10 +30,10 @@ class TickSchedule {
   /// Wall time of the next tick [s].
   double next() const;
 
-  bool behind() const { return delay_ > kBehind; }  ///< at the last due()
-  double delay() const { return delay_; }           ///< of the first tick that was due then [s]
-  double worstDelay() const { return worst_delay_; }
-  double dropped() const { return dropped_; }  ///< time that was left out altogether [s]
+  bool behind() const { return delay_ > kBehind; }    ///< at the last due()
+  double delay() const { return delay_; }             ///< of the first tick that was due then [s]
+  double worstDelay() const { return worst_delay_; }  ///< the largest delay() so far [s]
+  double dropped() const { return dropped_; }         ///< time that was left out altogether [s]
 
  private:
   double origin_;
@@ -47,13 +47,16 @@ class TickSchedule {
 /// does.
 class OverstitchFingers {
  public:
+  /// Positions of helix_advance, helix_rotation and needle_driver [m], [rad], [m]
   using Positions = std::array<double, kOverstitchJointCount>;
 
+  /// Begins with nothing pressed and the joints at 0.
   explicit OverstitchFingers(const std::array<ButtonDrive, kOverstitchJointCount>& drives) : drives_(drives) {}
 
   /// To be called once per report. @param intended  [m], [rad], [m]
   void decide(const Positions& intended, double report_period);
 
+  /// As decided last; false for a button that moves none of the joints.
   bool isPressed(const DeviceButton& button) const;
   const Positions& positions() const { return positions_; }  ///< that the host should have after the next report
 
@@ -74,10 +77,10 @@ struct EmulatorSetup {
   /// Which joint is on which axis, and which button on which bit: that of the host, so that the joints of the scope
   /// move as the hand intends.
   Calibration calibration;
-  vibe_firmware::HapticConfig haptic{};
-  vibe_firmware::InputConfig input{};
-  Drive drive = Drive::Voltage;
-  std::string serial = "EMULATOR";  ///< of both devices
+  vibe_firmware::HapticConfig haptic{};  ///< firmware of the haptic device: axes, encoders, rates
+  vibe_firmware::InputConfig input{};    ///< the same of the input device
+  Drive drive = Drive::Voltage;          ///< how the bridges of the motors work: what back-EMF does
+  std::string serial = "EMULATOR";       ///< of both devices
 };
 
 /// Mechanics that belong to the setup, with the hand.
@@ -86,10 +89,12 @@ EmulatedHaptic::Plants plantsOf(const EmulatorSetup& setup);
 /// Both devices and the hand that moves them, in virtual time.
 class Emulator {
  public:
+  /// Both devices at 0. @param hand  not null
   Emulator(const EmulatorSetup& setup, std::shared_ptr<const Hand> hand);
 
   /// One millisecond.
   void tick();
+  /// @param count  milliseconds
   void tick(int count) {
     for (int i = 0; i < count; ++i) tick();
   }
@@ -98,12 +103,13 @@ class Emulator {
   /// Time of the hand [s]. It begins when the hand has reached its first position from that of the devices, 0; negative
   /// before.
   double handTime() const { return time() - approach_; }
+  /// The hand does not move any more; never for one without end.
   bool finished() const { return handTime() > hand_->duration(); }
 
-  EmulatedHaptic& haptic() { return haptic_; }
-  EmulatedInput& input() { return input_; }
-  EmulatedDevice& device(DeviceKind kind);
-  const EmulatorSetup& setup() const { return setup_; }
+  EmulatedHaptic& haptic() { return haptic_; }           ///< lives as long as the emulator
+  EmulatedInput& input() { return input_; }              ///< lives as long as the emulator
+  EmulatedDevice& device(DeviceKind kind);               ///< one of the two
+  const EmulatorSetup& setup() const { return setup_; }  ///< as it was given
 
  private:
   HandSample intention() const;

@@ -47,6 +47,7 @@ constexpr std::array<RandomRange, kScopeJointCount> kRandomRanges{
 /// the same libm. Never ends.
 class RandomHand : public Hand {
  public:
+  /// @param ranges  by vibe::Joint; a speed below what the range needs makes the motion smaller
   explicit RandomHand(std::uint64_t seed, const std::array<RandomRange, kScopeJointCount>& ranges = kRandomRanges);
 
   HandSample at(double time) const override;
@@ -66,7 +67,7 @@ class RandomHand : public Hand {
 /// Plays a trainee script: the motions of all joints, with their tremor, and the buttons, as vibe_trainee does.
 class ScriptedHand : public Hand {
  public:
-  explicit ScriptedHand(TraineeScript script) : script_(std::move(script)) {}
+  explicit ScriptedHand(TraineeScript script) : script_(std::move(script)) {}  ///< of a valid script
 
   HandSample at(double time) const override;
   double duration() const override { return script_.duration(); }
@@ -77,8 +78,8 @@ class ScriptedHand : public Hand {
 
 /// When a hand blinks.
 struct BlinkSetup {
-  int count = 1000;
-  std::uint64_t seed = 1;
+  int count = 1000;        ///< of jumps, to and fro together
+  std::uint64_t seed = 1;  ///< of the times
   double begin = 3;        ///< first blink, at least this long after the end of the other hand [s]
   double shortest = 0.25;  ///< between two blinks, longer than the latency to be measured [s]
   double longest = 0.5;    ///< [s]

@@ -38,19 +38,22 @@ struct RenderingError {
   double most_energy = 0;    ///< the most that the motor has given since the start of the measurement, at any time [J]
 };
 
+/// Measures a motion; the samples that are not measured are left out. All zero if none is.
 RenderingError renderingError(const std::vector<HapticLoopSample>& samples);
 
+/// Who moves the device, how forces are rendered and how long.
 struct HapticLoopSettings {
-  EmulatorSetup setup;
-  std::shared_ptr<const Hand> hand;
-  Rendering rendering = Rendering::Spring;
+  EmulatorSetup setup;                      ///< devices; the insertion has to be on the haptic one
+  std::shared_ptr<const Hand> hand;         ///< not null
+  Rendering rendering = Rendering::Spring;  ///< of the forces on the device
   double latency = 5e-3;    ///< from the end of a frame to its parameters in the device: step, messages, USB [s]
   double measure_from = 0;  ///< the reference begins here with the state of the frames [s]
   double duration = 1;      ///< [s]
 };
 
+/// The motion and what happened to the parameters on the way.
 struct HapticLoopResult {
-  std::vector<HapticLoopSample> samples;
+  std::vector<HapticLoopSample> samples;      ///< one per millisecond
   int parameter_sets = 0;                     ///< sent to the device
   int clamped = 0;                            ///< frames whose spring was lowered to what is passive on the device
   int refused = 0;                            ///< sets, by the device

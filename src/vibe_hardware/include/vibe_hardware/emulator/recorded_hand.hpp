@@ -10,9 +10,10 @@ namespace vibe::hardware {
 
 /// Where a joint can be [m], [rad].
 struct JointRange {
+  /// Ends of the range, both allowed.
   double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
 };
-using HandLimits = std::array<JointRange, kJointCount>;
+using HandLimits = std::array<JointRange, kJointCount>;  ///< by vibe::Joint
 
 /// The limits of the joints of a calibration; infinite for those it does not have.
 HandLimits handLimits(const Calibration& calibration);
@@ -26,7 +27,7 @@ HandLimits handLimits(const Calibration& calibration);
 /// the first row and after the last one nothing changes.
 class RecordedHand : public Hand {
  public:
-  static constexpr std::size_t kMaxRows = 10'000'000;
+  static constexpr std::size_t kMaxRows = 10'000'000;  ///< of a recording; a longer one is refused
 
   /// @throws Error "file:line: what is wrong; remedy"
   static RecordedHand load(const std::string& file, const HandLimits& limits);

@@ -16,11 +16,12 @@ class UsbHost {
   /// if its descriptors contradict each other
   explicit UsbHost(vibe_firmware::HidFunction& function);
 
-  std::uint16_t vendor() const { return vendor_; }
-  std::uint16_t product() const { return product_; }
-  const std::string& manufacturer() const { return strings_[0]; }
-  const std::string& name() const { return strings_[1]; }
-  const std::string& serial() const { return strings_[2]; }
+  std::uint16_t vendor() const { return vendor_; }                 ///< USB id
+  std::uint16_t product() const { return product_; }               ///< USB id
+  const std::string& manufacturer() const { return strings_[0]; }  ///< string of its device descriptor; empty: none
+  const std::string& name() const { return strings_[1]; }          ///< the same, of the product
+  const std::string& serial() const { return strings_[2]; }        ///< the same, serial number
+  /// As the device sent it; see parseReportDescriptor().
   const std::vector<std::uint8_t>& reportDescriptor() const { return report_descriptor_; }
 
   /// @return the report with its id; empty: the device stalls

@@ -17,7 +17,7 @@ enum class PadPulse {
 
 /// Response of the tissue for each joint of the scope: effort = stiffness (equilibrium - joint).
 struct JointSprings {
-  bool touching = false;
+  bool touching = false;                               ///< the springs are in force; false: there is no force
   std::array<double, kScopeJointCount> stiffness{};    ///< [N/m], [N m/rad]
   std::array<double, kScopeJointCount> equilibrium{};  ///< [m], [rad]
 };
@@ -31,15 +31,22 @@ struct JointSprings {
 /// for 0.1 s it fades to zero within another 0.1 s.
 class PadFeedback {
  public:
-  explicit PadFeedback(const PadMapping& mapping) : mapping_(mapping) {}
+  explicit PadFeedback(const PadMapping& mapping) : mapping_(mapping) {}  ///< motors off
 
-  // Times are steady [s]. Values that are not finite count as none.
+  /// Amount of the force on the tool, for the strong motor. Its sign does not count; a value that is not finite is
+  /// ignored. @param now  steady time [s]  @param force  [N]
   void setForce(double now, double force);
+  /// Starts a pulse of the weak motor. While pulses overlap, the stronger level holds until the later end.
+  /// @param now  steady time [s]
   void pulse(double now, PadPulse pulse);
+  /// Springs of all joints; ignored if a value is not finite. @param now  steady time [s]
   void setSprings(double now, const JointSprings& springs);
 
+  /// Level of the strong motor, 0 to 1. @param now  steady time [s]
   double strongLevel(double now) const;
+  /// Level of the weak motor, 0 to 1. @param now  steady time [s]
   double weakLevel(double now) const;
+  /// Springs of ABS_X and ABS_Y, with what is left of them. @param now  steady time [s]
   std::array<StickSpring, 2> springs(double now) const;
 
   /// Sends what has changed, at most 50 times a second.

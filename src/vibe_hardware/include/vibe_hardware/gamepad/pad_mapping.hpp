@@ -16,26 +16,28 @@ ToolLimits loadToolLimits(const std::string& urdf_address);
 
 /// What moves a joint.
 struct JointMapping {
+  /// Which kind of control of the pad moves the joint.
   enum class Control {
     None,    ///< nothing: the joint stays where it is
     Axis,    ///< one axis that rests in the middle of its range
     Axes,    ///< two axes that rest at their minimum, such as triggers: the first forwards, the second backwards
     Buttons  ///< two buttons: the first forwards, the second backwards
   };
+  /// What the deflection of the control, -1 to 1, means.
   enum class Mode {
     Rate,     ///< the deflection is a speed
     Position  ///< the deflection is a position
   };
-  Control control = Control::None;
-  int forward = -1;   ///< event code of the axis, or of the first of two
-  int backward = -1;  ///< event code of the second of two
-  Mode mode = Mode::Rate;
-  double rate = 0;       ///< rate mode: speed at full deflection [m/s], [rad/s]
-  double low = 0;        ///< position mode: joint at deflection -1 [m], [rad]
-  double high = 0;       ///< position mode: joint at deflection 1 [m], [rad]
-  double dead_zone = 0;  ///< deflection below which the control counts as centred, 0 to 0.9
-  double exponent = 1;   ///< of the response beyond the dead zone, 0.2 to 5; 1: linear, 2: fine near the centre [1]
-  bool reversed = false;
+  Control control = Control::None;  ///< kind; None: all else is without meaning
+  int forward = -1;                 ///< event code of the axis, or of the first of two
+  int backward = -1;                ///< event code of the second of two
+  Mode mode = Mode::Rate;           ///< rate or position
+  double rate = 0;                  ///< rate mode: speed at full deflection [m/s], [rad/s]
+  double low = 0;                   ///< position mode: joint at deflection -1 [m], [rad]
+  double high = 0;                  ///< position mode: joint at deflection 1 [m], [rad]
+  double dead_zone = 0;             ///< deflection below which the control counts as centred, 0 to 0.9
+  double exponent = 1;     ///< of the response beyond the dead zone, 0.2 to 5; 1: linear, 2: fine near the centre [1]
+  bool reversed = false;   ///< the deflection counts with the opposite sign
   double full_effort = 0;  ///< position mode: effort shown by the device's greatest force [N], [N m]; 0: no spring
 };
 
@@ -53,17 +55,17 @@ struct FeedbackMapping {
 /// Which controls of a pad the numbers of a sensor_msgs/Joy are: event codes in the order of its axes and buttons. The
 /// default is what joy_node publishes of a pad with two sticks, two triggers that are axes, and a cross.
 struct JoyNames {
-  std::vector<int> axes, buttons;
-  JoyNames();
+  std::vector<int> axes, buttons;  ///< event codes: ABS_X, ... and BTN_SOUTH, ...
+  JoyNames();                      ///< the default
 };
 
 /// How axes and buttons of a pad become joints and buttons of the simulator. Format: docs/tutorials/drive_by_hand.md.
 struct PadMapping {
-  std::string name;
-  std::array<JointMapping, kJointCount> joints;
-  std::array<ButtonMapping, kButtonCount> buttons;
-  FeedbackMapping feedback;
-  JoyNames joy;
+  std::string name;                                 ///< for messages
+  std::array<JointMapping, kJointCount> joints;     ///< by vibe::Joint
+  std::array<ButtonMapping, kButtonCount> buttons;  ///< by vibe::Button
+  FeedbackMapping feedback;                         ///< of the motors
+  JoyNames joy;                                     ///< for pads that come as a topic
 };
 
 /// Reads a mapping file.

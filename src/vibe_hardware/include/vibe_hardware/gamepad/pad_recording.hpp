@@ -12,7 +12,7 @@ namespace vibe::hardware {
 /// product, version), B (bits of buttons), A (axes: code, minimum, maximum, fuzz, flat), E (events: time, type, code,
 /// value).
 struct PadRecording {
-  PadInfo info;
+  PadInfo info;                  ///< of the pad that was recorded
   PadState state;                ///< before the first event: axes in the middle of their range, buttons up
   std::vector<PadEvent> events;  ///< times do not decrease
 };
@@ -35,6 +35,7 @@ class PadRecorder {
   PadRecorder(const PadRecorder&) = delete;
   PadRecorder& operator=(const PadRecorder&) = delete;
 
+  /// Writes an event, its time counted from the first one; it is in the file with the next EV_SYN.
   void add(const PadEvent& event);
 
   /// To be called before a pad is there. Leaves the file as it is. @throws Error if it cannot be written

@@ -23,8 +23,8 @@ class PadMotors {
  public:
   virtual ~PadMotors() = default;
 
-  virtual bool hasRumble() const = 0;
-  virtual bool hasSpring() const = 0;
+  virtual bool hasRumble() const = 0;  ///< false: rumble() does nothing
+  virtual bool hasSpring() const = 0;  ///< false: spring() does nothing
   /// @param strong, weak  of the heavy and the light motor, 0 to 1; ends by itself after half a second
   /// @return false if the device refuses it
   virtual bool rumble(double strong, double weak) = 0;
@@ -37,13 +37,14 @@ class PadSource {
  public:
   virtual ~PadSource() = default;
 
-  virtual const PadInfo& info() const = 0;
+  virtual const PadInfo& info() const = 0;  ///< what the pad says of itself; does not change
   /// Brings the state up to date. Never waits. @param now  steady time [s]. @return false: the pad is gone
   virtual bool update(double now) = 0;
-  virtual const PadState& state() const = 0;
+  virtual const PadState& state() const = 0;  ///< as of the last update()
   /// null: it has none
   virtual PadMotors* motors() = 0;
 
+  /// Events taken over so far, also those of axes that the pad does not have.
   virtual std::uint64_t eventCount() const = 0;
   virtual std::uint64_t dropCount() const = 0;  ///< times that events were lost and the state was read anew
   /// Called with every event, for a recording.
@@ -62,7 +63,7 @@ class PadLink {
  public:
   /// Opens a pad, or returns null and says why in one sentence.
   using Open = std::function<std::unique_ptr<PadSource>(std::string& why)>;
-  explicit PadLink(Open open) : open_(std::move(open)) {}
+  explicit PadLink(Open open) : open_(std::move(open)) {}  ///< no pad yet; `open` has to be callable
 
   /// Brings the pad up to date, or looks for one, twice a second. Never waits.
   /// @param now  steady time [s]
@@ -71,7 +72,7 @@ class PadLink {
 
   /// null: there is none at present
   PadSource* pad() const { return pad_.get(); }
-  std::uint64_t connections() const { return connections_; }
+  std::uint64_t connections() const { return connections_; }  ///< times that a pad was found
 
  private:
   Open open_;
@@ -85,8 +86,8 @@ class PadLink {
 
 /// An input device of this machine.
 struct PadListing {
-  PadInfo info;
-  PadState state;
+  PadInfo info;         ///< only its path if the device could not be opened
+  PadState state;       ///< of the moment when it was listed; empty if it could not be opened
   bool is_pad = false;  ///< has two axes of a stick and a button of a gamepad or joystick
   std::string problem;  ///< why it could not be opened; empty: it could
 };

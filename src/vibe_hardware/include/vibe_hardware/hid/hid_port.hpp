@@ -27,9 +27,9 @@ struct NoAnswer : std::runtime_error {
 
 /// One device that can be opened.
 struct HidInfo {
-  std::string path;  ///< to open it: "/dev/hidraw0", or that of a socket
-  std::uint16_t vendor = 0, product = 0;
-  std::string serial, name;  ///< as the device states them; may be empty
+  std::string path;                       ///< to open it: "/dev/hidraw0", or that of a socket
+  std::uint16_t vendor = 0, product = 0;  ///< USB ids
+  std::string serial, name;               ///< as the device states them; may be empty
 };
 
 /// An open device. Not thread-safe. Reports contain their id in byte 0.

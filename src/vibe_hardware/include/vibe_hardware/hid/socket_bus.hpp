@@ -24,21 +24,23 @@
 
 namespace vibe::hardware {
 
-constexpr std::uint8_t kSocketVersion = 1;
-constexpr std::size_t kMaxPacket = 8192;  ///< bytes; no packet is longer
-constexpr const char* kSocketSuffix = ".hid";
+constexpr std::uint8_t kSocketVersion = 1;     ///< second byte of a hello; a host talks to its own version only
+constexpr std::size_t kMaxPacket = 8192;       ///< bytes; no packet is longer
+constexpr const char* kSocketSuffix = ".hid";  ///< of a socket file of a device
 
+/// First byte of a packet: what it is, as the table says.
 enum PacketKind : std::uint8_t { kHello = 'H', kInput = 'I', kGet = 'G', kSet = 'S', kReply = 'R' };
 
-using Packet = std::vector<std::uint8_t>;
+using Packet = std::vector<std::uint8_t>;  ///< one message: the socket keeps its limits
 
 /// What a device says of itself.
 struct Hello {
-  std::uint16_t vendor = 0, product = 0;
-  std::string serial, name;
-  std::vector<std::uint8_t> report_descriptor;
+  std::uint16_t vendor = 0, product = 0;        ///< USB ids
+  std::string serial, name;                     ///< may be empty
+  std::vector<std::uint8_t> report_descriptor;  ///< as of USB
 };
 
+/// The packet of a hello. Texts and descriptor have at most 65535 bytes each.
 Packet packHello(const Hello& hello);
 /// Empty: the packet is not a hello of this version.
 std::optional<Hello> unpackHello(const std::uint8_t* bytes, std::size_t size);
