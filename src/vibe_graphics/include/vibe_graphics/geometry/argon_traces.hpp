@@ -18,7 +18,7 @@ double browning(double age);
 /// are new in it.
 class ScarAge {
  public:
-  explicit ScarAge(const TissueMesh& mesh);
+  explicit ScarAge(const TissueMesh& mesh);  ///< no marks yet
 
   /// @param frame  of this mesh. All marks are new again if its time is before that of the last frame, or if a grade
   ///               has fallen

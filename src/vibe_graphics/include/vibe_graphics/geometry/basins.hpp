@@ -20,6 +20,7 @@ std::vector<WallPlace> steepestDescent(const WallSurface& wall, const WallPlace&
 /// The vertex that is reached from a point by going to the lowest neighbour until there is none: the bottom of a
 /// hollow.
 std::uint32_t bottomBelow(const WallSurface& wall, const WallPlace& point, const Eigen::Vector3d& down);
+/// The same from a vertex.
 std::uint32_t bottomBelow(const WallSurface& wall, std::uint32_t vertex, const Eigen::Vector3d& down);
 
 /// A fluid at rest on a wall.
@@ -49,9 +50,10 @@ class Basins {
   /// @param vertex  the fluid runs down from there
   void pour(std::uint32_t vertex, double volume, double brown);
 
-  const std::vector<Pool>& pools() const { return pools_; }
-  const std::vector<Brim>& brims() const { return brims_; }
+  const std::vector<Pool>& pools() const { return pools_; }  ///< all that stands, in no special order
+  const std::vector<Brim>& brims() const { return brims_; }  ///< one for each time that a hollow has run over
 
+  /// Height of a vertex against gravity, from the origin [m].
   double height(std::uint32_t vertex) const { return -wall_.places()[vertex].dot(down_); }
 
  private:

@@ -16,16 +16,17 @@ struct BloodStyle {
 
 /// Colour of blood and what it hides, 0 to 1.
 struct BloodShade {
-  double red, green, blue, alpha;
+  double red, green, blue, alpha;  ///< of a display, not linear
 };
 
-// Fresh in a jet or a thin layer, in a drop, in a deep pool, and clotted. Design choices: haemoglobin lets red light
-// pass some ten times farther than green (Bosschaart 2014, doi:10.1007/s10103-013-1446-7), so thin blood is bright and
-// thick blood dark.
+/// Fresh in a jet or a thin layer, in a drop, in a deep pool, and clotted. Design choices: haemoglobin lets red light
+/// pass some ten times farther than green (Bosschaart 2014, doi:10.1007/s10103-013-1446-7), so thin blood is bright and
+/// thick blood dark.
 constexpr BloodShade kBrightBlood{0.84, 0.03, 0.03, 0.97}, kDarkBlood{0.60, 0.012, 0.03, 0.95},
-    kDeepBlood{0.42, 0.006, 0.014, 0.97}, kClottedBlood{0.24, 0.06, 0.04, 0.62};
+    kDeepBlood{0.42, 0.006, 0.014, 0.97}, kClottedBlood{0.24, 0.06, 0.04, 0.62};  ///< in a deep pool, and clotted
 
-BloodShade mixed(const BloodShade& a, const BloodShade& b, double part);
+BloodShade mixed(const BloodShade& a, const BloodShade& b, double part);  ///< a with 0, b with 1, linear between
+/// For a vertex buffer. @param alpha  factor of that of the shade, 0 to 1
 PackedColour packedOf(const BloodShade& shade, double alpha = 1);
 
 /// 0: fresh, as it bleeds. From 1/2 when it has stopped towards 1 with age: half of the rest in 45 s (design choice).

@@ -31,7 +31,7 @@ void appendJet(const Wound& wound, const std::vector<Eigen::Vector3d>& line, con
 
 /// Blood that lies around a point of the wall.
 struct BloodFilm {
-  WallPlace at;
+  WallPlace at;       ///< its middle, on the wall
   double volume = 0;  ///< [m^3]
   double brown = 0;   ///< 0 to 1
   int number = 0;     ///< of the outline
@@ -45,6 +45,7 @@ struct Rivulet {
   double brown = 0;                 ///< 0 to 1
   bool arrived = false;             ///< the wall goes down no more
   int number = 0;                   ///< of its bends
+  /// Of the parabolic section along the whole length [m^3].
   double volume() const { return 2.0 / 3 * width * thickness * length; }
 };
 
@@ -57,12 +58,12 @@ struct BloodJet {
 /// Where the blood of all wounds is. Films, rivulets and pools together are what the wounds have lost. Rivulets from
 /// one full hollow to the next, the last ones, are not counted: blood passes through them.
 struct BloodFlow {
-  std::vector<BloodFilm> films;
-  std::vector<Rivulet> rivulets;
-  std::vector<Pool> pools;
-  std::vector<BloodJet> jets;
-  std::vector<Wound> elsewhere;  ///< wounds with no wall near them
-  std::size_t passing = 0;       ///< number of the last rivulets that are not counted
+  std::vector<BloodFilm> films;   ///< blood that stays where it came out or fell
+  std::vector<Rivulet> rivulets;  ///< those from hollow to hollow are the last ones
+  std::vector<Pool> pools;        ///< what stands in hollows
+  std::vector<BloodJet> jets;     ///< those that bleed briskly now
+  std::vector<Wound> elsewhere;   ///< wounds with no wall near them
+  std::size_t passing = 0;        ///< number of the last rivulets that are not counted
 };
 
 /// A function of wounds and wall at one moment. From each wound a film, then a rivulet that follows the steepest

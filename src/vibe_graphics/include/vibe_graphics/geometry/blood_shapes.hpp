@@ -24,15 +24,16 @@ void appendBlood(const SutureDrawing& scene, const BloodStyle& style, const Wall
 
 /// A film or pool of this volume [m^3] lying on a plane; what is drawn below the plane only closes the shape.
 struct Puddle {
-  Eigen::Vector3d centre;  ///< [m]
-  Eigen::Vector3d up;      ///< unit, away from the plane
-  Eigen::Vector3d creep;   ///< direction of creep along the plane; its length, 0 to 1, is the elongation
-  double volume = 0;       ///< [m^3]
-  double max_height = 0;   ///< maximum height [m]; a drop too small to reach it is a hemisphere
-  double max_radius = 0;   ///< maximum mean radius [m]; the volume beyond is not drawn
-  int number = 0;          ///< of the outline
-  PackedColour middle = 0, rim = 0;
+  Eigen::Vector3d centre;            ///< [m]
+  Eigen::Vector3d up;                ///< unit, away from the plane
+  Eigen::Vector3d creep;             ///< direction of creep along the plane; its length, 0 to 1, is the elongation
+  double volume = 0;                 ///< [m^3]
+  double max_height = 0;             ///< maximum height [m]; a drop too small to reach it is a hemisphere
+  double max_radius = 0;             ///< maximum mean radius [m]; the volume beyond is not drawn
+  int number = 0;                    ///< of the outline
+  PackedColour middle = 0, rim = 0;  ///< colours of the top, and of the outline on the plane
 };
+/// Appends a puddle; nothing if its volume or a maximum is 0.
 void appendPuddle(const Puddle& puddle, ColouredShape& shape);
 
 /// Mean radius of a puddle's outline [m].

@@ -7,8 +7,8 @@ namespace vibe::graphics {
 
 /// All points that are at most `radius` away from a segment [m].
 struct Capsule {
-  Eigen::Vector3d from, to;
-  double radius = 0;
+  Eigen::Vector3d from, to;  ///< ends of the segment [m]
+  double radius = 0;         ///< about the segment [m]
 };
 
 /// Capsules that cast about the same shadow as a mesh: one for each connected part, up to eight for a bent one. The

@@ -12,7 +12,7 @@ namespace vibe::graphics {
 /// keeps the order.
 class ColourMap {
  public:
-  static constexpr int kSteps = 256;
+  static constexpr int kSteps = 256;  ///< colours of a map
 
   /// Viridis between 0 and 1.
   ColourMap();
@@ -23,8 +23,10 @@ class ColourMap {
   /// value gets the colour of the lower end.
   PackedColour at(double value) const { return steps_[static_cast<std::size_t>(index(value))]; }
 
-  double min() const { return min_; }
+  double min() const { return min_; }  ///< value of the first colour, in the unit of the values
+  /// Value of the last colour; min() if the range is empty.
   double max() const { return min_ + (scale_ > 0 ? (kSteps - 1) / scale_ : 0); }
+  /// All colours, from that of min() to that of max().
   const std::array<PackedColour, kSteps>& steps() const { return steps_; }
 
  private:

@@ -31,7 +31,7 @@ constexpr PackedColour packed(double red, double green, double blue, double alph
 
 /// Triangles with vertices and colours. Shapes are appended, so that one mesh draws many.
 struct ColouredShape {
-  std::vector<MovingVertex> vertices;
+  std::vector<MovingVertex> vertices;    ///< in any order; triangles refer to them by number
   std::vector<PackedColour> colours;     ///< one per vertex
   std::vector<std::uint32_t> triangles;  ///< three vertex numbers each, counter-clockwise seen from outside
 

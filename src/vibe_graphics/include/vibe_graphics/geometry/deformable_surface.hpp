@@ -13,7 +13,7 @@ namespace vibe::graphics {
 /// in single precision, the result does not depend on earlier frames.
 class DeformableSurface {
  public:
-  explicit DeformableSurface(const TissueMesh& mesh);
+  explicit DeformableSurface(const TissueMesh& mesh);  ///< without places until the first update()
 
   /// @param positions  x y z per particle, finite [m]
   /// @return  the vertices that have changed

@@ -23,12 +23,12 @@ constexpr double kMaxFieldOfView = 2.96706;   ///< 170 degrees; a plane image of
 /// A camera whose image is a circle in the centre of a rectangle. Frame: z forward, x right, y down. Pixels: the centre
 /// of the first one is (0, 0), x right, y down.
 struct RoundCamera {
-  LensKind lens = LensKind::Equidistant;
-  double field_of_view = 2.443461;  ///< across the circle [rad]
-  int width = 640, height = 480;    ///< of the rectangle [px]
+  LensKind lens = LensKind::Equidistant;  ///< projection
+  double field_of_view = 2.443461;        ///< across the circle [rad]
+  int width = 640, height = 480;          ///< of the rectangle [px]
 
-  double radius() const { return 0.5 * (width < height ? width : height); }  ///< of the circle [px]
-  Eigen::Vector2d middle() const { return {0.5 * (width - 1), 0.5 * (height - 1)}; }
+  double radius() const { return 0.5 * (width < height ? width : height); }           ///< of the circle [px]
+  Eigen::Vector2d middle() const { return {0.5 * (width - 1), 0.5 * (height - 1)}; }  ///< centre of the circle [px]
 };
 
 /// Why this camera is impossible, as a sentence without capital and period; empty: it is possible.
@@ -67,8 +67,8 @@ struct LensSources {
   static constexpr double kRimSharpness = 0.6;  ///< of the whole; where it begins to show (media/endoscope.frag), 0.73
                                                 ///< source pixels per image pixel around, 1.06 along the radius; more
                                                 ///< beyond [1]; design choice
-  SquareSource whole;
-  SquareSource middle;  ///< size 0: there is none, and the whole has all the sharpness
+  SquareSource whole;                           ///< the whole field of view
+  SquareSource middle;                          ///< size 0: there is none, and the whole has all the sharpness
 };
 
 /// @param sharpness, max  as above
@@ -76,10 +76,10 @@ LensSources sourcesFor(const RoundCamera& camera, double sharpness, int max);
 
 /// Parameters of a sensor_msgs/CameraInfo.
 struct CameraNumbers {
-  std::string distortion_model;
-  std::vector<double> d;       ///< coefficients of the distortion, in the order of its model [1]
-  std::array<double, 9> k, r;  ///< camera matrix [px] and rotation [1], row by row
-  std::array<double, 12> p;    ///< projection matrix, 3 x 4, row by row [px]
+  std::string distortion_model;  ///< of ROS: "equidistant", or "plumb_bob" for a rectilinear lens
+  std::vector<double> d;         ///< coefficients of the distortion, in the order of its model [1]
+  std::array<double, 9> k, r;    ///< camera matrix [px] and rotation [1], row by row
+  std::array<double, 12> p;      ///< projection matrix, 3 x 4, row by row [px]
 };
 
 /// @param baseline  distance to the right of the first camera of a stereo pair [m]; 0: first or only camera

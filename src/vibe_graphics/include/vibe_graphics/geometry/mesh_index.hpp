@@ -9,10 +9,11 @@ namespace vibe::graphics {
 
 /// Vertices from `first` up to but excluding `last`: the part of a buffer that must be sent again.
 struct VertexSpan {
-  std::size_t first = 0, last = 0;
+  std::size_t first = 0, last = 0;  ///< vertex numbers; equal: none
 
   bool empty() const { return first >= last; }
-  std::size_t count() const { return empty() ? 0 : last - first; }
+  std::size_t count() const { return empty() ? 0 : last - first; }  ///< vertices of the span
+  /// Widens the span so that it has this vertex, and all between.
   void add(std::size_t vertex) {
     if (empty()) first = vertex, last = vertex + 1;
     first = std::min(first, vertex);
@@ -22,7 +23,7 @@ struct VertexSpan {
 
 /// The items of each group, group by group: items[first[g]] to items[first[g + 1]].
 struct Incidence {
-  std::vector<std::uint32_t> first, items;
+  std::vector<std::uint32_t> first, items;  ///< one more than there are groups; the items of all groups
 
   const std::uint32_t* begin(std::size_t group) const { return items.data() + first[group]; }
   const std::uint32_t* end(std::size_t group) const { return items.data() + first[group + 1]; }

@@ -23,8 +23,9 @@ struct MucosaVertex {
 };
 static_assert(sizeof(MucosaVertex) == 32, "the vertex buffer has no gaps");
 
+/// What mapMucosa() finds; of the mesh it was made of.
 struct MucosaMap {
-  std::vector<MucosaVertex> of_particle, of_vertex;
+  std::vector<MucosaVertex> of_particle, of_vertex;  ///< one per particle, and one per vertex of the drawn surface
   /// Per particle: stretch around the organ from which on the wall has no rugae, see foldHeight() [1].
   std::vector<float> smooth_stretch;
 };
@@ -52,7 +53,7 @@ float foldHeight(float stretch, float smooth);
 /// organ at rest. Where that direction is not defined (apex of the fundus) the square root of the ratio of areas.
 class FoldHeight {
  public:
-  FoldHeight(const TissueMesh& mesh, const MucosaMap& map);
+  FoldHeight(const TissueMesh& mesh, const MucosaMap& map);  ///< @param map  of this mesh
 
   /// @param positions  x y z per particle [m]
   /// @return  one height per vertex [m]

@@ -34,7 +34,9 @@ void appendBobbin(const Eigen::Vector3d& centre, const Eigen::Vector3d& axis, do
 // Appends the bodies of robot descriptions to a shape, centred at the pose, a cylinder along its z axis. All lengths
 // are in metres and positive.
 
+/// Appends a ball about the origin of the pose. @param radius  [m]
 void appendSphere(const Eigen::Isometry3d& pose, double radius, PackedColour colour, ColouredShape& shape);
+/// Appends a cylinder along z of the pose, half of it on either side. @param radius, length  [m]
 void appendCylinder(const Eigen::Isometry3d& pose, double radius, double length, PackedColour colour,
                     ColouredShape& shape);
 /// @param size  of the edges along x, y and z

@@ -13,23 +13,23 @@ enum class Colouring { Tissue, Region, Wall, Strain, Heat, Thickness };
 /// Regions and walls, in the order of their numbers in vibe_msgs/TissueTopology: colours that are distinct with any
 /// colour vision deficiency (Okabe & Ito 2008).
 const std::vector<PackedColour>& regionColours();
-const std::vector<PackedColour>& wallColours();
+const std::vector<PackedColour>& wallColours();  ///< one per WALL_*, likewise
 
 /// Colours of the vertices of an organ. Red, green and blue depend on the Colouring and are white for natural tissue;
 /// alpha encodes the effect of heat as media/tissue.frag draws it: 255 none, 170 mark, 85 burn scar, 0 deep burn. Only
 /// vertices of particles whose colour has changed are updated.
 class SurfaceColours {
  public:
-  explicit SurfaceColours(const TissueMesh& mesh);
+  explicit SurfaceColours(const TissueMesh& mesh);  ///< natural tissue, as if never heated; all white
 
   /// Takes effect with the next update.
   /// @param map  for the colourings with a number: strain [1], heat [J], thickness [m]
   void choose(Colouring colouring, const ColourMap& map);
-  Colouring colouring() const { return colouring_; }
+  Colouring colouring() const { return colouring_; }  ///< as chosen last
 
   /// @return  the vertices that have changed
   VertexSpan update(const TissueFrame& frame);
-  const std::vector<PackedColour>& colours() const { return colours_; }
+  const std::vector<PackedColour>& colours() const { return colours_; }  ///< one per vertex, as of the last update()
 
  private:
   PackedColour particleColour(std::size_t particle, const TissueFrame& frame) const;

@@ -8,20 +8,21 @@
 
 namespace vibe::graphics {
 
+/// What the colour of thread tells: its tension, nothing, or to which suture it belongs.
 enum class ThreadColour { Tension, One, PerSuture };
 
 /// How sutures are drawn.
 struct SutureStyle {
-  double thread_diameter = 0.32e-3;  ///< of 2-0 polypropylene (USP <861>: 0.300 to 0.339 mm) [m]
-  double emphasis = 1;               ///< factor for the thickness of thread and symbols [1]
-  ThreadColour colouring = ThreadColour::Tension;
-  ColourMap tension_map;  ///< [N]
-  PackedColour slack_colour = packed(0.93, 0.95, 1.0);
-  PackedColour one_colour = packed(0.12, 0.30, 0.85);
-  bool bites = true, ends = true, corners = true, links = true;
-  bool slack_bands = true;  ///< slack thread has bands
+  double thread_diameter = 0.32e-3;                     ///< of 2-0 polypropylene (USP <861>: 0.300 to 0.339 mm) [m]
+  double emphasis = 1;                                  ///< factor for the thickness of thread and symbols [1]
+  ThreadColour colouring = ThreadColour::Tension;       ///< of the thread
+  ColourMap tension_map;                                ///< [N]
+  PackedColour slack_colour = packed(0.93, 0.95, 1.0);  ///< of thread without tension, with ThreadColour::Tension
+  PackedColour one_colour = packed(0.12, 0.30, 0.85);   ///< of all thread, with ThreadColour::One
+  bool bites = true, ends = true, corners = true, links = true;  ///< symbols that are drawn; `ends` are T-tag and cinch
+  bool slack_bands = true;                                       ///< slack thread has bands
 
-  double threadRadius() const { return 0.5 * thread_diameter * emphasis; }
+  double threadRadius() const { return 0.5 * thread_diameter * emphasis; }  ///< as drawn, with the emphasis [m]
 };
 
 /// What is there, as an endoscope sees it: no symbols, no data.

@@ -10,7 +10,7 @@ namespace vibe::graphics {
 struct TubePoint {
   Eigen::Vector3d place;  ///< [m]
   double radius;          ///< there [m]
-  PackedColour colour;
+  PackedColour colour;    ///< there, blended to the next point
 };
 
 /// Appends a tube with round ends along the points. Every vertex has the distance of the local radius from the centre

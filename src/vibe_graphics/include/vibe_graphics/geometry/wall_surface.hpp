@@ -12,7 +12,7 @@ namespace vibe::graphics {
 
 /// A point on a wall.
 struct WallPlace {
-  std::uint32_t triangle = 0;
+  std::uint32_t triangle = 0;                         ///< in which it lies
   Eigen::Vector3d weight = Eigen::Vector3d::UnitX();  ///< barycentric [1]
   Eigen::Vector3d place = Eigen::Vector3d::Zero();    ///< [m]
   Eigen::Vector3d inward = Eigen::Vector3d::UnitZ();  ///< unit, into the lumen, smooth over the wall
@@ -42,11 +42,13 @@ class WallSurface {
   /// @param along  set to the place on the line: the number of the point before and the part of the way to the next
   std::optional<WallPlace> landing(const std::vector<Eigen::Vector3d>& line, double& along) const;
 
+  /// The place of a vertex, which has to be a corner of some triangle.
   WallPlace atVertex(std::uint32_t vertex) const;
 
   const std::vector<Eigen::Vector3d>& places() const { return places_; }    ///< of vertices [m]
   const std::vector<Eigen::Vector3d>& inwards() const { return inwards_; }  ///< unit, into the lumen, of vertices
-  std::size_t triangleCount() const { return triangles_.size() / 3; }
+  std::size_t triangleCount() const { return triangles_.size() / 3; }       ///< of those that were given
+  /// Three vertices; valid as long as this object.
   const std::uint32_t* corners(std::uint32_t triangle) const { return &triangles_[3 * std::size_t{triangle}]; }
   /// Triangles around a vertex.
   const Incidence& around() const { return around_; }

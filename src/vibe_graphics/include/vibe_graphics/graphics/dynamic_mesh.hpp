@@ -52,11 +52,12 @@ class DynamicMesh : private Ogre::MovableObject::Listener {
   /// Sets the box around all vertices; anything outside may be culled.
   void setBounds(const Ogre::AxisAlignedBox& bounds);
 
+  /// Draws with other materials from now on; if their number is another one, from the next setTopology() on.
   void setMaterials(std::vector<Ogre::MaterialPtr> materials);
-  void setVisible(bool visible);
+  void setVisible(bool visible);  ///< also of what is set later
 
-  std::size_t vertexCount() const { return vertex_count_; }
-  std::size_t triangleCount() const { return triangle_count_; }
+  std::size_t vertexCount() const { return vertex_count_; }      ///< as of setTopology()
+  std::size_t triangleCount() const { return triangle_count_; }  ///< as of setTopology()
 
  private:
   bool objectRendering(const Ogre::MovableObject* object, const Ogre::Camera* camera) override;

@@ -31,6 +31,7 @@ class EndoscopeLens : private Ogre::Viewport::Listener,
   /// Makes the parameters that shaders share; before a material that refers to them is loaded.
   static void provide();
 
+  /// Without effect until set(). @param viewport  may be deleted before this object
   explicit EndoscopeLens(Ogre::Viewport& viewport);
   ~EndoscopeLens() override;
   EndoscopeLens(const EndoscopeLens&) = delete;

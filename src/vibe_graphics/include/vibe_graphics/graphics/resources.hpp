@@ -22,7 +22,7 @@ std::string uniqueName(const std::string& what);
 /// removes it with dropMaterial().
 /// @throws std::runtime_error  there is no such material
 Ogre::MaterialPtr copyMaterial(const std::string& name);
-void dropMaterial(Ogre::MaterialPtr& material);
+void dropMaterial(Ogre::MaterialPtr& material);  ///< null afterwards; nothing happens if it is already
 
 /// Whether rviz has made the material for a mesh of a robot.
 bool isMeshOfRobot(const Ogre::Material& material);

@@ -18,7 +18,7 @@ class ShapeView {
   /// @param parent  parent node; must outlive this object
   ShapeView(Ogre::SceneNode& parent, Ogre::MaterialPtr material);
 
-  void show(const ColouredShape& shape);
+  void show(const ColouredShape& shape);  ///< in place of the former one; without problem (see problemOf())
   void clear();
 
  private:

@@ -19,7 +19,7 @@ namespace vibe::graphics {
 
 /// A text that faces the camera.
 struct SutureLabel {
-  std::string text;
+  std::string text;     ///< one line
   Ogre::Vector3 place;  ///< in the frame of the node [m]
 };
 
@@ -34,9 +34,11 @@ class SutureVisual {
   SutureVisual(const SutureVisual&) = delete;
   SutureVisual& operator=(const SutureVisual&) = delete;
 
+  /// Thread, bites, T-tags and cinches; in place of the former ones.
   void showSolids(const ColouredShape& shape) { solids_->show(shape); }
+  /// Self-luminous symbols, such as links; in place of the former ones.
   void showSigns(const ColouredShape& shape) { signs_->show(shape); }
-  void showBlood(const ColouredShape& shape) { blood_->show(shape); }
+  void showBlood(const ColouredShape& shape) { blood_->show(shape); }  ///< in place of the former blood
   /// @param height  of the letters [m]
   void showLabels(const std::vector<SutureLabel>& labels, double height);
   void clear();

@@ -47,8 +47,8 @@ class SceneSmoke {
 
 /// How tissue is drawn.
 struct TissueLook {
-  bool surface = true;
-  Colouring colouring = Colouring::Tissue;
+  bool surface = true;                             ///< the drawn surface of the organ
+  Colouring colouring = Colouring::Tissue;         ///< what its colour shows
   std::string map = "viridis";                     ///< see ColourMap
   double min = 0, max = 1;                         ///< values at the ends of the map, in the unit of the colouring
   Ogre::ColourValue inside{0.86F, 0.47F, 0.42F};   ///< natural colour of the mucosa
@@ -58,7 +58,7 @@ struct TissueLook {
   double relief = 0.6e-3;       ///< height of the fine relief, which is shading only [m]
   bool scars = true;            ///< show marks and burn scars
   bool smoke = true;            ///< under the light of the endoscope, show the smoke of the argon beam
-  bool particles = false;
+  bool particles = false;       ///< balls at the particles
   double particle_size = 3e-3;  ///< diameter of their balls [m]
   bool mesh = false;            ///< edges of the simulation mesh, whose particles determine the render surface
 };
@@ -82,13 +82,14 @@ class TissueVisual {
   void setFrame(const TissueFrame& frame);
   /// A frame that is not to be drawn, but smokes and lets marks age.
   void follow(const TissueFrame& frame);
-  void setLook(const TissueLook& look);
+  void setLook(const TissueLook& look);  ///< at once, also for the frame that is drawn
   /// Draws nothing until the next mesh.
   void clear();
 
-  bool hasFrame() const { return has_frame_; }
+  bool hasFrame() const { return has_frame_; }  ///< since the last setMesh() or clear(); something is drawn
   /// Drawn vertices of the last frame, as DeformableSurface has them; null: none yet.
   const std::vector<MovingVertex>* vertices() const { return has_frame_ ? &surface_->vertices() : nullptr; }
+  /// Of the drawn surface; 0: there is no mesh.
   std::size_t vertexCount() const { return surface_ ? surface_->vertices().size() : 0; }
 
  private:

@@ -14,9 +14,12 @@ constexpr double kMaxCoordinate = 1e6;
 class CloudField {
  public:
   CloudField() = default;
+  /// Of point 0, and bytes from point to point.
   CloudField(const std::uint8_t* first, std::size_t stride) : first_(first), stride_(stride) {}
 
-  bool present() const { return first_ != nullptr; }
+  bool present() const { return first_ != nullptr; }  ///< the cloud has this field
+  /// @tparam T  type of the field, trivially copyable; not checked. Only if the field is present, and for points of the
+  /// cloud.
   template <class T>
   T at(std::size_t i) const {
     T value;

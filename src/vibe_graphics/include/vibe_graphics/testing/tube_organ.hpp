@@ -10,10 +10,12 @@ namespace vibe::graphics::test {
 /// A straight organ along x: a tube of 200 mm without ends, triangles outward. Angle 0 is at z ("anterior"), a quarter
 /// turn towards y is the greater curvature.
 struct TubeOrgan {
-  std::uint32_t rows = 80, around = 64;
-  double length = 0.2, radius = 0.04;  ///< [m]
-  std::uint8_t region = 2;             // body
+  std::uint32_t rows = 80, around = 64;  ///< of particles: rows along it, particles around it
+  double length = 0.2, radius = 0.04;    ///< [m]
+  std::uint8_t region = 2;               ///< of all particles: REGION_BODY
 
+  /// Positions of all particles, row by row, x y z each [m].
+  /// @param wider, longer  factors of radius and length [1]
   std::vector<float> places(double wider = 1, double longer = 1) const {
     std::vector<float> result;
     for (std::uint32_t r = 0; r < rows; ++r)
@@ -26,13 +28,16 @@ struct TubeOrgan {
     return result;
   }
 
+  /// Angle of particle `a` of each row, from z towards y [rad].
   double angleOf(std::uint32_t a) const { return 2 * 3.14159265358979 * a / around; }
   double waist = 0;  ///< depth of a waist in the middle of the tube [m]
+  /// Radius of a row, with the waist [m].
   double radiusAt(std::uint32_t row) const {
     const double x = (row / (rows - 1.0) - 0.5) * length / 0.015;
     return radius - waist * std::exp(-x * x);
   }
 
+  /// The organ at rest, without a render surface; all four walls, no ends.
   TissueMesh mesh() const {
     TissueMesh mesh;
     mesh.revision = 1;
