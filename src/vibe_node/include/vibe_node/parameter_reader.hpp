@@ -10,12 +10,14 @@ namespace vibe::node {
 /// misspelt parameter must not silently leave a default in force.
 class ParameterReader {
  public:
-  explicit ParameterReader(const ros::NodeHandle& handle) : handle_(handle) {}
+  explicit ParameterReader(const ros::NodeHandle& handle) : handle_(handle) {}  ///< private, "~"
 
-  // Each leaves `value` as it is if the parameter is not set.
-  // @throws Error for a parameter of another type or out of range
+  /// Each leaves `value` as it is if the parameter is not set.
+  /// @throws Error for a parameter of another type or out of range
   void read(const std::string& name, std::string& value);
+  /// The same for true or false.
   void read(const std::string& name, bool& value);
+  /// The same for a whole number. @param low, high  range, both allowed
   void read(const std::string& name, int& value, int low, int high);
   /// @param unit  for the error only
   void read(const std::string& name, double& value, double low, double high, const std::string& unit);

@@ -15,6 +15,7 @@
 
 namespace vibe::test {
 
+/// Requests of the calling thread since it began; set it to 0 before what is to be counted.
 inline thread_local long allocations = 0;
 
 }  // namespace vibe::test

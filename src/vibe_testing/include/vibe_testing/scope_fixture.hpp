@@ -23,6 +23,7 @@ inline std::string scopeText() {
   return text.str();
 }
 
+/// The tool of that URDF.
 inline ToolModel loadScope() {
   return ToolModel::fromUrdf(scopeText(), "scope.urdf");
 }

@@ -6,6 +6,7 @@
 /// A ball around the origin that stands in for the organ, with the endoscope entering at its top and looking down.
 namespace vibe::test {
 
+/// The endoscope at the top of a ball of this radius [m]; insertion leads down.
 inline ScopeScene scopeFromAbove(double radius) {
   ScopeScene scope;
   scope.base_from_anatomy = false;
@@ -52,6 +53,7 @@ inline Organ openBall(double radius, int level, double thickness, double open_fr
   return organ;
 }
 
+/// A simulator with the endoscope of scopeText().
 inline World scopeWorld(const Scene& scene, Organ organ) {
   return World(scene, std::move(organ), scopeText());
 }

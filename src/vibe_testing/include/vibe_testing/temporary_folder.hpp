@@ -10,6 +10,7 @@ namespace vibe::test {
 /// A folder for the files of a test, removed with it.
 class TemporaryFolder {
  public:
+  /// @throws std::runtime_error if it cannot be made
   TemporaryFolder() {
     std::string name = (std::filesystem::temp_directory_path() / "vibe_test_XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
@@ -25,7 +26,7 @@ class TemporaryFolder {
     std::ofstream(path, std::ios::binary) << content;
     return path;
   }
-  const std::string& path() const { return path_; }
+  const std::string& path() const { return path_; }  ///< without a slash at the end
 
  private:
   std::string path_;

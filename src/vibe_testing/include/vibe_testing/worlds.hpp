@@ -78,11 +78,12 @@ inline Scene bareScene() {
 
 /// A simulator in one line: World world(scene, organ); world.run(1.0);
 struct World {
-  std::shared_ptr<const Model> model;
-  State state;
-  std::unique_ptr<Workspace> workspace;
-  std::vector<Event> events;
+  std::shared_ptr<const Model> model;    ///< not null, constant
+  State state;                           ///< after the last step; initialState() before
+  std::unique_ptr<Workspace> workspace;  ///< of the model
+  std::vector<Event> events;             ///< of all steps, in their order
 
+  /// @param urdf  text, for a scene with a scope  @param threads  of the workspace
   World(const Scene& scene, Organ organ, const std::string& urdf = "", int threads = 1) {
     auto made = std::make_shared<Model>();
     made->scene = scene;
@@ -93,13 +94,16 @@ struct World {
     workspace = std::make_unique<Workspace>(*model, threads);
   }
 
+  /// One step period of the scene.
   void step(const StepInput& input = {}) { vibe::step(*model, state, input, *workspace, events); }
 
+  /// Steps with the same input until `seconds` have passed, rounded to whole steps.
   void run(double seconds, const StepInput& input = {}) {
     const long steps = std::lround(seconds / model->scene.step_period);
     for (long i = 0; i < steps; ++i) step(input);
   }
 
+  /// Place of particle i [m].
   Eigen::Vector3d position(int i) const { return {state.x[i], state.y[i], state.z[i]}; }
 
   /// Greatest distance of a particle from its place at rest [m].
@@ -110,6 +114,7 @@ struct World {
     return max;
   }
 
+  /// Events of a kind in all steps so far.
   int count(Event::Kind kind) const {
     int n = 0;
     for (const Event& event : events) n += event.kind == kind ? 1 : 0;

@@ -23,8 +23,8 @@ namespace vibe::rviz_plugins {
 
 /// Pose of a frame in the fixed frame of rviz.
 struct FramePose {
-  Ogre::Vector3 position = Ogre::Vector3::ZERO;  ///< [m]
-  Ogre::Quaternion orientation = Ogre::Quaternion::IDENTITY;
+  Ogre::Vector3 position = Ogre::Vector3::ZERO;               ///< [m]
+  Ogre::Quaternion orientation = Ogre::Quaternion::IDENTITY;  ///< of the frame's axes; unit quaternion
 };
 
 /// Looks up where a frame is.

@@ -6,7 +6,7 @@
 
 namespace vibe::rviz_plugins {
 
-constexpr int kJointCount = 7;
+constexpr int kJointCount = 7;  ///< length of arrays indexed by DriveJoint
 /// In the order of StepInput.
 enum DriveJoint : int { Insertion, Rotation, TipUpDown, TipLeftRight, HelixAdvance, HelixRotation, NeedleDriver };
 using Joints = std::array<double, kJointCount>;  ///< [m] or [rad]
@@ -14,20 +14,22 @@ using Joints = std::array<double, kJointCount>;  ///< [m] or [rad]
 /// Names in the URDF and in messages.
 const std::array<std::string, kJointCount>& driveJointNames();
 
+/// Factor of the speed of keys: DriveSpeeds.
 enum class DriveGear { Slow, Normal, Fast };
 
 /// What a key does.
 struct KeyBinding {
+  /// What `index` and `sign` of a binding mean.
   enum class Kind {
     Joint,    ///< moves the joint `index` in the direction `sign` while it is held
     Button,   ///< presses the button `index` of scope/buttons
     Gear,     ///< chooses the speed `index` from now on
     SlowDown  ///< the slow speed while it is held
   };
-  int key;  ///< Qt::Key
-  Kind kind;
-  int index;
-  int sign;
+  int key;    ///< Qt::Key
+  Kind kind;  ///< joint, button or speed
+  int index;  ///< DriveJoint, number in scope/buttons, or DriveGear; 0 for SlowDown
+  int sign;   ///< 1 or -1 of a joint; 0 otherwise
 };
 
 /// All keys that drive. A key occurs once. Single letters, digits, arrows, space and Shift only: shortcuts of rviz with
@@ -42,22 +44,24 @@ struct KeyRow {
     int key;            ///< Qt::Key; 0: only a label, such as "wheel"
     std::string label;  ///< on the key
   };
-  std::vector<Cap> caps;
-  std::string text;
+  std::vector<Cap> caps;    ///< the keys, in the order in which they are drawn
+  std::string text;         ///< what they do, in the same order
   bool ends_group = false;  ///< a gap follows
 };
+/// All rows in the order of the table; some keys are those of the tool, not of the drive: next view, help, leave.
 const std::vector<KeyRow>& keyRows();
 
 /// Where a player stands.
 struct DriveSituation {
-  Joints joints{};
+  Joints joints{};       ///< as they are now [m] or [rad]
   double closed = 0;     ///< upper limit of the needle driver [m]
   bool gas_on = false;   ///< the insufflator's button is down
   double pressure = 0;   ///< gauge, of the gas [Pa]
   bool touches = false;  ///< the tool touches tissue
   bool holds = false;    ///< the helix holds tissue
+  /// There is a needle with a thread; it is on the arm, or else the exchange holds it.
   bool needle_loaded = true, needle_on_arm = true;
-  unsigned marks = 0;
+  unsigned marks = 0;        ///< particles of the wall that are marked or worse
   unsigned set_bites = 0;    ///< of the set at work
   unsigned sets_tagged = 0;  ///< with a T-tag, not cinched
   unsigned sets_done = 0;    ///< cinched
@@ -68,7 +72,8 @@ struct FirstStep {
   int number = 0;    ///< from 1
   std::string text;  ///< one sentence with the key to press
 };
-constexpr int kFirstSteps = 12;
+constexpr int kFirstSteps = 12;  ///< numbers of FirstStep
+/// What to do next in a situation.
 FirstStep firstStep(const DriveSituation& now);
 
 }  // namespace vibe::rviz_plugins

@@ -30,9 +30,9 @@ class SmoothAxis {
   /// Where the axis comes to rest if it brakes from now on.
   double stoppingPoint() const;
 
-  double position() const { return position_; }
-  double velocity() const { return velocity_; }
-  const AxisLimits& limits() const { return limits_; }
+  double position() const { return position_; }         ///< [m] or [rad]
+  double velocity() const { return velocity_; }         ///< [m/s] or [rad/s]
+  const AxisLimits& limits() const { return limits_; }  ///< as of rest()
 
  private:
   AxisLimits limits_;
@@ -48,7 +48,7 @@ class SmoothAxis {
 struct JointLimit {
   double lower = 0, upper = 0, velocity = 0;  ///< [m] and [m/s], or [rad] and [rad/s]
 };
-using JointLimits = std::array<JointLimit, kJointCount>;
+using JointLimits = std::array<JointLimit, kJointCount>;  ///< by DriveJoint
 
 /// How fast keys and mouse move the joints. The limits of the joints apply on top.
 struct DriveSpeeds {
@@ -63,14 +63,16 @@ class ScopeDrive {
  public:
   /// Called when a key of a button goes down or comes up.
   using ButtonChange = std::function<void(int button, bool down)>;
+  /// At rest, no keys down. @param button_changed  has to be callable
   explicit ScopeDrive(ButtonChange button_changed) : button_changed_(std::move(button_changed)) {}
 
   /// Begins at rest at the present position of the joints, which need not be those of before. Keys stay as they are.
   void begin(const JointLimits& limits, const Joints& present);
-  void setSpeeds(const DriveSpeeds& speeds) { speeds_ = speeds; }
+  void setSpeeds(const DriveSpeeds& speeds) { speeds_ = speeds; }  ///< from now on
 
-  // A key that is down already, or up already, changes nothing, nor does one that does not drive.
+  /// @param key  Qt::Key; one that is down already or does not drive changes nothing
   void keyDown(int key);
+  /// @param key  Qt::Key; one that is up already or does not drive changes nothing
   void keyUp(int key);
   /// All keys come up; moving joints brake. Motion that the mouse has asked for ends too.
   void releaseAll();
@@ -78,13 +80,14 @@ class ScopeDrive {
   /// The mouse asks for a displacement of a joint, before the factor of slow motion; ignored while a key moves it.
   void displace(int joint, double by);
 
+  /// Moves the joints by what the keys that are down and the mouse ask for. @param seconds  0 or more
   void advance(double seconds);
 
-  Joints joints() const;
-  bool atRest() const;
-  DriveGear gear() const;
-  const std::set<int>& keysDown() const { return down_; }
-  const JointLimits& limits() const { return limits_; }
+  Joints joints() const;   ///< at present [m] or [rad]
+  bool atRest() const;     ///< no joint moves
+  DriveGear gear() const;  ///< Slow while a key for that is held, otherwise as chosen last
+  const std::set<int>& keysDown() const { return down_; }  ///< that drive, as Qt::Key
+  const JointLimits& limits() const { return limits_; }    ///< as of begin()
 
  private:
   ButtonChange button_changed_;

@@ -13,15 +13,15 @@ namespace vibe::rviz_plugins {
 
 /// What to show to a person who drives.
 struct DriveView {
-  bool driving = false;  ///< joints are being published
-  std::string trouble;   ///< why nothing moves, or no button works, in one sentence; empty if all is well
-  FirstStep step;        ///< the next thing to do; without a simulator number 0
-  std::set<int> keys_down;
-  DriveGear gear = DriveGear::Normal;
-  Joints joints{};  ///< NaN: unknown
-  JointLimits limits{};
-  std::array<bool, 6> buttons{};              ///< in the order of scope/buttons
-  double force = 0;                           ///< of the tissue on the tool [N]; NaN: unknown
+  bool driving = false;                ///< joints are being published
+  std::string trouble;                 ///< why nothing moves, or no button works, in one sentence; empty if all is well
+  FirstStep step;                      ///< the next thing to do; without a simulator number 0
+  std::set<int> keys_down;             ///< that drive, as Qt::Key
+  DriveGear gear = DriveGear::Normal;  ///< of the keys
+  Joints joints{};                     ///< NaN: unknown
+  JointLimits limits{};                ///< by DriveJoint; all 0 before they are known
+  std::array<bool, 6> buttons{};       ///< in the order of scope/buttons
+  double force = 0;                    ///< of the tissue on the tool [N]; NaN: unknown
   vibe_msgs::ProcedureState::ConstPtr state;  ///< null: not come yet
 };
 
@@ -42,11 +42,14 @@ class ManualDrive {
   void start(const std::string& name_space);
   /// Releases everything and gives the buttons back; call tick() until isSilent().
   void stop();
-  bool isSilent() const;
+  bool isSilent() const;  ///< stopped, and the buttons are given back; joints may still brake
 
-  void setSpeeds(const DriveSpeeds& speeds);
+  void setSpeeds(const DriveSpeeds& speeds);  ///< of keys and mouse, from now on
+  /// See ScopeDrive::keyDown(). @param key  Qt::Key
   void keyDown(int key);
+  /// See ScopeDrive::keyUp(). @param key  Qt::Key
   void keyUp(int key);
+  /// All keys come up, as when the window loses the focus; moving joints brake.
   void releaseAll();
   /// See ScopeDrive::displace() [m] or [rad].
   void displace(int joint, double by);
@@ -54,7 +57,7 @@ class ManualDrive {
   /// Ten times a second.
   void tick();
 
-  DriveView view() const;
+  DriveView view() const;  ///< as of now
 
  private:
   class Parts;

@@ -28,7 +28,7 @@ struct AxisFit {
   std::vector<std::string> warnings;     ///< sentences with their remedies
 };
 
-constexpr std::size_t kFewestStops = 5;
+constexpr std::size_t kFewestStops = 5;  ///< with different slides, that fitAxis() needs
 
 /// Fits a SlideAxis to stops by least squares; along and across the axis have residuals, and so standard deviations, of
 /// their own. A stop whose residual is not explained by the others (deleted Studentised residual, 1 % over all stops;
@@ -50,11 +50,11 @@ struct ScaleTrust {
 };
 
 struct MotionFit {
-  SlideAxis axis;                ///< slide 0 is at the first sample; perspective 0
-  double rms_across = 0;         ///< 1.48 times the median distance from the line [px]
-  double scale_uncertainty = 0;  ///< relative standard deviation of pixels_per_metre, trust included [1]
-  double size_change = 0;        ///< relative change of the marker's size from one end to the other [1]
-  std::vector<std::string> warnings;
+  SlideAxis axis;                     ///< slide 0 is at the first sample; perspective 0
+  double rms_across = 0;              ///< 1.48 times the median distance from the line [px]
+  double scale_uncertainty = 0;       ///< relative standard deviation of pixels_per_metre, trust included [1]
+  double size_change = 0;             ///< relative change of the marker's size from one end to the other [1]
+  std::vector<std::string> warnings;  ///< sentences with their remedies
 };
 
 /// Fits an axis to a free motion of the instrument: line through the samples, scale from the known size of the marker.

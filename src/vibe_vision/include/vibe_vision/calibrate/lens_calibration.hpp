@@ -14,8 +14,8 @@ namespace vibe::vision {
 
 /// Chessboard for the calibration of the lens, counted by its inner corners as OpenCV does.
 struct BoardSpec {
-  int columns = 9, rows = 6;
-  double square = 5e-3;  ///< side of a square [m]
+  int columns = 9, rows = 6;  ///< inner corners along a row, and rows of them
+  double square = 5e-3;       ///< side of a square [m]
 };
 
 /// One image of the chessboard.
@@ -31,16 +31,16 @@ std::optional<std::vector<Eigen::Vector2d>> findBoard(const ImageView& image, co
 
 /// What came of one image.
 struct BoardFit {
-  std::string name;
-  double rms = 0;   ///< distance of the corners from where the model sees them [px]
-  double tilt = 0;  ///< of the board against the sensor [rad]
+  std::string name;  ///< of the image
+  double rms = 0;    ///< distance of the corners from where the model sees them [px]
+  double tilt = 0;   ///< of the board against the sensor [rad]
 };
 
 struct LensCalibration {
   CameraModel camera;                 ///< with reprojection_rms, over all corners
   std::array<double, 4> deviation{};  ///< standard deviations of fx, fy, cx, cy [px]
   std::array<bool, 5> estimated{};    ///< of the distortion; coefficients that the images do not show are 0
-  std::vector<BoardFit> views;
+  std::vector<BoardFit> views;        ///< one per image, in the order given
   double coverage = 0;                ///< share of the image in which corners were seen
   std::vector<std::string> warnings;  ///< sentences with their remedies
 };

@@ -35,6 +35,7 @@ struct MarkerSearch {
 /// better may choose among them.
 class MarkerFinder {
  public:
+  /// @throws Error unless both scales are above 0 and the lowest is not above the highest
   MarkerFinder(const MarkerDesign& design, const MarkerSearch& search);
   ~MarkerFinder();
   MarkerFinder(const MarkerFinder&) = delete;
@@ -54,7 +55,7 @@ class MarkerFinder {
 
 /// The marker of an instrument in one image.
 struct LocatedMarker {
-  bool found = false;
+  bool found = false;                               ///< false: the numbers below say nothing
   std::string problem;                              ///< why it was not found; a sentence
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< centre, undistorted [px]
   double pixels_per_metre = 0;                      ///< from the size at which it is seen [px/m]

@@ -13,6 +13,7 @@ namespace vibe::vision {
 /// frames, it never lags, and memory stays constant. All functions may be called from any thread.
 class LatestFrame {
  public:
+  /// Gives a frame; one that was not taken is overwritten, and counts as dropped.
   void put(Frame frame);
   /// No frame comes any more: take() does not wait for one.
   void close();
@@ -33,6 +34,7 @@ class LatestFrame {
 /// and memory stays constant. One thread takes; the other functions may be called from any.
 class Capture {
  public:
+  /// Begins to read at once. @param source  its statistics() and status() may be called from any thread
   explicit Capture(std::unique_ptr<FrameSource> source);
   ~Capture();  ///< stops the thread; waits for a read or an opening of the camera under way
   Capture(const Capture&) = delete;
@@ -41,9 +43,9 @@ class Capture {
   /// The newest frame that was not taken yet. Gone is told after the timeout, End after the last frame was taken.
   /// @param timeout [s]
   ReadResult take(Frame& frame, double timeout);
-  std::uint64_t dropped() const;  ///< overwritten before they were taken
-  SourceStatistics statistics() const;
-  std::string status() const;
+  std::uint64_t dropped() const;        ///< overwritten before they were taken
+  SourceStatistics statistics() const;  ///< of the source
+  std::string status() const;           ///< one line for people: that of the source, or why the thread has ended
 
  private:
   struct Impl;

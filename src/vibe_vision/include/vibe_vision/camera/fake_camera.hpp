@@ -19,8 +19,8 @@ struct FrameRing {
   std::vector<std::vector<SyntheticTruth>> truth;  ///< by picture and instrument
 
   struct Turn {
-    std::size_t index = 0;
-    bool is_backward = false;
+    std::size_t index = 0;     ///< of the picture, in `frames`
+    bool is_backward = false;  ///< the pictures run from the last to the first
   };
   /// Of frame k since the beginning.
   Turn turnOf(std::uint64_t k) const;
@@ -32,10 +32,10 @@ std::shared_ptr<const FrameRing> renderRing(const SyntheticScene& scene, int fra
 
 struct FakeCameraOptions {
   std::string address = "127.0.0.1";  ///< of a network interface of this computer; one camera per address
-  std::string serial = "ViBE1";
-  double lost_ratio = 0;       ///< share of the packets that are not sent
-  double clock_ahead = -1000;  ///< camera's clock less Unix time [s]
-  double clock_drift = 0;      ///< by which it is fast [s/s]
+  std::string serial = "ViBE1";       ///< that the camera states
+  double lost_ratio = 0;              ///< share of the packets that are not sent
+  double clock_ahead = -1000;         ///< camera's clock less Unix time [s]
+  double clock_drift = 0;             ///< by which it is fast [s/s]
   /// Unix times at which the picture jumps between the first and the second of the ring, ascending; empty: all pictures
   /// are shown in turn [s].
   std::vector<double> blinks;

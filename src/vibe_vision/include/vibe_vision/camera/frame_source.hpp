@@ -13,9 +13,10 @@ struct SourceStatistics {
   std::uint64_t lost = 0;        ///< gaps of the camera's sequence
   std::uint64_t incomplete = 0;  ///< packets missing: thrown away
   std::uint64_t unreadable = 0;  ///< pixel format, size or file that cannot be read: thrown away
-  std::uint64_t reconnects = 0;
+  std::uint64_t reconnects = 0;  ///< times that a camera was opened again after it had been gone
 };
 
+/// What came of waiting for a frame.
 enum class ReadResult {
   Frame,    ///< a new one
   Timeout,  ///< none yet; call again
@@ -29,7 +30,7 @@ class FrameSource {
   virtual ~FrameSource() = default;
   /// Waits for the next frame. @param timeout [s]; opening a camera may take some seconds longer
   virtual ReadResult read(Frame& frame, double timeout) = 0;
-  virtual SourceStatistics statistics() const = 0;
+  virtual SourceStatistics statistics() const = 0;  ///< since the source was made; from any thread
   /// One line for people: what it is, or what is wrong with it and the remedy.
   virtual std::string status() const = 0;
 };
@@ -52,11 +53,11 @@ struct SourceOptions {
   double gain = -1;    ///< [dB]; -1: leave as it is
   bool paced = false;  ///< recordings only: deliver in real time instead of as fast as they are read
   bool loop = false;   ///< recordings only
-  StampPoint stamp_point = StampPoint::ExposureStart;
-  CameraClock clock = CameraClock::Auto;  ///< GigE and USB3 only
-  std::string pixel_format;               ///< GigE and USB3 only: of the camera, e.g. "Mono12p"; empty: Mono8 if it can
-  int packet_size = 0;                    ///< GigE only [bytes]; 0: the largest that the network lets through
-  int realtime_priority = 0;              ///< GigE and USB3 only: of the receiving thread, 1 to 99; 0: ordinary
+  StampPoint stamp_point = StampPoint::ExposureStart;  ///< of the camera's own stamps; V4L2, GigE and USB3 only
+  CameraClock clock = CameraClock::Auto;               ///< GigE and USB3 only
+  std::string pixel_format;   ///< GigE and USB3 only: of the camera, e.g. "Mono12p"; empty: Mono8 if it can
+  int packet_size = 0;        ///< GigE only [bytes]; 0: the largest that the network lets through
+  int realtime_priority = 0;  ///< GigE and USB3 only: of the receiving thread, 1 to 99; 0: ordinary
 };
 
 /// Opens one by its address:

@@ -25,7 +25,7 @@ struct SlideAxis {
   /// zero where it is not known.
   Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Zero();
 
-  bool isCalibrated() const { return pixels_per_metre > 0; }
+  bool isCalibrated() const { return pixels_per_metre > 0; }  ///< false: nothing can be tracked along it
 };
 
 double alongOf(const SlideAxis& axis, double slide);         ///< [m] -> [px]
@@ -47,12 +47,12 @@ struct MotionLimits {
 
 /// One instrument: a marker that slides along an axis.
 struct InstrumentConfig {
-  std::string name;  ///< e.g. "helix", "needle_driver"
-  MarkerDesign marker;
-  SlideAxis axis;
-  double lower = 0, upper = 0;      ///< slide beyond which nothing is looked for [m]
-  double lateral_tolerance = 5e-4;  ///< by which the marker's centre may leave the axis [m]
-  MotionLimits motion;
+  std::string name;                               ///< e.g. "helix", "needle_driver"
+  MarkerDesign marker;                            ///< what to look for
+  SlideAxis axis;                                 ///< where; not calibrated only with AxisRule::Optional
+  double lower = 0, upper = 0;                    ///< slide beyond which nothing is looked for [m]
+  double lateral_tolerance = 5e-4;                ///< by which the marker's centre may leave the axis [m]
+  MotionLimits motion;                            ///< what is possible for the hand that holds it
   std::string slide_joint;                        ///< name in JointState, e.g. "helix_advance"
   std::string rotation_joint;                     ///< empty for a ring
   double slide_sign = 1, slide_offset = 0;        ///< joint = sign * slide + offset [m]
@@ -72,14 +72,14 @@ enum class AxisRule { Required, Optional };
 
 /// Everything the tracker needs to know about a rig. docs/vision.md, "Configuration".
 struct VisionConfig {
-  CameraModel camera;
-  PixelNoise noise;
+  CameraModel camera;  ///< lens and sensor
+  PixelNoise noise;    ///< of the sensor
   /// Of the response: a pixel shows 255 (light / 255)^(1 / gamma). Not given: 1, or what a marker tells that 1 does not
   /// explain [1].
   std::optional<double> gamma;
-  double blur = 0.6;  ///< standard deviation of the point spread function in focus [px]
-  GateConfig gates;
-  std::vector<InstrumentConfig> instruments;
+  double blur = 0.6;                          ///< standard deviation of the point spread function in focus [px]
+  GateConfig gates;                           ///< of all instruments
+  std::vector<InstrumentConfig> instruments;  ///< of the rig; parse() takes 1 to kMaxInstruments
 
   /// @param address  file, or package:// address
   /// @throws Error with file, line, key and remedy

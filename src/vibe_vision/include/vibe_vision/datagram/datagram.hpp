@@ -14,7 +14,7 @@ namespace vibe::vision {
 
 /// One coordinate of an instrument as the predictor knows it at the stamp of its datagram [m] or [rad], and seconds.
 struct CoordinateSample {
-  double position = 0, velocity = 0, acceleration = 0, jerk = 0;
+  double position = 0, velocity = 0, acceleration = 0, jerk = 0;  ///< [m, m/s, m/s^2, m/s^3] or the same of [rad]
   /// Upper triangle of their covariance, row by row: pp, pv, pa, pj, vv, va, vj, aa, aj, jj.
   std::array<float, 10> covariance{};
 };
@@ -39,8 +39,8 @@ struct TrackDatagram {
   std::vector<InstrumentSample> instruments;  ///< in the order of the configuration, at most kMaxInstruments
 };
 
-constexpr std::uint16_t kDatagramVersion = 1;
-constexpr std::size_t kMaxInstruments = 8;
+constexpr std::uint16_t kDatagramVersion = 1;     ///< in each datagram; decode() takes no other
+constexpr std::size_t kMaxInstruments = 8;        ///< in one datagram
 constexpr std::size_t kDatagramHeader = 40;       ///< [bytes]
 constexpr std::size_t kDatagramInstrument = 152;  ///< [bytes]
 
@@ -59,6 +59,7 @@ class UdpSender {
   UdpSender(const UdpSender&) = delete;
   UdpSender& operator=(const UdpSender&) = delete;
 
+  /// Sends one datagram at once, or counts it as failed.
   void send(const std::vector<std::uint8_t>& bytes);
   std::uint64_t sent() const { return sent_; }      ///< datagrams that the system took
   std::uint64_t failed() const { return failed_; }  ///< datagrams that the system did not take

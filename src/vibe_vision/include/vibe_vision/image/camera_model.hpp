@@ -13,7 +13,7 @@ struct CameraModel {
   std::array<double, 5> distortion{};  ///< k1, k2, p1, p2, k3, of OpenCV's model [1]
   double reprojection_rms = 0;         ///< residual of the calibration [px]; 0: not calibrated
 
-  bool isDistorted() const;
+  bool isDistorted() const;  ///< any coefficient is not 0
 };
 
 /// Pixel of the image as a camera without distortion, with the same matrix, would see it.

@@ -14,7 +14,7 @@ struct RingDesign {
 
 /// Black from `begin` to `end`, distances from the sleeve's centre along its axis [m].
 struct Bar {
-  double begin = 0, end = 0;
+  double begin = 0, end = 0;  ///< along the axis from the sleeve's centre, `begin` below `end` [m]
 };
 
 /// A printed sleeve around a rod: bars around the whole rod give the slide, a helical stripe the rotation. u is the
@@ -35,7 +35,7 @@ struct SleeveDesign {
   // pi
 };
 
-using MarkerDesign = std::variant<RingDesign, SleeveDesign>;
+using MarkerDesign = std::variant<RingDesign, SleeveDesign>;  ///< what the tracker knows to look for
 
 /// The sleeve that ships: 3 mm rod.
 SleeveDesign defaultSleeve();

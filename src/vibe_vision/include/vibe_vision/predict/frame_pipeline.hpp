@@ -14,25 +14,26 @@ namespace vibe::vision {
 
 /// What one frame says about the joints of one instrument: as measured, and as the predictors know them.
 struct JointSample {
-  LostReason reason = LostReason::NoFrame;
-  bool has_rotation = false;
+  LostReason reason = LostReason::NoFrame;       ///< None: tracked
+  bool has_rotation = false;                     ///< the configuration names a joint for it
   double slide = 0, rotation = 0;                ///< measured [m], [rad]; NaN if lost or not shown
   double variance[2] = {0, 0};                   ///< of slide and rotation [m^2], [rad^2]
   double covariance = 0;                         ///< of slide with rotation [m rad]
   MotionEstimate slide_motion, rotation_motion;  ///< at the stamp of the frame; only if tracked
 
-  bool tracked() const { return reason == LostReason::None; }
+  bool tracked() const { return reason == LostReason::None; }  ///< false: `reason` says why not
 };
 
 /// Turns measurements of an instrument into positions of its joints, and predicts these. Joint = sign * measured value
 /// + offset, as configured.
 class InstrumentPredictor {
  public:
+  /// Knows no motion yet.
   explicit InstrumentPredictor(const InstrumentConfig& instrument);
 
   /// Takes a measurement. @param time  of the frame [s]
   JointSample update(double time, const Measurement& measurement);
-  void reset();
+  void reset();  ///< forgets the motion, for a clock that was set back
 
  private:
   double slide_sign_, slide_offset_, rotation_sign_, rotation_offset_;
@@ -42,18 +43,20 @@ class InstrumentPredictor {
 
 /// Where the time of one frame went [s]; fields as in vibe_msgs/InstrumentTrackArray.
 struct StageTimes {
-  double transport = 0, wait = 0, track = 0, publish = 0;
+  double transport = 0, wait = 0, track = 0, publish = 0;  ///< before, in and after the tracker, in this order
 };
 
 /// Everything about one frame.
 struct FrameResult {
-  Frame frame;
-  Measurements measurements;
-  std::vector<JointSample> samples;
-  StageTimes times;       ///< publish is filled by the publisher
-  double tracked_at = 0;  ///< end of tracking [s]
+  Frame frame;                       ///< as it came; without image after reportSilence()
+  Measurements measurements;         ///< of the tracker, one per instrument
+  std::vector<JointSample> samples;  ///< of the joints, one per instrument
+  StageTimes times;                  ///< publish is filled by the publisher
+  double tracked_at = 0;             ///< end of tracking [s]
 };
 
+/// What a frame gives to send; sequence and age are left 0.
+/// @param samples  one per instrument, as measurements
 TrackDatagram makeDatagram(const Frame& frame, const Measurements& measurements,
                            const std::vector<JointSample>& samples);
 
@@ -74,11 +77,11 @@ class FramePipeline {
   const FrameResult* process(const Frame& frame);
   /// All instruments lost: no frame. Stamps continue those of the frames.
   const FrameResult& reportSilence();
-  void reset();
+  void reset();  ///< forgets places and motions; the next stamp has to be later than the last all the same
 
-  const VisionConfig& config() const { return tracker_.config(); }
-  const UdpSender* sender() const { return sender_.get(); }
-  std::uint64_t disordered() const { return disordered_; }
+  const VisionConfig& config() const { return tracker_.config(); }  ///< as it was given
+  const UdpSender* sender() const { return sender_.get(); }         ///< for its counts; null: no datagrams are sent
+  std::uint64_t disordered() const { return disordered_; }          ///< frames that process() refused, for their stamps
 
  private:
   Options options_;

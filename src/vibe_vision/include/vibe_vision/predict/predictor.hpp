@@ -23,14 +23,14 @@ Eigen::Matrix4d jerkNoise(double dt, const JerkModel& jerk);
 /// Position, velocity, acceleration and jerk of one coordinate at a time, with their covariance. Units: those of the
 /// coordinate ([m] or [rad]) and seconds.
 struct MotionEstimate {
-  double time = 0;  ///< [s]
-  Eigen::Vector4d mean = Eigen::Vector4d::Zero();
-  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+  double time = 0;                                       ///< [s]
+  Eigen::Vector4d mean = Eigen::Vector4d::Zero();        ///< position, velocity, acceleration, jerk
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of the same, in this order
 };
 
 /// What the filter believes about a motion that it has not seen.
 struct MotionPrior {
-  JerkModel jerk;
+  JerkModel jerk;       ///< that disturbs the motion
   double speed;         ///< standard deviation of the first velocity [unit/s], > 0
   double acceleration;  ///< standard deviation of the first acceleration [unit/s^2], > 0
   double max_gap;       ///< without a measurement after which the filter starts anew [s], > 0

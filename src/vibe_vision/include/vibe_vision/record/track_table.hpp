@@ -19,6 +19,7 @@ class TrackTable {
  public:
   /// Opens the file and writes the first line. @throws Error if it cannot be written
   TrackTable(const std::string& file, const VisionConfig& config);
+  /// Adds a row per instrument. @param measurements  in the order of the configuration
   void add(const Frame& frame, const Measurements& measurements);
   /// Writes what is left. @throws Error if the disk is full
   void close();
@@ -32,10 +33,10 @@ class TrackTable {
 /// What became of the frames.
 class TrackSummary {
  public:
-  explicit TrackSummary(const VisionConfig& config);
+  explicit TrackSummary(const VisionConfig& config);  ///< for its instruments
   /// @param seconds  of processor time that tracking this frame took
   void add(const Measurements& measurements, double seconds);
-  std::uint64_t frames() const { return seconds_.size(); }
+  std::uint64_t frames() const { return seconds_.size(); }  ///< added so far
   /// Lines for people: per instrument the share that was tracked and why the rest was not; time per frame.
   std::string text() const;
 

@@ -8,16 +8,17 @@
 
 namespace vibe::vision {
 
+/// Size of a page, upright: A4 is 210 x 297 mm, Letter 8.5 x 11 inches.
 enum class Paper { A4, Letter };
 
 struct SheetOptions {
-  Paper paper = Paper::A4;
+  Paper paper = Paper::A4;        ///< of all pages
   int copies = 3;                 ///< of each marker
   double paper_thickness = 1e-4;  ///< [m]; 80 g/m^2 office paper. Sleeves are shorter by pi times it
   double overlap = 2.5e-3;        ///< of a sleeve, glued under its other end [m]
   bool markers = true;            ///< the pages with the markers of the configuration
   bool board = true;              ///< the page with the chessboard
-  BoardSpec board_spec;
+  BoardSpec board_spec;           ///< for the chessboard
 };
 
 /// A piece of a page, in metres from the page's upper left corner, x to the right and y down.
@@ -30,13 +31,13 @@ struct SheetItem {
 };
 
 struct SheetPage {
-  std::vector<SheetItem> items;
+  std::vector<SheetItem> items;  ///< in the order in which they are drawn
 };
 
 /// A page as grey values, row by row: 0 black, 255 white.
 struct SheetRaster {
-  int width = 0, height = 0;
-  std::vector<std::uint8_t> value;
+  int width = 0, height = 0;        ///< [px]
+  std::vector<std::uint8_t> value;  ///< width times height
 };
 
 /// Pages with all markers of a configuration at their true size, to be printed at 100 %: cut lines, names, the
@@ -46,9 +47,9 @@ class MarkerSheet {
   /// @throws Error if something does not fit on the paper
   MarkerSheet(const VisionConfig& config, const SheetOptions& options);
 
-  const std::vector<SheetPage>& pages() const { return pages_; }
-  double width() const;   ///< of the paper [m]
-  double height() const;  ///< [m]
+  const std::vector<SheetPage>& pages() const { return pages_; }  ///< those with markers first, then the chessboard
+  double width() const;                                           ///< of the paper [m]
+  double height() const;                                          ///< [m]
 
   /// One file with all pages. @throws Error if it cannot be written
   void writePdf(const std::string& file) const;

@@ -8,7 +8,7 @@
 namespace vibe::vision {
 
 struct RenderedFrame {
-  Frame frame;
+  Frame frame;                        ///< owns its pixels
   std::vector<SyntheticTruth> truth;  ///< by instrument
 };
 
@@ -17,9 +17,10 @@ struct RenderedFrame {
 /// camera model. Frame k is the same whenever it is drawn.
 class Renderer {
  public:
+  /// Prepares the scene, a copy of which is kept.
   explicit Renderer(const SyntheticScene& scene);
   ~Renderer();
-  Renderer(Renderer&&) noexcept;
+  Renderer(Renderer&&) noexcept;  ///< leaves the other unusable
   Renderer& operator=(Renderer&&) noexcept;
   /// @param index  frame number; the middle of its exposure is at start + index / rate
   RenderedFrame render(std::uint64_t index, double start = 0) const;

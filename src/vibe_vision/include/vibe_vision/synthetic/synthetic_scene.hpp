@@ -17,9 +17,9 @@ struct SyntheticMotion {
 
 /// A square tag of another library, to be compared with: its cells row by row, border included, 1: white.
 struct SyntheticTag {
-  int cells = 0;  ///< per side; 0: no tag
-  std::vector<std::uint8_t> white;
-  double side = 4e-3;  ///< of the cells together; one cell of white is around them [m]
+  int cells = 0;                    ///< per side; 0: no tag
+  std::vector<std::uint8_t> white;  ///< cells x cells; 1: white, 0: black
+  double side = 4e-3;               ///< of the cells together; one cell of white is around them [m]
 };
 
 /// An instrument as it truly is, in the camera frame (x right, y down, z forward) [m]. The marker's centre slides along
@@ -29,18 +29,18 @@ struct SyntheticTag {
 struct SyntheticInstrument {
   InstrumentConfig nominal;  ///< as calibrated; marker and axis
   SyntheticTag tag;          ///< drawn instead of nominal.marker if it has cells
-  SyntheticMotion motion;
-  double tilt = 0;     ///< of the marker about the view direction, from the axis to its right (y down) [rad]
-  double slant = 0;    ///< of the marker out of the image plane; positive: its positive end is further away [rad]
-  double scale = 1;    ///< of the marker: it is printed larger by this factor
-  double lateral = 0;  ///< offset of the marker across the axis, to the right of the direction [m]
+  SyntheticMotion motion;    ///< of the marker along and about the axis
+  double tilt = 0;           ///< of the marker about the view direction, from the axis to its right (y down) [rad]
+  double slant = 0;          ///< of the marker out of the image plane; positive: its positive end is further away [rad]
+  double scale = 1;          ///< of the marker: it is printed larger by this factor
+  double lateral = 0;        ///< offset of the marker across the axis, to the right of the direction [m]
 };
 
 /// What spoils a picture. The default spoils nothing but noise and focus blur.
 struct Degradation {
-  double exposure = 1e-3;  ///< [s]
-  double blur = 0.6;       ///< standard deviation of the point spread function [px]
-  PixelNoise noise;
+  double exposure = 1e-3;              ///< [s]
+  double blur = 0.6;                   ///< standard deviation of the point spread function [px]
+  PixelNoise noise;                    ///< of the sensor, that the picture has
   double flicker = 0;                  ///< relative amplitude at 100 Hz [1]
   double drift = 0;                    ///< relative change of the light per second, down and up again in 2 s [1/s]
   double vignetting = 0;               ///< share of the light lost in the corners
@@ -51,12 +51,12 @@ struct Degradation {
 };
 
 struct SyntheticScene {
-  CameraModel camera;  ///< with Degradation::distortion
-  double rate = 147;   ///< [Hz]
-  std::vector<SyntheticInstrument> instruments;
-  Degradation degradation;
+  CameraModel camera;                               ///< with Degradation::distortion
+  double rate = 147;                                ///< [Hz]
+  std::vector<SyntheticInstrument> instruments;     ///< in the order of the truths of a frame
+  Degradation degradation;                          ///< of the picture
   double white = 170, black = 25, background = 90;  ///< [DN] at full light; the background is textured
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;                           ///< of noise and texture; the same gives the same bits
 };
 
 /// Where an instrument truly is in one frame, at the middle of the exposure.
@@ -91,6 +91,6 @@ SyntheticScene swayScene();
 /// The degradations of the benchmark by name: "static", "moving" (1 ms), "long_exposure" (4 ms), "defocus", "light",
 /// "highlights", "occluder", "look_alike", "all", "tilt", "scale". @throws Error for another name, with those there are
 SyntheticScene namedScene(const std::string& name);
-std::vector<std::string> sceneNames();
+std::vector<std::string> sceneNames();  ///< that namedScene() knows
 
 }  // namespace vibe::vision

@@ -26,7 +26,7 @@ struct MarkerPose {
   /// which shows the sign too. A flat marker has log_aspect and keystone instead.
   double slant = 0;
 };
-constexpr int kPoseParameters = 9;
+constexpr int kPoseParameters = 9;                             ///< in MarkerPose
 using PoseVector = Eigen::Matrix<double, kPoseParameters, 1>;  ///< in the order of MarkerPose
 /// Places in PoseVector and in the arrays below.
 enum PoseIndex { kAlong, kLateral, kRotation, kLogScale, kTilt, kLogAspect, kBlur, kKeystone, kSlant };
@@ -38,15 +38,17 @@ constexpr std::size_t kLanes = 8;
 /// SlideAxis::origin [px]. The arrays have room for any window and are filled up from `count` to a multiple of kLanes
 /// with copies of the last pixel, with weight 0.
 struct PixelBlock {
-  std::vector<float> along, lateral, value;
+  std::vector<float> along, lateral, value;  ///< where each pixel is [px], and its grey value [DN]
   std::vector<float> light;   ///< on this pixel, relative to the marker's mean; 1 unless somebody knows better
   std::vector<float> weight;  ///< 0: nothing can be said about this pixel (saturated, outside of the image), else 1
-  std::size_t count = 0;
+  std::size_t count = 0;      ///< of pixels; what is behind them is filled up
 
+  /// `count` filled up to a multiple of kLanes.
   std::size_t padded() const { return (count + kLanes - 1) / kLanes * kLanes; }
+  /// Room for this many pixels; none are in it.
   void allocate(std::size_t capacity);
-  void pad();  ///< fills up behind `count`
-  std::size_t capacity() const { return value.size(); }
+  void pad();                                            ///< fills up behind `count`
+  std::size_t capacity() const { return value.size(); }  ///< pixels that there is room for
 };
 
 /// Reflectance that the camera should see at each pixel (0: black, 1: white), with the derivatives by the pose. Arrays
@@ -56,6 +58,7 @@ struct PatternValues {
   std::array<std::vector<float>, kPoseParameters>
       derivative;  ///< per parameter of the pose, in its unit, and pixel [1/px], [1/rad] or [1]
 
+  /// Room for this many pixels. @param observed  as MarkerPattern::observes(); others get no derivatives
   void allocate(std::size_t capacity, const std::array<bool, kPoseParameters>& observed);
 };
 
@@ -97,6 +100,9 @@ class MarkerPattern {
   /// For the search along the axis: mean reflectance over |lateral| <= searchHalfWidth() at steps of 1 px along the
   /// axis, the middle one at the marker's centre, for a mean rotation; of odd length.
   virtual double searchHalfWidth() const = 0;  ///< [px]
+  /// Fills that mean reflectance, 0 to 1.
+  /// @param motion  during the exposure, along the axis [px]
+  /// @param scale  of the marker's size, relative to the pattern's pixels_per_metre [1]
   virtual void searchProfile(double motion, double scale, std::vector<float>& profile) const = 0;
   /// What the rotation adds to that: cos(rotation) * cosine + sin(rotation) * sine, as long as the profile; empty for a
   /// marker that does not show it.
@@ -116,6 +122,7 @@ struct MarkerView {
   double principal_along = 0;    ///< of the camera's principal point, relative to SlideAxis::origin [px]
   double principal_lateral = 0;  ///< across the axis [px]
 };
+/// The view of a calibrated camera on an axis.
 MarkerView markerView(const CameraModel& camera, const SlideAxis& axis);
 
 /// @param pixels_per_metre  scale at which the marker is seen at log_scale 0

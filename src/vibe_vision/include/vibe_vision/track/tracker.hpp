@@ -37,8 +37,8 @@ const char* toText(Doubt doubt);  ///< a sentence for people, with possible caus
 
 /// What one frame says about one instrument.
 struct Measurement {
-  LostReason reason = LostReason::NoFrame;
-  double slide = 0;     ///< [m]; NaN if lost
+  LostReason reason = LostReason::NoFrame;  ///< None: tracked
+  double slide = 0;                         ///< [m]; NaN if lost
   double rotation = 0;  ///< turns counted since the first detection [rad]; NaN if lost or not shown by the marker
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of slide and rotation [m^2, m rad, rad^2]
   double score = 0;                                      ///< 0 to 1: how well the marker explains the pixels; 0 if lost
@@ -55,7 +55,7 @@ struct Measurement {
 
   Doubt doubt = Doubt::None;  ///< of a tracked instrument
 
-  bool tracked() const { return reason == LostReason::None; }
+  bool tracked() const { return reason == LostReason::None; }  ///< false: `reason` says why not
 };
 
 /// Of all instruments, in the order of VisionConfig::instruments.
@@ -72,14 +72,14 @@ class Tracker {
   /// @throws Error if the configuration cannot be tracked: see checkMarker()
   explicit Tracker(const VisionConfig& config);
   ~Tracker();
-  Tracker(Tracker&&) noexcept;
+  Tracker(Tracker&&) noexcept;  ///< leaves the other unusable
   Tracker& operator=(Tracker&&) noexcept;
 
   /// @return valid until the next call
   const Measurements& track(const Frame& frame);
   /// Forgets where the instruments are; turns of the rotation are kept.
   void reset();
-  const VisionConfig& config() const;
+  const VisionConfig& config() const;  ///< as it was given
 
  private:
   struct Impl;
