@@ -16,14 +16,14 @@ namespace vibe {
 
 /// A tissue model together with the solver that advances it.
 struct TissueAndSolver {
-  std::shared_ptr<const TissueModel> tissue;
-  std::shared_ptr<const Solver> solver;
-  int substeps = 0;  ///< of a solver that usesSubsteps(): per step, at least 1; 0 for others
+  std::shared_ptr<const TissueModel> tissue;  ///< becomes Model::tissue
+  std::shared_ptr<const Solver> solver;       ///< advances that tissue; becomes Model::solver
+  int substeps = 0;                           ///< of a solver that usesSubsteps(): per step, at least 1; 0 for others
 };
 
 /// What a tissue model is built from.
 struct TissueRequest {
-  const Scene& scene;
+  const Scene& scene;                 ///< all of it, not only its section tissue
   const Organ& organ;                 ///< rest shape, thickness and regions
   const std::vector<double>& masses;  ///< of the particles (particle count) [kg]
   const std::vector<double>& areas;   ///< of wall per particle (particle count) [m^2]

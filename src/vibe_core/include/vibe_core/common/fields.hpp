@@ -40,16 +40,19 @@ struct FieldTable;
 
 namespace fields {
 
+/// Whether T is a struct described by VIBE_FIELDS.
 template <class T, class = void>
 constexpr bool kDescribed = false;
 template <class T>
 constexpr bool kDescribed<T, std::void_t<decltype(FieldTable<T>::kNames)>> = true;
 
+/// Whether T is a std::vector.
 template <class T>
 constexpr bool kList = false;
 template <class T>
 constexpr bool kList<std::vector<T>> = true;
 
+/// Whether T is a single value of which blocks are made: a number, a bool or an enum.
 template <class T>
 constexpr bool kPlain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
@@ -57,30 +60,35 @@ constexpr bool kPlain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 template <class T>
 struct Block {
   static_assert(kPlain<T>, "a field is a plain value, an array, a fixed matrix, a list or a struct with VIBE_FIELDS");
-  using Item = T;
-  static constexpr std::size_t kCount = 1;
+  using Item = T;                           ///< type of one value
+  static constexpr std::size_t kCount = 1;  ///< number of values
+  /// Where the first value is.
   template <class U>
   static auto* data(U& value) {
     return &value;
   }
 };
 
+/// An array is a block of its items.
 template <class T, std::size_t N>
 struct Block<std::array<T, N>> {
   static_assert(kPlain<T>);
-  using Item = T;
-  static constexpr std::size_t kCount = N;
+  using Item = T;                           ///< type of one item
+  static constexpr std::size_t kCount = N;  ///< number of items
+  /// Where the first item is.
   template <class U>
   static auto* data(U& value) {
     return value.data();
   }
 };
 
+/// A fixed matrix is a block of its coefficients.
 template <class T, int Rows, int Columns, int Options>
 struct Block<Eigen::Matrix<T, Rows, Columns, Options>> {
   static_assert(kPlain<T> && Rows > 0 && Columns > 0);
-  using Item = T;
-  static constexpr std::size_t kCount = static_cast<std::size_t>(Rows) * Columns;
+  using Item = T;                                                                  ///< type of one coefficient
+  static constexpr std::size_t kCount = static_cast<std::size_t>(Rows) * Columns;  ///< number of coefficients
+  /// Where the first coefficient is; the others follow as the matrix stores them, by default column by column.
   template <class U>
   static auto* data(U& value) {
     return value.data();
@@ -94,11 +102,14 @@ constexpr std::string_view nameAt(std::string_view names, std::size_t index) {
   return names.substr(0, names.find(','));
 }
 
+/// Calls visit(name, member) for every member of a tuple of references, in order.
+/// @param names  of the members: "first, second, third"
 template <class Tuple, class Visit, std::size_t... I>
 void visitEach(std::string_view names, const Tuple& members, Visit& visit, std::index_sequence<I...>) {
   (visit(nameAt(names, I), std::get<I>(members)), ...);
 }
 
+/// Calls visit(name, member of a, member of b) for every member of two tuples of references, in order.
 template <class Tuple, class Visit, std::size_t... I>
 void visitPairs(std::string_view names, const Tuple& a, const Tuple& b, Visit& visit, std::index_sequence<I...>) {
   (visit(nameAt(names, I), std::get<I>(a), std::get<I>(b)), ...);
@@ -152,6 +163,8 @@ void transferList(Archive& archive, const std::vector<T>& items) {
 
 namespace fields {
 
+/// A plain value as text: reals with 17 digits, of which the same bits can be read back, others as whole numbers. Those
+/// of std::uint64_t from 2^63 on appear as negative.
 template <class T>
 std::string plainText(const T& value) {
   std::ostringstream text;
@@ -163,6 +176,8 @@ std::string plainText(const T& value) {
   return text.str();
 }
 
+/// Where the bits of two blocks first differ, with both values: "place[2]: 0.02 against 0.03"; empty: nowhere. A block
+/// of one value has no index.
 template <class T>
 std::string blockDifference(const T& a, const T& b, const std::string& place) {
   const auto *left = Block<T>::data(a), *right = Block<T>::data(b);
@@ -176,6 +191,7 @@ std::string blockDifference(const T& a, const T& b, const std::string& place) {
 template <class T>
 std::string difference(const T& a, const T& b, const std::string& place);
 
+/// Where two lists first differ, or how many items they have if not the same number; empty: nowhere.
 template <class T>
 std::string listDifference(const std::vector<T>& a, const std::vector<T>& b, const std::string& place) {
   if (a.size() != b.size())
@@ -189,6 +205,8 @@ std::string listDifference(const std::vector<T>& a, const std::vector<T>& b, con
   return "";
 }
 
+/// Where two values of a type that a field may have first differ, see firstDifference(); empty: nowhere.
+/// @param place  what leads to both, such as "procedure.sutures[1]"; empty: nothing does
 template <class T>
 std::string difference(const T& a, const T& b, const std::string& place) {
   if constexpr (kDescribed<T>) {
@@ -207,6 +225,7 @@ std::string difference(const T& a, const T& b, const std::string& place) {
 template <class T>
 std::string typeText();
 
+/// "first:i4x1;second:f8x3;": names of members and the typeText() of their types in a tuple.
 template <class Tuple, std::size_t... I>
 std::string memberList(std::string_view names, std::index_sequence<I...>) {
   std::string text;
@@ -216,7 +235,8 @@ std::string memberList(std::string_view names, std::index_sequence<I...>) {
   return text;
 }
 
-// "f8x3": three floating-point numbers of eight bytes each
+/// A type as text. "f8x3": three floating-point numbers of eight bytes each; "i" stands for whole numbers and enums,
+/// "b" for bool, "[f8x3]" for a list, "{name:f8x3;}" for a described struct.
 template <class T>
 std::string typeText() {
   if constexpr (kDescribed<T>) {

@@ -8,6 +8,7 @@ namespace vibe {
 /// FNV-1a, 64 bit (Fowler, Noll, Vo; http://www.isthe.com/chongo/tech/comp/fnv): a checksum, not a cryptographic hash.
 class Fnv1a {
  public:
+  /// Hashes bytes, one after the other: in pieces or at once gives the same.
   void add(const void* data, std::size_t size) {
     const auto* bytes = static_cast<const unsigned char*>(data);
     for (std::size_t i = 0; i < size; ++i) value_ = (value_ ^ bytes[i]) * 0x100000001b3ULL;
@@ -22,7 +23,7 @@ class Fnv1a {
     }
   }
 
-  std::uint64_t result() const { return value_; }
+  std::uint64_t result() const { return value_; }  ///< of all that has been added so far
 
  private:
   std::uint64_t value_ = 0xcbf29ce484222325ULL;

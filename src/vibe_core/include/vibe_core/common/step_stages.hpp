@@ -16,7 +16,7 @@ enum class StepStage : std::uint8_t {
   Walls,    ///< walls that have come near each other
   Other     ///< all else
 };
-constexpr int kStepStages = 8;
+constexpr int kStepStages = 8;  ///< values of StepStage
 
 const char* toString(StepStage stage);
 
@@ -29,6 +29,8 @@ class StageClock {
  public:
   /// From zero, in StepStage::Other.
   void start();
+  /// Ends the measurement.
+  /// @returns the times since start(); they stay until the next one [s]
   const StageTimes& stop();
   /// @returns the stage before
   StepStage enter(StepStage stage);

@@ -8,10 +8,11 @@ namespace vibe {
 /// accurate to 0.5 % for a session of any length. Durations below 1 us and above 1000 s are counted as these limits.
 class DurationHistogram {
  public:
+  /// Counts a duration [s].
   void add(double seconds);
   void clear();
 
-  std::uint64_t count() const { return count_; }
+  std::uint64_t count() const { return count_; }  ///< number of durations since the start or clear()
   /// Smallest duration that a fraction `q` of all durations does not exceed; 0 without durations [s].
   /// @param q  in [0, 1], e.g. 0.99
   double quantile(double q) const;
@@ -28,9 +29,10 @@ class DurationHistogram {
 
 /// Durations over the current window and in total. The owner clears the window after reporting it.
 struct DurationRecord {
-  DurationHistogram window;
-  DurationHistogram all;
+  DurationHistogram window;  ///< since the owner last cleared it
+  DurationHistogram all;     ///< since the record was made
 
+  /// Counts a duration in both [s].
   void add(double seconds) {
     window.add(seconds);
     all.add(seconds);
@@ -42,8 +44,8 @@ struct DurationRecord {
 /// that take part in the work is not counted.
 class StepTimer {
  public:
-  void start();
-  void stop();
+  void start();  ///< a section begins
+  void stop();   ///< it ends: its two times are recorded
 
   DurationRecord cpu;    ///< [s]
   DurationRecord wall;   ///< [s]

@@ -13,7 +13,7 @@ class ThreadPool {
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  int threads() const { return threads_; }
+  int threads() const { return threads_; }  ///< as many as the constructor was given, the calling one included
 
   /// Calls body(first, last) for consecutive pieces of [0, count) with at most `grain` items each. The pieces do not
   /// depend on the number of threads.

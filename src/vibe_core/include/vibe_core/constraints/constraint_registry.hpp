@@ -20,7 +20,7 @@ struct State;
 
 /// One step, as constraint blocks see it.
 struct StepContext {
-  const Model& model;
+  const Model& model;     ///< of the state; constant
   State& state;           ///< before the solve: at the start of the step; after it: at its end
   double step;            ///< duration [s]
   const ToolPoses* tool;  ///< null without a tool. A tool that yields: before the solve as if it did not in this step
@@ -38,9 +38,10 @@ enum class Activity {
 
 /// The force between the tool and one point of the surface during a step.
 struct ToolTouch {
+  /// Grip: wall that the helix holds; Contact: wall against which a shape of the tool presses.
   enum class Kind { Grip, Contact };
-  Kind kind = Kind::Contact;
-  SurfacePoint surface;
+  Kind kind = Kind::Contact;  ///< what the force comes from
+  SurfacePoint surface;       ///< where it acts, unless there is a `patch`
   /// Takes the place of `surface` where it is more than a point: the weighted mean of these particles. Owned by the
   /// block, as it is until its next prepare(); null: none.
   const AttachmentPoint* patch = nullptr;
@@ -54,7 +55,7 @@ struct ToolTouch {
   /// Unit directions in which the point follows the tool, the first direction_count of them: all three where it sticks,
   /// the normal where it slides. The impedance of the tool is computed from them.
   std::array<Eigen::Vector3d, 3> direction;
-  int direction_count = 0;
+  int direction_count = 0;  ///< of the entries of `direction` that count, 0 to 3
 };
 
 /// A load on the particles of a solver that divides the step. Positions move as by an XPBD constraint: what is imposed

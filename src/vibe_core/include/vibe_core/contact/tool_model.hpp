@@ -33,6 +33,7 @@ class ShaftBend {
   /// @param displacement  of the tool
   ShaftBend(const std::vector<double>& stations, double free_length, const ToolDisplacement& displacement);
 
+  /// Of the joint at a place of the constructor's `stations`, which is not checked; all 0 if nothing bends.
   const Share& share(int station) const { return shares_[static_cast<std::size_t>(station)]; }
   /// Angle of a joint. @param direction  0: up, 1: left [rad]
   double angle(int station, int direction) const;
@@ -52,11 +53,12 @@ namespace vibe {
 
 /// One joint of the kinematic tree of the tool, as read from the URDF.
 struct ToolJoint {
+  /// The kinds of URDF joints that a tool can have.
   enum class Type { Fixed, Revolute, Prismatic };
-  std::string name;
-  Type type = Type::Fixed;
-  int parent_link = -1;
-  int child_link = -1;
+  std::string name;         ///< in the URDF
+  Type type = Type::Fixed;  ///< Revolute turns about `axis`, Prismatic shifts along it
+  int parent_link = -1;     ///< number of the link that it is fixed to, less than child_link
+  int child_link = -1;      ///< number of the link that it carries; every link but the root has one such joint
   Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  ///< joint frame in the parent link [m]
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();           ///< unit, in the joint frame
   int input = -1;         ///< index of the driving input in StepInput::joints; -1: fixed
@@ -68,8 +70,9 @@ struct ToolJoint {
 
 /// A convex collision shape of a link: a capsule, cylinder, sphere or box, as a Bullet shape.
 struct ToolShape {
-  int link = -1;
+  int link = -1;                                             ///< number of the link that it belongs to
   Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  ///< shape frame in the link [m]
+  /// In the frame of `origin`, capsules and cylinders along its z axis [m]. Copies of the tool share it.
   std::shared_ptr<const btConvexShape> shape;
   double margin = 0;  ///< distance of the surface from the core of the Bullet shape, outwards [m]
 };
@@ -96,12 +99,14 @@ class ToolModel {
   ///         scope_camera_optical.
   static ToolModel fromUrdf(const std::string& urdf_xml, const std::string& place);
 
-  int linkCount() const { return static_cast<int>(link_names_.size()); }
+  int linkCount() const { return static_cast<int>(link_names_.size()); }  ///< number of links, the root included
+  /// In the URDF. @param link  0 to linkCount() - 1, not checked
   const std::string& linkName(int link) const { return link_names_[link]; }
   /// @throws Error if no link has that name
   int linkIndex(const std::string& name) const;
-  const std::vector<ToolJoint>& joints() const { return joints_; }
-  const std::vector<ToolShape>& shapes() const { return shapes_; }
+  const std::vector<ToolJoint>& joints() const { return joints_; }  ///< parents first: joint k carries link k + 1
+  const std::vector<ToolShape>& shapes() const { return shapes_; }  ///< of all links, in the order of their links
+  /// Of the seven inputs, in the order of Joint.
   const std::array<JointLimits, kJointCount>& limits() const { return limits_; }
 
   /// Pose of every link in the frame of the root link, in link order.
@@ -140,9 +145,9 @@ class ToolModel {
 /// Poses of the tool links in world, in the link order of Model::tool, and the place of the joints that they belong to:
 /// where the tool stays, or another part of a step has had it there already, they are not computed again.
 struct LinkPoses {
-  std::vector<Eigen::Isometry3d> poses;
+  std::vector<Eigen::Isometry3d> poses;      ///< by number of the link [m]
   std::array<double, kJointCount> inputs{};  ///< [m], [rad]
-  ToolDisplacement displacement{};
+  ToolDisplacement displacement{};           ///< of the tool from `inputs`
 
   const Eigen::Isometry3d& operator[](std::size_t link) const { return poses[link]; }
   operator const std::vector<Eigen::Isometry3d>&() const { return poses; }
@@ -150,8 +155,8 @@ struct LinkPoses {
 
 /// Of one step.
 struct ToolPoses {
-  LinkPoses start, end;
-  LinkPoses middle;  ///< half way, before the solve; empty: a tool that does not yield
+  LinkPoses start, end;  ///< at the start and at the end of the step
+  LinkPoses middle;      ///< half way, before the solve; empty: a tool that does not yield
 };
 
 }  // namespace vibe

@@ -33,7 +33,7 @@ enum class RejectReason : std::uint8_t {
   NoThread,     ///< to cinch
   NoTTag
 };
-constexpr int kRejectReasonCount = 20;
+constexpr int kRejectReasonCount = 20;  ///< values of RejectReason, None included
 
 /// Which of the things that share a kind has happened.
 enum class EventDetail : std::uint8_t {
@@ -53,11 +53,12 @@ enum class EventDetail : std::uint8_t {
   ThreadDrawn,       ///< Cinched, CinchLoose: amount: thread drawn by the cinch [m]
   WallDrawn          ///< Cinched, CinchLoose: amount: way of the wall (suture.cinch_model: groups) [m]
 };
-constexpr int kEventDetailCount = 15;
+constexpr int kEventDetailCount = 15;  ///< values of EventDetail, None included
 
 /// Something that happened in a step, as plain numbers; describe() makes a sentence of it. The numbers of the kinds are
 /// those of vibe_msgs/ProcedureEvent.
 struct Event {
+  /// What has happened, and which members say more about it. region and wall are those of the particle.
   enum class Kind : std::uint8_t {
     Grab = 0,          ///< the helix took hold; particle: the targeted one, value: particles held; region, wall
     GrabMissed = 1,    ///< no tissue in reach; value: distance to the nearest particle, limit: reach of the helix [m]
@@ -98,19 +99,19 @@ struct Event {
   };
 
   // Members that the kind does not name keep their defaults.
-  Kind kind = Kind::Warning;
-  EventDetail detail = EventDetail::None;
-  RejectReason reason = RejectReason::None;
-  Region region = Region::Body;
-  Wall wall = Wall::Anterior;
-  double time = 0;             ///< simulated time at the end of the step [s]
-  int particle = -1;           ///< -1: none
-  double value = 0;            ///< what the kind says, in unitOfValue() [m], [N] or [1]
-  double limit = 0;            ///< what value or amount is compared with, in its unit [m], [N] or [1]
-  double amount = 0;           ///< a second number of some kinds, see Kind [N] or [1]
-  int suture = -1, bite = -1;  ///< numbers from 0; -1: none
+  Kind kind = Kind::Warning;                 ///< which of the other members have a meaning
+  EventDetail detail = EventDetail::None;    ///< None: the kind has no variants
+  RejectReason reason = RejectReason::None;  ///< of a rejected command; None: nothing was rejected
+  Region region = Region::Body;              ///< where the particle is, of the kinds that name it
+  Wall wall = Wall::Anterior;                ///< where the particle is, of the kinds that name it
+  double time = 0;                           ///< simulated time at the end of the step [s]
+  int particle = -1;                         ///< -1: none
+  double value = 0;                          ///< what the kind says, in unitOfValue() [m], [N] or [1]
+  double limit = 0;                          ///< what value or amount is compared with, in its unit [m], [N] or [1]
+  double amount = 0;                         ///< a second number of some kinds, see Kind [N] or [1]
+  int suture = -1, bite = -1;                ///< numbers from 0; -1: none
 };
-constexpr int kEventKindCount = 33;
+constexpr int kEventKindCount = 33;  ///< values of Event::Kind
 
 static_assert(std::is_trivially_copyable_v<Event>, "an event carries facts; describe() forms the text");
 
@@ -156,6 +157,7 @@ class EventCounts {
     for (const Event& event : events) ++counts_[static_cast<std::size_t>(event.kind)];
   }
 
+  /// How many events of a kind there were in all steps recorded.
   int of(Event::Kind kind) const { return counts_[static_cast<std::size_t>(kind)]; }
 
   /// Of all kinds.

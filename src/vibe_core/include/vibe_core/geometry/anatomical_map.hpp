@@ -40,7 +40,7 @@ class AnatomicalMap {
   /// @throws Error if the organ has no oesophagus, no duodenum, another number of vertices, or no axis can be found
   AnatomicalMap(const Organ& organ, std::vector<Eigen::Vector3d> vertices);
 
-  const std::vector<Eigen::Vector3d>& vertices() const { return vertices_; }
+  const std::vector<Eigen::Vector3d>& vertices() const { return vertices_; }  ///< as given to the constructor [m]
   /// Position along the axis of a share of a region: of what of it is on the greater curvature, or of all of it if
   /// nothing is, from the fundus towards the pylorus. 0: its proximal end, 1: its distal end [1]
   /// @throws Error if the organ lacks the region

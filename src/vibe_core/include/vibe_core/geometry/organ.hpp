@@ -12,11 +12,11 @@ namespace vibe {
 /// Parts of the stomach along its length, from the oesophagus to the duodenum. The values are part of the message
 /// format.
 enum class Region : std::uint8_t { Cardia = 0, Fundus = 1, Body = 2, Antrum = 3, Pylorus = 4 };
-constexpr int kRegionCount = 5;
+constexpr int kRegionCount = 5;  ///< values of Region
 
 /// Sides of the stomach around its axis. The values are part of the message format.
 enum class Wall : std::uint8_t { Anterior = 0, GreaterCurvature = 1, Posterior = 2, LesserCurvature = 3 };
-constexpr int kWallCount = 4;
+constexpr int kWallCount = 4;  ///< values of Wall
 
 /// The neighbouring organ at an end of the stomach. The particles of an end are held in place.
 enum class End : std::uint8_t { None = 0, Oesophagus = 1, Duodenum = 2 };
@@ -43,7 +43,7 @@ struct Organ {
   std::vector<Wall> wall;         ///< side around the axis
   std::vector<End> end;           ///< whether the vertex belongs to a held end
   std::vector<double> thickness;  ///< wall thickness [m]
-  Landmarks landmarks;
+  Landmarks landmarks;            ///< in the frame of `surface`; regions and walls of a stomach follow from them
   Eigen::Vector3d entry = Eigen::Vector3d::Zero();  ///< entry point of the scope: centre of the oesophagus end [m]
   Eigen::Vector3d entry_axis = -Eigen::Vector3d::UnitZ();  ///< unit vector from entry into the lumen
 };

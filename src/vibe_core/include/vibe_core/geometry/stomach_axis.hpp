@@ -31,8 +31,8 @@ class StomachAxis {
   StomachAxis(const SurfaceMesh& mesh, const std::vector<int>& fundus, const std::vector<int>& pylorus,
               const std::vector<bool>& ignored, const Eigen::Vector3d& anterior);
 
-  const std::vector<Station>& stations() const { return stations_; }
-  double length() const { return stations_.back().length; }  ///< [m]
+  const std::vector<Station>& stations() const { return stations_; }  ///< from the fundus to the pylorus, at least 4
+  double length() const { return stations_.back().length; }           ///< [m]
 
   /// Position of a vertex along the curve, from 0 to length() [m].
   double lengthAt(int vertex) const { return vertex_length_[vertex]; }

@@ -33,6 +33,7 @@ struct SurfaceView {
   const std::vector<std::array<int, 3>>& triangles;  ///< vertex numbers
   const std::vector<double>&x, &y, &z;               ///< (vertices) [m]
 
+  /// Of a vertex, whose number is not checked [m].
   Eigen::Vector3d position(int vertex) const { return {x[vertex], y[vertex], z[vertex]}; }
 };
 

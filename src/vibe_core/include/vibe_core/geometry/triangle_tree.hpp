@@ -24,9 +24,10 @@ class TriangleTree {
     double distance = 0;                              ///< from the query to the point [m]
   };
 
+  /// @param mesh  any triangles, not necessarily closed; none is allowed, too
   explicit TriangleTree(SurfaceMesh mesh);
 
-  const SurfaceMesh& mesh() const { return mesh_; }
+  const SurfaceMesh& mesh() const { return mesh_; }  ///< the copy that the tree keeps, with the same numbers
 
   /// Nearest point of the surface.
   Hit closest(const Eigen::Vector3d& p) const;

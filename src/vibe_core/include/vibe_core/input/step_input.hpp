@@ -7,13 +7,13 @@ namespace vibe {
 
 /// Joints that the trainee moves, in the order of StepInput::joints.
 enum Joint : int { Insertion, Rotation, TipUpDown, TipLeftRight, HelixAdvance, HelixRotation, NeedleDriver };
-constexpr int kJointCount = 7;
+constexpr int kJointCount = 7;       ///< values of Joint
 constexpr int kScopeJointCount = 4;  ///< the first four come from the scope, the rest from the suturing device
 extern const std::array<const char*, kJointCount> kJointNames;  ///< as in the URDF: "insertion", "rotation", ...
 
 /// Buttons, in the order of sensor_msgs/Joy::buttons on scope/buttons.
 enum Button : int { ApcPedal, HelixGrab, Needle, TTag, Cinch, Insufflate };
-constexpr int kButtonCount = 6;
+constexpr int kButtonCount = 6;                                   ///< values of Button
 extern const std::array<const char*, kButtonCount> kButtonNames;  ///< "apc_pedal", "helix_grab", ...
 
 /// All external input of one step, and exactly what a recording stores, so that a replay has the same bits.

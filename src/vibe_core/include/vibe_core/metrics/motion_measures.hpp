@@ -69,8 +69,10 @@ class MotionRecorder {
   /// @throws Error, and changes nothing, if a position or a time is not finite or a time is not positive
   void add(const Eigen::Vector3d& position, double dt);
 
+  /// Ends the record at the last position: a movement that is going on ends there, and counts.
   void finish();
 
+  /// Of the whole motion so far, on both sides of every finish().
   MotionMeasures measures() const;
 
  private:

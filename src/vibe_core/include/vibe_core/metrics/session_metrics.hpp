@@ -26,7 +26,7 @@ struct SessionMetrics {
   EnergyAccount energy;          ///< of the last state
   double energy_balance = 0;     ///< see energyBalance(), sampled ten times a second; drift since the start [J]
   EventCounts events;            ///< since the start, by kind
-  SkillMetrics skill;
+  SkillMetrics skill;            ///< measures of the procedure
 
   int warnings() const;  ///< warnings and recoveries
 };
@@ -46,6 +46,7 @@ class MetricsRecorder {
   /// Warnings of the program about its inputs, which no step has seen.
   void addWarnings(int count) { metrics_.events.record(std::vector<Event>(static_cast<std::size_t>(count))); }
 
+  /// As of the last record(); before the first, those of the start.
   const SessionMetrics& metrics() const { return metrics_; }
 
  private:

@@ -13,7 +13,7 @@ namespace vibe {
 
 /// A measure of a session by name: a name as in docs/metrics.md and vibe_msgs/SkillMetrics.
 struct Measure {
-  std::string name;
+  std::string name;             ///< different from all others of its list
   std::string unit;             ///< SI, as in scene files; "1" for counts and shares
   std::optional<double> value;  ///< empty: the session so far does not define it; in `unit`
 };
@@ -31,18 +31,18 @@ std::optional<double> valueOf(const std::vector<Measure>& measures, const std::s
 
 /// What became of a goal of a protocol.
 struct GoalOutcome {
-  std::string goal;  ///< one line
-  bool reached = false;
-  std::string reason;  ///< one sentence; "not ended" if the session ended before
+  std::string goal;      ///< one line
+  bool reached = false;  ///< false: given up, or the session ended before
+  std::string reason;    ///< one sentence; "not ended" if the session ended before
 };
 
 /// What is written of a session that has ended.
 struct SessionOutcome {
-  std::vector<Measure> measures;
-  EventCounts events;
+  std::vector<Measure> measures;   ///< those of measuresOf(), then those of goalMeasures()
+  EventCounts events;              ///< as in SessionMetrics
   std::vector<GoalOutcome> goals;  ///< empty without a protocol
-  std::int64_t steps = 0;
-  std::uint64_t state_hash = 0;
+  std::int64_t steps = 0;          ///< of the last state, see State::step
+  std::uint64_t state_hash = 0;    ///< hash() of the last state
 };
 
 /// One JSON object: `measures` (name: {value, unit}; a value that is not defined is null), `events` (count by kind, all

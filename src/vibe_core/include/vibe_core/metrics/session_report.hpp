@@ -24,6 +24,10 @@ class SessionCsv {
   /// @throws Error if it cannot be written
   explicit SessionCsv(const std::string& file);
 
+  /// The row of a step.
+  /// @param state   after the step
+  /// @param events  of the step
+  /// @throws Error if what was written so far could not be written
   void write(const Model& model, const State& state, const std::vector<Event>& events);
   /// Call after the last row.
   /// @throws Error if not all of it has arrived

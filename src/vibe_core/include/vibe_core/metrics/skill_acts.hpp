@@ -16,7 +16,7 @@ namespace vibe {
 
 /// Marks of a session. Connected particles with a grade are one zone, so a line is one.
 struct MarkSkill {
-  int zones = 0;
+  int zones = 0;                       ///< number of marks
   int inside = 0;                      ///< completely in the working zone, see inWorkingZone()
   std::array<int, kWallCount> wall{};  ///< by the Wall of the zone's worst particle
   int burns = 0;                       ///< zones with a burn scar or worse
@@ -45,9 +45,9 @@ class MarkCounter {
 /// The bites of a session. All members but `taken` and `torn_out` are about bites that hold. A measure that the bites
 /// so far do not define has no value.
 struct BiteSkill {
-  int taken = 0;     ///< including those that tore out
-  int torn_out = 0;  ///< of these
-  int full_thickness = 0;
+  int taken = 0;                               ///< including those that tore out
+  int torn_out = 0;                            ///< of these
+  int full_thickness = 0;                      ///< those through the whole wall, see Bite::fullThickness()
   std::array<int, kWallCount> wall{};          ///< by Wall
   int in_antrum = 0;                           ///< distal of the body: antrum, pylorus
   int in_fundus = 0;                           ///< proximal of the body: fundus, cardia
@@ -62,20 +62,20 @@ struct BiteSkill {
 
 /// One set of bites on one thread.
 struct SetSkill {
-  Suture::Stage stage = Suture::Stage::Open;
-  bool loose = false;                      ///< cinched with less than the scene's loose_tension
-  bool named = false;                      ///< technique and margin are known: the T-tag was dropped
-  Technique technique = Technique::Other;  ///< that was recognised
-  double margin = 0;                       ///< see TechniqueResult [1]
-  int bites = 0;                           ///< that hold
-  int torn_out = 0;                        ///< bites
-  std::optional<double> spacing_mean;      ///< see BiteSkill [m]
-  std::optional<double> along;             ///< mean position on the organ's axis, 0: apex, 1: pylorus [1]
-  std::optional<double> thread;            ///< between first and last bite, now; no value below two bites [m]
-  double drawn = 0;                        ///< by the cinch [m]
-  double tension = 0;                      ///< max over its segments, now [N]
-  std::optional<double> cinch_tension;     ///< when the cinch was released; no value before [N]
-  std::optional<double> duration;          ///< from the first bite to the release of the cinch [s]
+  Suture::Stage stage = Suture::Stage::Open;  ///< of its suture, now
+  bool loose = false;                         ///< cinched with less than the scene's loose_tension
+  bool named = false;                         ///< technique and margin are known: the T-tag was dropped
+  Technique technique = Technique::Other;     ///< that was recognised
+  double margin = 0;                          ///< see TechniqueResult [1]
+  int bites = 0;                              ///< that hold
+  int torn_out = 0;                           ///< bites
+  std::optional<double> spacing_mean;         ///< see BiteSkill [m]
+  std::optional<double> along;                ///< mean position on the organ's axis, 0: apex, 1: pylorus [1]
+  std::optional<double> thread;               ///< between first and last bite, now; no value below two bites [m]
+  double drawn = 0;                           ///< by the cinch [m]
+  double tension = 0;                         ///< max over its segments, now [N]
+  std::optional<double> cinch_tension;        ///< when the cinch was released; no value before [N]
+  std::optional<double> duration;             ///< from the first bite to the release of the cinch [s]
 };
 
 /// @param organ  spacing is measured on its rest shape

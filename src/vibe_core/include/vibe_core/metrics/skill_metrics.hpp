@@ -27,15 +27,15 @@ const char* toString(OrganReference reference);
 
 /// How the organ has changed. Without values if the organ cannot be measured.
 struct OrganSkill {
-  OrganReference reference = OrganReference::Rest;
-  double reference_pressure = 0;           ///< gauge, of the reference [Pa]
-  double pressure = 0;                     ///< gauge, at the last measurement [Pa]
-  std::optional<OrganMeasures> before;     ///< the reference
-  std::optional<OrganMeasures> now;        ///< at the last measurement
-  std::optional<double> area_reduction;    ///< of mean_area, 1 - now / before; negative: more than before [1]
-  std::optional<double> volume_reduction;  ///< [1]
-  std::optional<double> length_reduction;  ///< of the axis [1]
-  std::string fault;                       ///< why the organ cannot be measured; empty: it can
+  OrganReference reference = OrganReference::Rest;  ///< which state `before` is of
+  double reference_pressure = 0;                    ///< gauge, of the reference [Pa]
+  double pressure = 0;                              ///< gauge, at the last measurement [Pa]
+  std::optional<OrganMeasures> before;              ///< the reference
+  std::optional<OrganMeasures> now;                 ///< at the last measurement
+  std::optional<double> area_reduction;             ///< of mean_area, 1 - now / before; negative: more than before [1]
+  std::optional<double> volume_reduction;           ///< [1]
+  std::optional<double> length_reduction;           ///< of the axis [1]
+  std::string fault;                                ///< why the organ cannot be measured; empty: it can
 };
 
 /// Measures the organ once per simulated second, and when the reference is taken.
@@ -48,6 +48,7 @@ class OrganTracker {
   /// Call after a step with its events.
   void record(const Model& model, const State& state, const std::vector<Event>& events);
 
+  /// As of the last measurement, up to a second of simulated time ago.
   const OrganSkill& measures() const { return skill_; }
 
  private:
@@ -73,22 +74,23 @@ struct MistakeSkill {
   int missed_bites = 0;     ///< the arm closed and met no tissue
   int withdrawn_bites = 0;  ///< the arm opened before the exchange had the needle
   int slips = 0;            ///< tissue torn off the helix
-  int broken_threads = 0;
-  int rejected = 0;  ///< commands that could not act
+  int broken_threads = 0;   ///< threads that broke because of their tension
+  int rejected = 0;         ///< commands that could not act
 };
 
 /// Skill measures of the procedure so far; definitions and sources: docs/metrics.md. Phases and mistakes are recorded;
 /// marks, bites, sets and bleeding follow from the state, so a loaded state brings its own.
 struct SkillMetrics {
-  PhasesSkill phases;
-  MarkSkill marks;
-  BiteSkill bites;
+  PhasesSkill phases;          ///< motion and force, by phase and in all
+  MarkSkill marks;             ///< places that the argon beam has coagulated
+  BiteSkill bites;             ///< of all sets together
   std::vector<SetSkill> sets;  ///< in the order of their first bites
-  BleedingSkill bleeding;
-  MistakeSkill mistakes;
-  OrganSkill organ;
+  BleedingSkill bleeding;      ///< of all bites together
+  MistakeSkill mistakes;       ///< what did not succeed
+  OrganSkill organ;            ///< how its shape has changed
 };
 
+/// Counts the bleedings of a state, those that have stopped included.
 BleedingSkill measureBleeding(const ProcedureState& procedure);
 
 /// What the measures need and what is expensive to make (some 40 ms for 3,618 particles): once per model, for one
@@ -97,16 +99,18 @@ struct SkillInstruments {
   /// @param model  its organ must outlive this
   explicit SkillInstruments(const Model& model);
 
-  std::shared_ptr<SpectralArcLength> spectrum;
-  std::shared_ptr<MarkCounter> marks;
-  std::shared_ptr<OrganRuler> ruler;  ///< null: the organ cannot be measured
-  std::string ruler_fault;            ///< the reason in that case
+  std::shared_ptr<SpectralArcLength> spectrum;  ///< tables for the smoothness, shared by all phases
+  std::shared_ptr<MarkCounter> marks;           ///< memory for counting zones on the model's organ
+  std::shared_ptr<OrganRuler> ruler;            ///< null: the organ cannot be measured
+  std::string ruler_fault;                      ///< the reason in that case
 };
 
 /// Keeps SkillMetrics up to date. Costs a few microseconds per step and 0.4 ms once per simulated second (the organ).
 /// Allocates only when marks or bites are added. Growing marks are counted ten times a second (40 us).
 class SkillRecorder {
  public:
+  /// @param start  state before the first step; marks, bites and bleeding that it has already count
+  /// @param tip    position of scope_tip at the start, in world [m]; ignored without a tool
   SkillRecorder(const SkillInstruments& instruments, const Model& model, const State& start,
                 const Eigen::Vector3d& tip);
 
@@ -116,6 +120,7 @@ class SkillRecorder {
   void record(const Model& model, const State& state, const Eigen::Vector3d& tip, const std::vector<Event>& events,
               const EventCounts& counts);
 
+  /// As of the last record(); before the first, those of the start.
   const SkillMetrics& metrics() const { return metrics_; }
 
  private:

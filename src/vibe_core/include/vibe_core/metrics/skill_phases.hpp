@@ -45,7 +45,7 @@ class ForceRecorder {
   /// The same for a magnitude, such as the tension of a thread [N].
   void add(double magnitude, double dt);
 
-  ForceMeasures measures() const;
+  ForceMeasures measures() const;  ///< of all that was added so far
 
  private:
   ForceSettings settings_;
@@ -83,7 +83,7 @@ class PhaseRecorder {
   /// @param force  [N]
   void record(Phase phase, const Eigen::Vector3d& tip, double force, double dt);
 
-  const PhasesSkill& measures() const { return measures_; }
+  const PhasesSkill& measures() const { return measures_; }  ///< as of the last record()
 
  private:
   struct Channel {

@@ -11,11 +11,12 @@ namespace vibe {
 /// 2002, J Neurosci 22(18):8297, count peaks; the fifth is a design choice).
 class PeakCounter {
  public:
+  /// @param threshold  speed that a peak must reach, in the unit of add()
   explicit PeakCounter(double threshold) : threshold_(threshold) {}
-  void add(double speed);
+  void add(double speed);  ///< the next sample, in any one unit of speed
   /// Ends the record. A peak from which the speed has not fallen yet also counts.
   void finish();
-  int count() const { return count_; }
+  int count() const { return count_; }  ///< peaks so far
 
  private:
   double threshold_;

@@ -9,13 +9,14 @@ namespace vibe {
 /// Mechanical energy of the tissue, by kind [J]. The gas is isothermal; its share is counted as work in
 /// state.energy.gas_work and not as a potential here.
 struct Energies {
-  double kinetic = 0;
-  double elastic = 0;
-  double gravity = 0;  ///< zero at rest; 0 where the foundation carries the weight
-  double foundation = 0;
-  double contact = 0;  ///< of walls that touch each other
-  double total() const { return kinetic + elastic + gravity + foundation + contact; }
+  double kinetic = 0;     ///< of the particles that are not held in place
+  double elastic = 0;     ///< stored in the wall, see TissueModel::energy()
+  double gravity = 0;     ///< zero at rest; 0 where the foundation carries the weight
+  double foundation = 0;  ///< of its springs, about the places at rest even while it moves with the breath
+  double contact = 0;     ///< of walls that touch each other
+  double total() const { return kinetic + elastic + gravity + foundation + contact; }  ///< the sum of all five [J]
 };
+/// Of a state. Evaluates the elastic law of the whole wall; contact is what the last step left in state.energy.
 Energies energies(const Model& model, const State& state);
 /// The same without elastic and contact energy, which are the expensive ones.
 Energies energiesBesideElastic(const Model& model, const State& state);

@@ -18,9 +18,9 @@ class CinchModel;
 
 /// Everything that is constant during a simulation. Can be shared between threads and any number of states.
 struct Model {
-  Scene scene;  ///< as the user wrote it; nothing changes it
-  Organ organ;  ///< rest shape and anatomy
-  int particle_count = 0;
+  Scene scene;             ///< as the user wrote it; nothing changes it
+  Organ organ;             ///< rest shape and anatomy
+  int particle_count = 0;  ///< vertices of organ.surface
 
   // per particle, (particle_count)
   std::vector<double> mass;          ///< [kg]
@@ -39,8 +39,8 @@ struct Model {
   std::shared_ptr<const ToolModel> tool;                        ///< null without scope
   std::optional<ScopeSprings> scope_springs;                    ///< empty: the tool is rigid
   Eigen::Isometry3d tool_base = Eigen::Isometry3d::Identity();  ///< pose of the tool's root link in world [m]
-  int tip_link = -1;                                            ///< link numbers in tool
-  int helix_link = -1;
+  int tip_link = -1;     ///< scope_tip; this and the next three are link numbers in `tool`, -1 without one
+  int helix_link = -1;   ///< its origin is the tip of the helix
   int grip_link = -1;    ///< carries the helix, which turns in it
   int needle_link = -1;  ///< its origin is the needle's point
 

@@ -54,9 +54,10 @@ class SolverWorkspace {
 class Solver {
  public:
   virtual ~Solver() = default;
-  virtual std::string name() const = 0;
+  virtual std::string name() const = 0;  ///< one word for the method: "implicit", "xpbd"
   /// Divides the step into model.substeps explicit ones.
   virtual bool usesSubsteps() const { return false; }
+  /// Memory for any states of a model, for one thread of control. The model must outlive it.
   virtual std::unique_ptr<SolverWorkspace> makeWorkspace(const Model& model) const = 0;
 
   /// @param motion  path of the tool during the step; null without a scope

@@ -12,9 +12,10 @@ namespace vibe {
 
 /// Shape and resolution of the organ.
 struct GeometryScene {
+  /// Stomach: procedural; Mesh: imported from a file; Sphere: for tests and benchmarks.
   enum class Kind { Stomach, Mesh, Sphere };
-  Kind kind = Kind::Stomach;
-  int particles = 3618;  ///< exactly this many vertices of the mid-surface, 100 to 200,000
+  Kind kind = Kind::Stomach;  ///< decides which of the keys below count
+  int particles = 3618;       ///< exactly this many vertices of the mid-surface, 100 to 200,000
 
   double scale = 1;  ///< factor on all lengths of the organ, but not on the thickness of its wall [1]
 
@@ -97,6 +98,7 @@ struct ScopeComplianceScene {
 
 /// The endoscope with its suturing device.
 struct ScopeScene {
+  /// Endoscope with device: a path, or an address such as resolveAddress() takes.
   std::string urdf = "package://vibe_description/urdf/scope.urdf";
   bool base_from_anatomy = true;                   ///< scope_base at the organ's entry, x axis into the lumen
   Eigen::Vector3d base_position{0, 0, 0};          ///< otherwise this position, in world [m]
@@ -145,7 +147,7 @@ struct BleedingScene {
 
 /// Argon plasma coagulation from a probe in the scope.
 struct MarkingScene {
-  ApcParameters apc;
+  ApcParameters apc;  ///< the probe and its effect on the wall
   /// How the wall deforms while the pedal is down: `solver` keeps the tissue model, `gradient` makes the wall give way
   /// in the gradient domain (ViBE prototype).
   std::string deformation = "solver";
@@ -153,24 +155,24 @@ struct MarkingScene {
 
 /// The content of a scene file, validated. An absent part costs nothing at run time.
 struct Scene {
-  std::string file;  ///< where it was read, empty if built in code
-  std::string name = "unnamed";
-  std::uint64_t seed = 1;
+  std::string file;               ///< where it was read, empty if built in code
+  std::string name = "unnamed";   ///< for reports and messages
+  std::uint64_t seed = 1;         ///< of the random generator, 0 to 2^53 - 1 in a file; equal seeds give equal sessions
   double step_period = 1.0 / 60;  ///< simulated time per step [s]
-  GeometryScene geometry;
-  TissueScene tissue;
-  bool attach_oesophagus = false;  ///< fix the particles of this end
-  bool attach_duodenum = false;    ///< fix the particles of this end
-  std::optional<GasScene> gas;
-  std::optional<GravityScene> gravity;
-  std::optional<FoundationScene> foundation;
-  std::optional<BreathingScene> breathing;
-  std::optional<ScopeScene> scope;
-  std::optional<HelixScene> helix;
-  std::optional<SutureScene> suture;
-  std::optional<BleedingScene> bleeding;
-  std::optional<MarkingScene> marking;
-  bool render_surface = false;  ///< finer render surface
+  GeometryScene geometry;         ///< the organ
+  TissueScene tissue;             ///< its wall
+  bool attach_oesophagus = false;             ///< fix the particles of this end
+  bool attach_duodenum = false;               ///< fix the particles of this end
+  std::optional<GasScene> gas;                ///< empty: no pressure in the lumen
+  std::optional<GravityScene> gravity;        ///< empty: the wall has no weight
+  std::optional<FoundationScene> foundation;  ///< empty: no neighbours hold the organ
+  std::optional<BreathingScene> breathing;    ///< empty: nothing breathes; needs `foundation`
+  std::optional<ScopeScene> scope;            ///< empty: no tool
+  std::optional<HelixScene> helix;            ///< empty: nothing can be grabbed; needs `scope`
+  std::optional<SutureScene> suture;          ///< empty: the needle takes no bites; needs `helix`
+  std::optional<BleedingScene> bleeding;      ///< empty: no bite bleeds; needs `suture`
+  std::optional<MarkingScene> marking;        ///< empty: the pedal has no effect; needs `scope`
+  bool render_surface = false;                ///< finer render surface
 };
 
 }  // namespace vibe

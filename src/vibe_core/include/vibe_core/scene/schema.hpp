@@ -47,6 +47,7 @@ struct SchemaSection {
   bool (*isPresent)(const Scene&);  ///< whether the scene has it
   /// The section without which this one is an error, with why; null: none.
   const char* needs = nullptr;
+  /// Why, as a relative clause about that section: "whose tool carries the helix"; null without `needs`.
   const char* needs_why = nullptr;
 };
 

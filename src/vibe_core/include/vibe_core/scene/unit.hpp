@@ -9,12 +9,12 @@ namespace vibe {
 
 /// Exponents of the base dimensions. Angle is one of them, so that a length is never mistaken for an angle.
 struct Dimension {
-  int length = 0;
-  int mass = 0;
-  int time = 0;
-  int angle = 0;
-  int pixel = 0;
-  int grey = 0;  ///< grey value of an image
+  int length = 0;  ///< exponent of the metre
+  int mass = 0;    ///< exponent of the kilogram
+  int time = 0;    ///< exponent of the second
+  int angle = 0;   ///< exponent of the radian
+  int pixel = 0;   ///< exponent of the pixel of an image
+  int grey = 0;    ///< exponent of the grey value of an image
 };
 bool operator==(const Dimension& a, const Dimension& b);
 inline bool operator!=(const Dimension& a, const Dimension& b) {
@@ -23,8 +23,8 @@ inline bool operator!=(const Dimension& a, const Dimension& b) {
 
 /// A unit of measure: SI value = factor * value in this unit.
 struct Unit {
-  double factor = 1;
-  Dimension dimension;
+  double factor = 1;    ///< SI value of one of it, above 0
+  Dimension dimension;  ///< what it measures
 };
 
 /// Reads a unit such as "mm", "mmHg", "L/min", "g/cm^3", "1/s", "N*s/m", "N m^2" or "%". Empty for an unknown one.

@@ -18,7 +18,7 @@ std::string suggestKey(const std::string& word, const std::vector<std::string>& 
 
 /// A word that a key of a scene file accepts.
 struct Choice {
-  std::string word;
+  std::string word;          ///< as it stands in a scene file
   std::string meaning;       ///< one line, shown in the documentation
   std::string package = "";  ///< that must be loaded for it; empty: the library itself, or loaded already
 };

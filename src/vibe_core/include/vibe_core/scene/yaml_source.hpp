@@ -10,8 +10,8 @@ namespace vibe {
 
 /// What a user file may cost. A file beyond is refused before it is parsed.
 struct YamlLimits {
-  std::size_t bytes = 1 << 20;
-  int depth = 32;  ///< of nested maps and lists; yaml-cpp parses recursively
+  std::size_t bytes = 1 << 20;  ///< size of the file
+  int depth = 32;               ///< of nested maps and lists; yaml-cpp parses recursively
 };
 
 /// A key of a map (or an item of a list) with its value and its place.
@@ -19,7 +19,7 @@ struct YamlField {
   std::string key;   ///< last part only: "reach"
   std::string path;  ///< for people: "helix.reach"
   int line = 0;      ///< of the key, from 1
-  YAML::Node value;
+  YAML::Node value;  ///< refers to the document, which it keeps alive
 
   // Assigning a YAML::Node changes the document that it points into, so fields are only ever copied.
   YamlField(const YamlField&) = default;
@@ -37,8 +37,8 @@ class YamlSource {
   /// @throws Error for text that is not exactly one YAML document with a map at the top, or beyond the limits
   static YamlSource parse(const std::string& text, const std::string& place, const YamlLimits& limits);
 
-  const std::string& place() const { return place_; }
-  YamlField root() const;
+  const std::string& place() const { return place_; }  ///< name of the text in errors, such as that of the file
+  YamlField root() const;                              ///< the map at the top; without key and path
 
   /// Names a character of the line, too, that is not what it looks like.
   [[noreturn]] void fail(const YamlField& field, const std::string& what_and_remedy) const;
@@ -49,7 +49,8 @@ class YamlSource {
   /// Items of a list; their path is "field[0]" and so on.
   std::vector<YamlField> list(const YamlField& field) const;
 
-  bool boolean(const YamlField& field) const;
+  bool boolean(const YamlField& field) const;  ///< true, True, false or False
+  /// A whole number from low to high, both allowed; exact up to 2^53.
   std::int64_t integer(const YamlField& field, std::int64_t low, std::int64_t high) const;
   /// A number in SI, or one with a unit of the same dimension; low and high in SI, both allowed.
   double quantity(const YamlField& field, const std::string& si_unit, double low, double high) const;

@@ -85,15 +85,15 @@ class Simulation {
   /// The input in force. Initially, and after the state was replaced, one under which the state stays as it is: joints
   /// where they are, what is held stays held.
   const StepInput& input() const { return input_; }
-  void setInput(const StepInput& input) { input_ = input; }
+  void setInput(const StepInput& input) { input_ = input; }  ///< for the steps from now on
 
   // --- what there is
 
-  const Model& model() const { return *model_; }
-  const std::shared_ptr<const Model>& sharedModel() const { return model_; }
-  const State& state() const { return state_; }
-  double time() const { return state_.time; }                      ///< [s]
-  std::int64_t stepCount() const { return state_.step; }           ///< since the initial state, through snapshots
+  const Model& model() const { return *model_; }  ///< as constructed, or of the last replaceModel()
+  const std::shared_ptr<const Model>& sharedModel() const { return model_; }  ///< the same, to keep or to share it
+  const State& state() const { return state_; }           ///< at the end of the last step, until the next changes it
+  double time() const { return state_.time; }             ///< [s]
+  std::int64_t stepCount() const { return state_.step; }  ///< since the initial state, through snapshots
   double stepPeriod() const { return model_->scene.step_period; }  ///< [s]
   const std::vector<Event>& events() const { return events_; }     ///< of the last step
   /// Impedance of the tissue at the tool in the last step; empty while nothing is touched, and with shape matching.
@@ -106,7 +106,7 @@ class Simulation {
   void addWarnings(int count);
   /// Durations of vibe::step(), without metrics, since the simulation was made. Windows are the caller's to clear.
   StepTimer& timer() { return timer_; }
-  const StepTimer& timer() const { return timer_; }
+  const StepTimer& timer() const { return timer_; }  ///< to read only
   /// What the steps have spent their time on; null without SimulationSettings::stages.
   const StageSummary* stages() const { return stages_.get(); }
   /// See vibe::hash().

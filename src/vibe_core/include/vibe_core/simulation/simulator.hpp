@@ -27,20 +27,20 @@ class Workspace {
   Workspace(const Workspace&) = delete;
   Workspace& operator=(const Workspace&) = delete;
 
-  SolverWorkspace& solverWorkspace() { return *solver_workspace_; }
+  SolverWorkspace& solverWorkspace() { return *solver_workspace_; }  ///< made by the solver of the model
   /// Output of the last step beside the state: mechanical impedance of the tissue at the tool. Empty while nothing is
   /// touched, and with solvers that do not estimate it (shape matching).
   std::optional<ToolImpedance>& toolImpedance() { return tool_impedance_; }
   /// Results of the last step beside the state.
   StepReport& report() { return report_; }
   MarkingScratch* marking() { return marking_.get(); }  ///< null in a scene without marking or scope
-  int threads() const { return pool_.threads(); }
+  int threads() const { return pool_.threads(); }       ///< as many as the constructor was given
   /// From now on StepReport::stage_times says what a step spends its time on, with the implicit solver.
   void measureStages();
   /// From now on toolImpedance() stays empty and State::impedance as it is. All else has the same bits.
   void skipImpedance() { solver_workspace_->wants_impedance = false; }
 
-  ThreadPool& threadPool() { return pool_; }
+  ThreadPool& threadPool() { return pool_; }  ///< in which the parts of a step run
 
  private:
   ThreadPool pool_;

@@ -16,8 +16,9 @@ class StageSummary {
   /// A table: mean, median and 99th percentile per stage and step, share of the whole; and mean counts.
   std::string text() const;
 
+  /// CPU time of a stage, one entry per step [s].
   const DurationHistogram& stage(StepStage stage) const { return stages_[static_cast<std::size_t>(stage)]; }
-  const DurationHistogram& whole() const { return whole_; }
+  const DurationHistogram& whole() const { return whole_; }  ///< of all stages together, one entry per step [s]
 
  private:
   std::array<DurationHistogram, kStepStages> stages_;

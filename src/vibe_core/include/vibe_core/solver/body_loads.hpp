@@ -19,6 +19,7 @@ template <class T>
 class RowList {
  public:
   RowList() = default;
+  /// @param items  what it holds at first, in this order
   RowList(std::initializer_list<T> items) : items_(items), size_(items.size()) {}
 
   /// One more element, to be set completely: it may hold the values of an element that was removed.
@@ -49,6 +50,7 @@ class EnergyTerm;
 
 /// Motions of a tool that yields, in the order of ToolDisplacement, counted from where it is expected.
 using YieldVector = Eigen::Matrix<double, kYieldDofs, 1>;
+/// A compliance or a stiffness between these motions and their forces.
 using YieldMatrix = Eigen::Matrix<double, kYieldDofs, kYieldDofs>;
 
 /// How a tool yields to the forces of its constraints and contacts within the step:
@@ -62,17 +64,18 @@ struct ToolYield {
 
 /// A point of the surface: the weighted mean of up to three nodes.
 struct SurfacePoint {
-  int count = 0;
-  std::array<int, 3> node{-1, -1, -1};
-  std::array<double, 3> weight{};  ///< sum 1 [1]
+  int count = 0;                        ///< number of nodes, 1 to 3; 0: no point
+  std::array<int, 3> node{-1, -1, -1};  ///< their numbers, -1 behind the last one
+  std::array<double, 3> weight{};       ///< sum 1 [1]
 
+  /// The place of one node.
   static SurfacePoint ofNode(int node) { return {1, {node, -1, -1}, {1, 0, 0}}; }
 };
 
 /// A linear constraint on positions: sum over k of coefficient[k] . x[node[k]] = target - compliance * force.
 /// Examples are held tissue and the weighted mean of a patch on a spring.
 struct LinearConstraint {
-  std::vector<int> node;
+  std::vector<int> node;                     ///< numbers of the nodes
   std::vector<Eigen::Vector3d> coefficient;  ///< [1]
   double target = 0;                         ///< [m]
   double compliance = 0;                     ///< 0: exact [m/N]
@@ -83,7 +86,7 @@ struct LinearConstraint {
 
 /// A few nodes of which something outside feels the weighted mean.
 struct AttachmentPoint {
-  std::vector<int> node;
+  std::vector<int> node;       ///< numbers of the nodes
   std::vector<double> weight;  ///< [1]
   bool operator==(const AttachmentPoint& other) const { return node == other.node && weight == other.weight; }
 };
@@ -106,7 +109,7 @@ struct ThreadLoad {
 /// A point of the surface that must not come nearer than its gap to a tool, with Coulomb friction against the tool's
 /// motion.
 struct ContactConstraint {
-  SurfacePoint point;
+  SurfacePoint point;                                ///< that must keep its distance
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< out of the tool, unit
   double offset = 0;                                 ///< normal . x >= offset - compliance * normal force [m]
   double compliance = 0;                             ///< of the wall's thickness; 0: rigid [m/N]
@@ -124,8 +127,8 @@ struct GasLoad {
   /// What is given: nothing (no gas), the pressure, the amount of a closed gas, the set point of an insufflator that
   /// keeps the pressure within its flow, or the volume.
   enum class Control { None, Pressure, Amount, Regulated, Volume };
-  Control control = Control::None;
-  double pressure = 0;       ///< gauge; given for Pressure, otherwise out: where the forces of the step act [Pa]
+  Control control = Control::None;  ///< which of the other members are given
+  double pressure = 0;              ///< gauge; given for Pressure, otherwise out: where the forces of the step act [Pa]
   double amount = 0;         ///< absolute pressure times volume at the start of the step; for Amount, Regulated [J]
   double amount_min = 0;     ///< least amount at the end of the step, for Regulated [J]
   double amount_max = 0;     ///< largest amount at the end of the step, for Regulated [J]
@@ -138,12 +141,12 @@ struct GasLoad {
 
 /// Everything that acts on the body during one step, beside its own elasticity, foundation and weight.
 struct BodyLoads {
-  RowList<LinearConstraint> constraints;
-  RowList<ContactConstraint> contacts;
-  RowList<AttachmentPoint> attachments;  ///< of the threads; those that stay from step to step keep their numbers
-  RowList<ThreadLoad> threads;
-  GasLoad gas;
-  ToolYield tool_yield;
+  RowList<LinearConstraint> constraints;     ///< what is held, exactly or by a spring
+  RowList<ContactConstraint> contacts;       ///< of the wall with the tool
+  RowList<AttachmentPoint> attachments;      ///< of the threads; those that stay from step to step keep their numbers
+  RowList<ThreadLoad> threads;               ///< each runs through its own attachments
+  GasLoad gas;                               ///< by default there is none
+  ToolYield tool_yield;                      ///< by default the tool is rigid
   const EnergyTerm* extra = nullptr;         ///< null: none
   std::vector<StiffnessCoupling> couplings;  ///< stiffness beside that of `extra`, for the factor of later steps
 

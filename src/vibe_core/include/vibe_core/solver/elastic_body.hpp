@@ -15,7 +15,7 @@ class ShellElements;
 
 /// A soft body as an implicit solver sees it. Constant.
 struct ElasticBody {
-  std::shared_ptr<const ElasticElements> elements;
+  std::shared_ptr<const ElasticElements> elements;    ///< its stored energy as a function of displacements from `rest`
   const ShellElements* shell = nullptr;               ///< the same elements where they enclose gas; null: no gas
   std::vector<Eigen::Vector3d> rest;                  ///< of the nodes [m]
   std::vector<double> mass;                           ///< lumped, per node [kg]
@@ -26,19 +26,19 @@ struct ElasticBody {
   double mass_damping = 0;                            ///< force -rate m v [1/s]
   double stiffness_damping = 0;                       ///< force -time K v: the time constant of the tissue [s]
 
-  int nodeCount() const { return static_cast<int>(rest.size()); }
+  int nodeCount() const { return static_cast<int>(rest.size()); }  ///< fixed ones included
 };
 
 /// The motion of the nodes, structure of arrays (nodeCount) [m], [m/s], [m/s^2]; views into a State or a BodyMotion.
 struct MotionView {
-  std::array<double*, 3> x, v, a;
+  std::array<double*, 3> x, v, a;  ///< positions, velocities, accelerations: an array per axis, not owned
 };
 
 /// The same with its own memory.
 struct BodyMotion {
   explicit BodyMotion(const ElasticBody& body);  ///< at rest
-  MotionView view();
-  std::array<std::vector<double>, 3> x, v, a;  ///< per axis and node [m], [m/s], [m/s^2]
+  MotionView view();                             ///< of the vectors below, as long as they live and keep their size
+  std::array<std::vector<double>, 3> x, v, a;    ///< per axis and node [m], [m/s], [m/s^2]
 };
 
 }  // namespace vibe

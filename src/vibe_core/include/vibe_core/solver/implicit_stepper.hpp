@@ -33,7 +33,7 @@ struct StepWork {
 
 /// What a step or a solve did.
 struct StepOutcome {
-  int iterations = 0;
+  int iterations = 0;        ///< of the quasi-Newton method
   double last_move = 0;      ///< farthest a node moved in the last iteration [m]
   int refactorisations = 0;  ///< static solves only
   bool converged = false;    ///< last_move is below the tolerance
@@ -81,12 +81,15 @@ constexpr int kSpareInFallback = 16;
 /// half-solved space, so they need no new factor.
 class ImplicitStepper {
  public:
+  /// Orders the equations, see makeFactorPlan(); the first factor is made when a step needs it.
+  /// @param storage  precision in which factors are kept
   ImplicitStepper(ElasticBody body, StepSettings settings, FactorStorage storage = FactorStorage::Half);
   ~ImplicitStepper();
 
-  const ElasticBody& body() const { return body_; }
-  const StepSettings& settings() const { return settings_; }
+  const ElasticBody& body() const { return body_; }           ///< as constructed
+  const StepSettings& settings() const { return settings_; }  ///< as constructed
 
+  /// Memory for one thread of control. Workspaces of one stepper share the factors that they have, see shareFactor().
   std::shared_ptr<StepperWorkspace> makeWorkspace() const;
 
   /// The factor that a memory names. As long as the result lives, a workspace of this stepper that needs it, such as

@@ -11,9 +11,9 @@ namespace vibe {
 /// Sparsity pattern of a symmetric matrix of 3 x 3 blocks: the diagonal, and below it in row i the columns
 /// column[start[i]] ... column[start[i + 1] - 1], ascending, all less than i. One block row per node.
 struct BlockPattern {
-  int size = 0;            ///< nodes
-  std::vector<int> start;  ///< (size + 1)
-  std::vector<int> column;
+  int size = 0;             ///< nodes
+  std::vector<int> start;   ///< (size + 1)
+  std::vector<int> column;  ///< of each block below the diagonal, row by row (start.back())
 
   /// Index in `column` of the block (row, column), column < row; -1: not in the pattern.
   int find(int row, int column_wanted) const;
@@ -21,7 +21,7 @@ struct BlockPattern {
 
 /// Two nodes of which the first has the larger number: a block below the diagonal.
 struct NodePair {
-  int row, column;
+  int row, column;  ///< numbers of the two nodes, column < row
   bool operator==(const NodePair& other) const { return row == other.row && column == other.column; }
   bool operator<(const NodePair& other) const { return row != other.row ? row < other.row : column < other.column; }
 };
@@ -35,9 +35,11 @@ BlockPattern blockPattern(int size, const std::vector<std::pair<const std::vecto
 /// Only the lower triangle is stored.
 class BlockMatrix {
  public:
+  /// All blocks are zero, and no pairs are coupled.
+  /// @param pattern  not null
   explicit BlockMatrix(std::shared_ptr<const BlockPattern> pattern);
 
-  void setZero();
+  void setZero();  ///< all blocks; pattern and pairs stay
   /// Replaces the pairs of nodes beside the pattern; their blocks are zero.
   /// @param pairs  sorted, each once, none in the pattern
   void couple(const std::vector<NodePair>& pairs);
@@ -68,10 +70,10 @@ class BlockMatrix {
   /// out = A x, vectors of (3 * size), interleaved.
   void multiply(const double* x, double* out) const;
 
-  const BlockPattern& pattern() const { return *pattern_; }
-  const std::vector<Eigen::Matrix3d>& diagonal() const { return diagonal_; }
-  const std::vector<Eigen::Matrix3d>& lower() const { return lower_; }
-  const std::vector<NodePair>& pairs() const { return pairs_; }
+  const BlockPattern& pattern() const { return *pattern_; }                   ///< as constructed, without pairs()
+  const std::vector<Eigen::Matrix3d>& diagonal() const { return diagonal_; }  ///< one block per node
+  const std::vector<Eigen::Matrix3d>& lower() const { return lower_; }  ///< one block per entry of BlockPattern::column
+  const std::vector<NodePair>& pairs() const { return pairs_; }         ///< as of the last couple(); empty before it
   const std::vector<Eigen::Matrix3d>& coupled() const { return coupled_; }  ///< of pairs()
 
  private:

@@ -17,6 +17,7 @@ enum class FactorStorage { Half, Float, Double };
 /// factors. Nested dissection by METIS (fixed seeds: the plan is reproducible), supernodes over the elimination tree.
 /// METIS uses rand(): another thread that calls rand() or srand() meanwhile changes the plan.
 class FactorPlan;
+/// Makes orders from several seeds and takes the one whose factor costs least to solve with.
 std::shared_ptr<const FactorPlan> makeFactorPlan(const BlockPattern& pattern);
 /// The plan for a pattern with further pairs of nodes: the order of `base`, in which those nodes that the pairs connect
 /// across branches of the elimination tree are moved up to where the branches meet. After Zarebavani et al., "Parth",
@@ -25,6 +26,7 @@ std::shared_ptr<const FactorPlan> makeFactorPlan(const BlockPattern& pattern);
 /// @param pairs  sorted, each once, none in the pattern; empty: the result is `base`
 std::shared_ptr<const FactorPlan> coupledPlan(const std::shared_ptr<const FactorPlan>& base,
                                               const std::vector<NodePair>& pairs);
+/// The pairs that coupledPlan() was given; empty for a plan of makeFactorPlan().
 const std::vector<NodePair>& pairsOf(const FactorPlan& plan);
 
 /// L^-1 times the three unit vectors of a node. It is nonzero only on the path from the node to the root of the
@@ -44,6 +46,8 @@ struct HalfColumns {
 /// It is meant as a preconditioner. The substitutions may run in several threads at once, compute() must run alone.
 class Factor {
  public:
+  /// Takes the memory that the plan needs. compute() comes next.
+  /// @param plan  not null
   explicit Factor(std::shared_ptr<const FactorPlan> plan, FactorStorage storage = FactorStorage::Half);
   ~Factor();
   Factor(const Factor&) = delete;
@@ -51,7 +55,7 @@ class Factor {
 
   /// Changes the plan to one of a matrix of the same size, and keeps the memory. compute() comes next.
   void setPlan(std::shared_ptr<const FactorPlan> plan);
-  const std::shared_ptr<const FactorPlan>& plan() const { return plan_; }
+  const std::shared_ptr<const FactorPlan>& plan() const { return plan_; }  ///< as constructed, or of the last setPlan()
 
   /// @returns false if the matrix is not positive definite (a pivot of D A D is below 1e-14, or not a number); the
   ///         factor is then unusable until the next success
@@ -64,9 +68,9 @@ class Factor {
   void load(const float* nodes4, float* vector) const;
   /// The inverse permutation of load, followed by multiplication by D.
   void store(const float* vector, float* nodes4) const;
-  /// L^-1 and L^-T, in place. load, forward, backward and store together solve A x = b.
+  /// L^-1, in place. load, forward, backward and store together solve A x = b.
   void forward(float* vector) const;
-  void backward(float* vector) const;
+  void backward(float* vector) const;  ///< L^-T, in place
   /// The same bits by the threads of a pool, which share the branches of the elimination tree.
   void forward(float* vector, ThreadPool& pool) const;
   void backward(float* vector, ThreadPool& pool) const;  ///< like forward() by threads

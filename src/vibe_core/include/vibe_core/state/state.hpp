@@ -29,13 +29,13 @@ struct PullSpring {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< end of the spring, world [m]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< spring on tissue in the last step, world [N]
 
-  bool holds() const { return !node.empty(); }
+  bool holds() const { return !node.empty(); }  ///< it pulls on tissue
 };
 
 /// A particle of the disc of wall that the helix holds. The helix carries along the mean place of the disc and its mean
 /// stretch and turn, so a single particle may move against it.
 struct GripPoint {
-  int particle = -1;
+  int particle = -1;      ///< its number
   Eigen::Vector3d local;  ///< where it was when the helix took hold, in the frame of the link that carries it [m]
   double weight = 1;      ///< its share of the disc; sum over the grip 1 [1]
 };
@@ -74,9 +74,9 @@ constexpr double kContactGap = 0.25;
 /// Everything that changes. A snapshot is a copy; equal states have equal futures. Every member of it, and of the
 /// structs in it, is in a table of state_fields.hpp, from which hash, snapshot and comparison follow.
 struct State {
-  std::int64_t step = 0;
-  double time = 0;  ///< step * step_period [s]
-  std::uint64_t seed = 1;
+  std::int64_t step = 0;     ///< number of steps since the initial state
+  double time = 0;           ///< step * step_period [s]
+  std::uint64_t seed = 1;    ///< with which `random` started
   std::uint64_t random = 0;  ///< state of the generator
 
   // particles, structure of arrays, (particle count)
@@ -89,6 +89,8 @@ struct State {
   double gas_amount = 0;  ///< absolute pressure times volume [Pa m^3 = J]
   double pressure = 0;    ///< gauge [Pa]
   double volume = 0;      ///< of the lumen [m^3]
+  /// The insufflator is on and came within 1 % of its set point (at least 1 Pa), and has not been beyond 5 % since (at
+  /// least 5 Pa).
   bool pressure_reached = false;
 
   std::array<double, kJointCount> joints{};  ///< of the hand: positions of the tool's inputs, limits applied [m], [rad]
@@ -110,9 +112,9 @@ struct State {
 
   PullSpring pull;  ///< pulls the tissue from outside
 
-  ProcedureState procedure;
+  ProcedureState procedure;  ///< marks, needle, sutures and bleeding
 
-  EnergyAccount energy;
+  EnergyAccount energy;  ///< works and losses; they start from 0 again where the tissue does (EventDetail::NotFinite)
 
   StepperMemory solver;       ///< of the implicit solver; empty with another
   ImpedanceMemory impedance;  ///< of the implicit solver's tool impedance; empty with another

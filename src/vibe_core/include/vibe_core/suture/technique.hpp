@@ -9,22 +9,23 @@ namespace vibe {
 /// Stitch pattern that the operator intended with a set of bites. docs/technique.md describes the patterns and where
 /// two of them coincide.
 enum class Technique : std::uint8_t { Other = 0, U = 1, Z = 2, Triangular = 3, Square = 4, Running = 5, C = 6 };
-constexpr int kTechniqueCount = 7;
+constexpr int kTechniqueCount = 7;  ///< values of Technique, Other included
 
 /// "other", "u", "z", "triangular", "square", "running", "c".
 const char* toString(Technique technique);
 
+/// How a technique is recognised.
 enum class TechniqueRule {
   Corrected,  ///< the nearest ideal pattern among those of all techniques
   Printed     ///< equations 1 to 4 of the ViBE paper (section 2.1.3) as printed: U, Z or Other
 };
 
-/// Fewest and most bites of a technique. Sets outside this range are Other.
+/// Fewest bites of a technique. Sets with less are Other.
 constexpr int kTechniqueMinBites = 4;
-constexpr int kTechniqueMaxBites = 16;
+constexpr int kTechniqueMaxBites = 16;  ///< most bites; sets with more are Other
 
 struct TechniqueResult {
-  Technique technique = Technique::Other;
+  Technique technique = Technique::Other;  ///< that was recognised; Other: none
 
   /// Confidence of the result [1], from 0 (another technique is equally likely) to 1. Corrected: tanh(d / 4), where d
   /// is the misfit of the closest alternative minus that of the result. This is the difference of the two probabilities

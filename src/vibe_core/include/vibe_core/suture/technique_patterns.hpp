@@ -20,7 +20,7 @@ struct PatternRanges {
 
 /// A suture set with its intended technique.
 struct TechniquePattern {
-  Technique technique;
+  Technique technique;                 ///< that was asked for
   std::vector<Eigen::Vector3d> bites;  ///< [m], in the order in which they are made, in a random pose
 };
 

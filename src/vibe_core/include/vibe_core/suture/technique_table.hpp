@@ -20,8 +20,8 @@ namespace vibe {
 ///         header without x, y or z, no bite at all, or a read error
 std::vector<std::vector<Eigen::Vector3d>> readTechniqueCsv(std::istream& in, const std::string& name);
 
-constexpr int kTableMinBites = 4;
-constexpr int kTableMaxBites = 9;
+constexpr int kTableMinBites = 4;  ///< fewest bites of a set in a table
+constexpr int kTableMaxBites = 9;  ///< most bites of a set in a table
 
 /// Confusion table: how often a rule assigned each technique to the patterns of a technique.
 struct TechniqueTable {
@@ -32,8 +32,9 @@ struct TechniqueTable {
   /// Share of correct answers [1]. three_way: Triangular, Square, Running, C and Other count as one answer, as in the
   /// paper.
   double right(bool three_way) const;
+  /// The same among the sets of that many bites, kTableMinBites to kTableMaxBites; 0: there are none [1].
   double right(bool three_way, int bite_count) const;
-  int drawn(Technique technique) const;
+  int drawn(Technique technique) const;  ///< number of patterns of that technique in the table
 };
 
 /// Draws `per_cell` patterns of every technique and number of bites and recognises them.

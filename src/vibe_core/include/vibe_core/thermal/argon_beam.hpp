@@ -53,7 +53,7 @@ struct Ray;
 
 /// Share of the beam that one particle receives.
 struct BeamShare {
-  int particle = -1;
+  int particle = -1;      ///< its number
   double power = 0;       ///< into the wall area of the particle; the shares sum to power * efficiency [W]
   double spot_power = 0;  ///< the same per area, times the area of the footprint at contact [W]
   double cover = 0;       ///< coverage by the footprint: 1 at its centre, 0 at its rim
@@ -96,7 +96,7 @@ class ArgonBeam {
   const BeamHit& fire(const Eigen::Vector3d& tip, const Eigen::Vector3d& direction, const SurfaceView& wall,
                       double half_wall, const ApcParameters& parameters);
 
-  const BeamHit& hit() const { return hit_; }
+  const BeamHit& hit() const { return hit_; }  ///< of the last fire(); without a triangle before it
   const std::vector<BeamShare>& shares() const {
     return shares_;
   }  ///< of the last fire(), in order of connection from the hit

@@ -11,10 +11,10 @@ namespace vibe {
 
 /// A mark: a set of particles with a grade, connected by triangle edges. A drawn line is one mark.
 struct MarkZone {
-  int particle = -1;  ///< the particle with the largest dose; determines wall and region
-  int count = 0;      ///< number of particles
-  Wall wall = Wall::Anterior;
-  Region region = Region::Body;
+  int particle = -1;                  ///< the particle with the largest dose; determines wall and region
+  int count = 0;                      ///< number of particles
+  Wall wall = Wall::Anterior;         ///< of `particle`
+  Region region = Region::Body;       ///< of `particle`
   BurnGrade grade = BurnGrade::None;  ///< the worst
   Eigen::Vector3d centre =
       Eigen::Vector3d::Zero();  ///< mean of the particles, in world; off the wall for a long mark [m]

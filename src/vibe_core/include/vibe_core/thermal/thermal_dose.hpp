@@ -18,10 +18,10 @@ const char* toString(BurnGrade grade);
 
 /// A particle whose grade has risen during a step.
 struct Burn {
-  int particle = -1;
-  BurnGrade grade = BurnGrade::None;
-  Wall wall = Wall::Anterior;
-  Region region = Region::Body;
+  int particle = -1;                  ///< its number
+  BurnGrade grade = BurnGrade::None;  ///< that it has reached
+  Wall wall = Wall::Anterior;         ///< where the particle is
+  Region region = Region::Body;       ///< where the particle is
 };
 
 /// Flow of cooling gas [m^3/s].

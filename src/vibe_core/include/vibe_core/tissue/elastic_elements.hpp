@@ -15,8 +15,8 @@ class ElasticElements {
  public:
   virtual ~ElasticElements() = default;
 
-  virtual int nodeCount() const = 0;
-  virtual int pieceCount() const = 0;
+  virtual int nodeCount() const = 0;   ///< of the whole body, fixed nodes included
+  virtual int pieceCount() const = 0;  ///< number of pieces, which does not depend on the number of threads
 
   /// Adds the energy gradient [N] of one piece at the displacements (m) and returns its energy [J]. No allocation.
   /// @param displacement4, gradient4  (4 * nodeCount)

@@ -14,21 +14,23 @@ namespace vibe {
 /// limit) it is extended such that energy and force stay finite for inverted and collapsed material and the force
 /// restores it: see tissue/law_terms.hpp.
 enum class Law {
+/// One line of the list of laws as an enumerator.
 #define VIBE_ENUMERATOR(name, word, formula) name,
   VIBE_MATERIAL_LAWS(VIBE_ENUMERATOR)
 #undef VIBE_ENUMERATOR
 };
 
-/// Number of built-in laws. Laws of other packages have this number and higher ones: see material_registry.hpp.
+/// One line of the list of laws as a number to be added.
 #define VIBE_COUNT(name, word, formula) +1
+/// Number of built-in laws. Laws of other packages have this number and higher ones: see registerMaterialLaw().
 constexpr int kLawCount = VIBE_MATERIAL_LAWS(VIBE_COUNT);
 #undef VIBE_COUNT
 
 struct Material {
-  Law law = Law::NeoHookean;
-  double young_modulus = 0;  ///< [Pa]
-  double poisson_ratio = 0;  ///< [1]
-  double stiffening = 0;     ///< b, or 1/Jm; not used by every law [1]
+  Law law = Law::NeoHookean;  ///< built in, or registered before
+  double young_modulus = 0;   ///< [Pa]
+  double poisson_ratio = 0;   ///< [1]
+  double stiffening = 0;      ///< b, or 1/Jm; not used by every law [1]
 };
 
 /// Parameter ranges of a law beyond E > 0, 0 <= nu < 0.5 and stiffening >= 0.
@@ -66,9 +68,9 @@ struct LawParameters {
 
 /// Energy per rest volume W(I, J) and its derivatives with respect to I and J [Pa].
 struct LawDerivatives {
-  double energy;
-  double by_i, by_j;
-  double by_ii, by_ij, by_jj;
+  double energy;               ///< W [Pa]
+  double by_i, by_j;           ///< dW/dI, dW/dJ [Pa]
+  double by_ii, by_ij, by_jj;  ///< d2W/dI2, d2W/dI dJ, d2W/dJ2 [Pa]
 };
 
 /// An elastic law defined in another package. Once registered, scenes and benchmark cases refer to it by name like a
@@ -101,9 +103,9 @@ struct LawConstants;
 /// with it the stress 2 W_I F + W_J cof F = 2 W_I (F - cof F) + balance cof F has no large terms that cancel.
 template <class Real>
 struct EnergyDerivatives {
-  Real energy;
-  Real by_i, by_j, balance;
-  Real by_ii, by_ij, by_jj;
+  Real energy;               ///< W [Pa]
+  Real by_i, by_j, balance;  ///< dW/dI, dW/dJ, and dW/dJ + 2 dW/dI [Pa]
+  Real by_ii, by_ij, by_jj;  ///< d2W/dI2, d2W/dI dJ, d2W/dJ2 [Pa]
 };
 
 /// The law of a material at any deformation, for elements outside this library. The arguments are the invariants of
@@ -114,6 +116,7 @@ class MaterialEnergy {
   /// @throws Error as checkMaterial(), with the place "the material"
   explicit MaterialEnergy(const Material& material);
 
+  /// In double precision.
   EnergyDerivatives<double> at(double first, double volume, double difference) const;
   /// In single precision, with the bits of the shells in fused arithmetic, whatever the arithmetic of this process is.
   EnergyDerivatives<float> at(float first, float volume, float difference) const;

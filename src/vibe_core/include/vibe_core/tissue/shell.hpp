@@ -36,11 +36,11 @@ struct ShellMesh {
   std::vector<Eigen::Vector3d> nodes;         ///< [m]
   std::vector<std::array<int, 3>> triangles;  ///< node numbers, counter-clockwise seen from outside
   std::vector<double> thickness;              ///< per triangle [m]
-  std::vector<Material> materials;
-  std::vector<int> material;  ///< per triangle, index into `materials`; empty: all of the first
-  ShellFibres fibres;
-  std::vector<char> fixed;                 ///< per node, nonzero: held; empty: none is held
-  std::vector<std::array<int, 2>> hinged;  ///< edges that bend freely although they have two triangles or are fixed
+  std::vector<Material> materials;            ///< different ones of the wall, at least one
+  std::vector<int> material;                  ///< per triangle, index into `materials`; empty: all of the first
+  ShellFibres fibres;                         ///< by default none
+  std::vector<char> fixed;                    ///< per node, nonzero: held; empty: none is held
+  std::vector<std::array<int, 2>> hinged;     ///< edges that bend freely although they have two triangles or are fixed
 };
 
 /// A thin wall with membrane and bending stiffness: the rotation-free triangles of Flores & Onate 2005, "Improvements
@@ -98,7 +98,7 @@ class ShellElements : public ElasticElements {
   /// Square root of the ratio of the areas around the node to those at rest, minus 1.
   void strain(const double* displacement, float* out) const override;
 
-  const ShellMesh& mesh() const { return mesh_; }
+  const ShellMesh& mesh() const { return mesh_; }  ///< as constructed
 
  private:
   struct Run {  // batches of one material, with or without ghosts

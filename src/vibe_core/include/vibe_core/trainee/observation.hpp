@@ -27,10 +27,10 @@ struct Observation {
   Eigen::Vector3d helix = Eigen::Vector3d::Zero();  ///< position of the helix' tip, in world [m]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< tissue on tool, mean over the step, in scope_tip [N]
 
-  double pressure = 0;            ///< of the gas, gauge [Pa]
-  bool pressure_reached = false;  ///< the insufflator is at its set point
-  bool grips = false;             ///< the helix holds tissue
-  bool arm_closed = false, needle_on_arm = true, needle_loaded = true;
+  double pressure = 0;                                                  ///< of the gas, gauge [Pa]
+  bool pressure_reached = false;                                        ///< the insufflator is at its set point
+  bool grips = false;                                                   ///< the helix holds tissue
+  bool arm_closed = false, needle_on_arm = true, needle_loaded = true;  ///< of the needle, see ProcedureState
 
   int sets = 0;                               ///< suture sets begun
   int bites = 0;                              ///< of the last one

@@ -29,30 +29,30 @@ struct InsufflateGoal {
 
 /// Looks at a place of the wall: from a distance, with the place in the middle of the endoscope's picture.
 struct InspectGoal {
-  Place place;
+  Place place;              ///< at which it looks
   double distance = 40e-3;  ///< of the tip from the wall [m]
   double time = 1;          ///< that it stays there [s]
 };
 
 struct MarkGoal {
-  Place place;
+  Place place;      ///< at which the beam is aimed
   double time = 2;  ///< that the pedal is pressed [s]
 };
 
 struct BiteGoal {
-  Place place;
+  Place place;  ///< where the needle is to go through the wall
 };
 
 /// Bites in a pattern around a place, each as far from the last as the lengths ask for.
 struct SutureSetGoal {
-  Technique pattern = Technique::U;
-  Place centre;
-  int bites = 7;
-  double length = 25e-3;  ///< of the pattern along the organ [m]
-  double width = 60e-3;   ///< and around it [m]
-  bool mirrored = false;  ///< begins on the posterior instead of the anterior side
-  bool cinched = true;    ///< ends with T-tag and cinch
-  double spacing = 0;     ///< of the sets of its row, as Place::along; leaves less `length`; 0: it is alone [1]
+  Technique pattern = Technique::U;  ///< shape of the set; not Technique::Other
+  Place centre;                      ///< of the pattern
+  int bites = 7;                     ///< number in all, fewestBites() of the pattern to kTechniqueMaxBites
+  double length = 25e-3;             ///< of the pattern along the organ [m]
+  double width = 60e-3;              ///< and around it [m]
+  bool mirrored = false;             ///< begins on the posterior instead of the anterior side
+  bool cinched = true;               ///< ends with T-tag and cinch
+  double spacing = 0;  ///< of the sets of its row, as Place::along; leaves less `length`; 0: it is alone [1]
 };
 
 struct CinchGoal {};
@@ -65,6 +65,7 @@ struct WaitGoal {
   double time = 1;  ///< [s]
 };
 
+/// One thing that a trainee is to do.
 using Goal =
     std::variant<InsufflateGoal, InspectGoal, MarkGoal, BiteGoal, SutureSetGoal, CinchGoal, WithdrawGoal, WaitGoal>;
 
@@ -73,20 +74,22 @@ std::string describe(const Goal& goal);
 
 /// What became of a goal.
 struct GoalResult {
-  bool reached = false;
-  std::string reason;   ///< one sentence, if not reached; what was done, if it was
-  int bites_taken = 0;  ///< for it
+  bool reached = false;  ///< false: given up
+  std::string reason;    ///< one sentence, if not reached; what was done, if it was
+  int bites_taken = 0;   ///< for it
 };
 
 /// What a trainee that looks is to do, and how well. docs/protocols.md describes the format.
 struct Protocol {
-  std::string name;
-  Skill skill;
-  std::uint64_t seed = 1;  ///< of aim errors and tremor
-  std::vector<Goal> goals;
+  std::string name;         ///< for people
+  Skill skill;              ///< of the trainee; an expert where the file says nothing
+  std::uint64_t seed = 1;   ///< of aim errors and tremor
+  std::vector<Goal> goals;  ///< in their order; at least one if it was read
 
   /// @throws Error with file, line and remedy for input that does not follow the format
   static Protocol load(const std::string& file);
+  /// Reads a text instead of a file, with the same errors.
+  /// @param place  what to call it in errors, e.g. the name of its file
   static Protocol parse(const std::string& yaml, const std::string& place);
 };
 

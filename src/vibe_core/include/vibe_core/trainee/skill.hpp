@@ -23,6 +23,7 @@ struct TremorSettings {
 class Tremor {
  public:
   Tremor() = default;
+  /// @param seed  of frequencies and phases
   Tremor(const TremorSettings& settings, std::uint64_t seed);
 
   /// Displacement of a joint at time t [s] in [m] or [rad].
@@ -40,7 +41,7 @@ class Tremor {
 /// How well a trainee performs. The defaults describe an experienced endoscopist; novice() a beginner. Values between
 /// the two are a learning curve.
 struct Skill {
-  std::string name = "expert";
+  std::string name = "expert";  ///< for people; it changes nothing
   double pace = 1;              ///< speed of the hand relative to an experienced one [1]
   double look_time = 7;         ///< that is taken to look before each bite [s]
   double foresight = 1;         ///< how well it imagines where the needle will pass when the wall is drawn in, 0 to 1:
@@ -53,10 +54,11 @@ struct Skill {
   int attempts = 5;             ///< per bite or mark
   bool checks_depth = true;     ///< draws the wall in farther if the needle has not penetrated it fully
   double tightness = 1;         ///< part of the tension of a full cinch at which it is released [1]
+  /// Of the hands, added to all motions.
   TremorSettings tremor{8, 12, {5e-5, 1.7e-3, 1.7e-3, 1.7e-3, 2e-5, 0, 0}, 1};
 
-  static Skill expert() { return {}; }
-  static Skill novice();
+  static Skill expert() { return {}; }  ///< the defaults
+  static Skill novice();                ///< a beginner: slower, less accurate, rougher, and content with less
 };
 
 /// Between two skills: 0: the first, 1: the second.

@@ -38,10 +38,10 @@ class Trainee {
   /// @return the input of the next step, which is decided on what was perceived Skill::reaction_time ago
   StepInput next(const Observation& seen);
 
-  bool done() const;                    ///< every goal has ended
-  int current() const;                  ///< number of the goal that is pursued, or of goals, if none is left
-  const std::string& activity() const;  ///< what it is doing: "bite 3 of 7, second try"
-  const std::vector<Goal>& goals() const;
+  bool done() const;                               ///< every goal has ended
+  int current() const;                             ///< number of the goal that is pursued, or of goals, if none is left
+  const std::string& activity() const;             ///< what it is doing: "bite 3 of 7, second try"
+  const std::vector<Goal>& goals() const;          ///< all that were added, by number
   const std::vector<GoalResult>& results() const;  ///< one per goal that has ended
 
   /// Called when the activity changes; may be empty.

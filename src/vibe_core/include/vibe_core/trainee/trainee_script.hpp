@@ -21,6 +21,7 @@ class Timeline {
   void addMotion(int joint, double begin, double end, double to);
   /// Presses or releases a button. The time must not lie before the button's last edge.
   void addEdge(int button, double time, bool pressed);
+  /// A phase begins, and lasts until the next. The time must not lie before the beginning of the last one.
   void addPhase(double time, const std::string& name);
   /// Extends the timeline to at least this time.
   void extendTo(double time);
@@ -30,10 +31,11 @@ class Timeline {
   bool isPressed(int button) const;     ///< after its last edge
   double lastEdge(int button) const;    ///< time of its last edge; -infinity without one
 
+  /// End of the last entry, or the time of extendTo() if that is later [s].
   double duration() const { return duration_; }
-  double position(int joint, double time) const;
-  bool pressed(int button, double time) const;
-  const std::string& phase(double time) const;  ///< empty before the first phase
+  double position(int joint, double time) const;  ///< of a joint, by its motions; between them it stays [m], [rad]
+  bool pressed(int button, double time) const;    ///< whether a button is down; not before its first edge
+  const std::string& phase(double time) const;    ///< empty before the first phase
 
  private:
   struct Motion {
@@ -64,13 +66,15 @@ class TraineeScript {
  public:
   /// @throws Error with file, line and remedy for input that does not follow the format.
   static TraineeScript load(const std::string& file);
+  /// Reads a text instead of a file, with the same errors.
+  /// @param place  what to call it in errors, e.g. the name of its file
   static TraineeScript parse(const std::string& yaml, const std::string& place);
 
   /// Input of the trainee at time t [s]. Constant before 0 and after duration().
   StepInput at(double time) const;
 
   double duration() const { return timeline_.duration(); }  ///< [s]
-  const std::string& name() const { return name_; }
+  const std::string& name() const { return name_; }         ///< as the script states it
 
   /// Current phase at time t ("insert", "insufflate" ...), for the progress line.
   const std::string& phaseAt(double time) const;
