@@ -18,7 +18,7 @@ enum class RejectReason : std::uint8_t {
   NoMarking,       ///< as above
   NoHelix,         ///< as above
   NoSuture,        ///< as above
-  BeamOutOfReach,  ///< no tissue in front of the argon probe; limit: its reach [m]
+  BeamOutOfReach,  ///< no tissue in front of the scope; limit: how far from its tip the beam goes [m]
   ClosedWithoutNeedle,
   NoNeedle,  ///< the needle went with the T-tag
   ArmOpen,
@@ -106,10 +106,10 @@ struct Event {
   Wall wall = Wall::Anterior;                ///< where the particle is, of the kinds that name it
   double time = 0;                           ///< simulated time at the end of the step [s]
   int particle = -1;                         ///< -1: none
-  double value = 0;                          ///< what the kind says, in unitOfValue() [m], [N] or [1]
-  double limit = 0;                          ///< what value or amount is compared with, in its unit [m], [N] or [1]
-  double amount = 0;                         ///< a second number of some kinds, see Kind [N] or [1]
-  int suture = -1, bite = -1;                ///< numbers from 0; -1: none
+  double value = 0;            ///< see Kind; in unitOfValue(), or a number or code where that is empty [1]
+  double limit = 0;            ///< what value or amount is compared with, see Kind and RejectReason [m], [N] or [1]
+  double amount = 0;           ///< a second number, see Kind, EventDetail and RejectReason [m] or [1]
+  int suture = -1, bite = -1;  ///< numbers from 0; -1: none
 };
 constexpr int kEventKindCount = 33;  ///< values of Event::Kind
 
@@ -121,7 +121,7 @@ const char* toString(Event::Kind kind);
 /// Name of a reason: "no needle". "unknown" outside of the enum.
 const char* toString(RejectReason reason);
 
-/// Unit of Event::value, "m" or "N"; empty: a count, a code or nothing.
+/// Unit of Event::value: "m", "m^3", "m^3/s", "N", "Pa", "J" or "turns"; empty: a count, a code or nothing.
 const char* unitOfValue(Event::Kind kind);
 
 /// One sentence for people, with units; for a rejected command the reason and the remedy.
