@@ -101,7 +101,7 @@ void takeOver(const AxisParameters& before, const AxisParameters& after, AxisSta
 void switchOff(AxisState& state) {
   state.torque = 0;
   state.transition = 0;
-  state.passivity_acts = false;
+  state.passivity_acts = state.limited = false;
 }
 
 }  // namespace vibe_firmware

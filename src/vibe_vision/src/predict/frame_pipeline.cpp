@@ -1,10 +1,8 @@
-#include "../include/vibe_vision/predict/frame_pipeline.hpp"
+#include "vibe_vision/predict/frame_pipeline.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "vibe_vision/predict/frame_pipeline.hpp"
 
 namespace vibe::vision {
 

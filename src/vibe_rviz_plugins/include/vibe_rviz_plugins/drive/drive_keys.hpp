@@ -62,9 +62,9 @@ struct DriveSituation {
   /// There is a needle with a thread; it is on the arm, or else the exchange holds it.
   bool needle_loaded = true, needle_on_arm = true;
   unsigned marks = 0;        ///< particles of the wall that are marked or worse
-  unsigned set_bites = 0;    ///< of the set at work
+  unsigned set_bites = 0;    ///< of the session; the steps are those of the first set
   unsigned sets_tagged = 0;  ///< with a T-tag, not cinched
-  unsigned sets_done = 0;    ///< cinched
+  unsigned sets_done = 0;    ///< cinched, or with a thread that is loose or broken
 };
 
 /// The next thing to do, in the order of the first set of sutures.
