@@ -1,17 +1,11 @@
 """Pages of the C++ interface, one for every folder of public headers, from the XML of Doxygen; and what the headers lack:
-symbols without a comment, numbers without a unit."""
+symbols without a comment, numbers without a unit. Neither may be."""
 
 import re
 import xml.etree.ElementTree as ElementTree
 
 SPECIAL = str.maketrans({mark: "\\" + mark for mark in "\\`*_{}[]<>|$#~"})
 
-# Of each package: public symbols without a comment; public numbers all name their unit, range or frame. The counts may
-# only fall; lower them here when they have.
-SILENT = {
-    "vibe_core": 299, "vibe_firmware": 81, "vibe_graphics": 110, "vibe_hardware": 199, "vibe_node": 4,
-    "vibe_rviz_plugins": 48, "vibe_testing": 23, "vibe_vision": 99,
-}  # fmt: skip
 SHOWN = ("vibe_core", "vibe_hardware", "vibe_vision", "vibe_firmware", "vibe_graphics", "vibe_rviz_plugins", "vibe_node")
 NUMBER = re.compile(r"^(?!.*function|.*\(\*).*(\b(double|float)\b|Eigen|Vector)")
 UNIT = re.compile(r"\[|\bunit\b|\bshare\b|\bpart of\b|\b0 to \d|up to 1\b|quaternion|coefficient", re.IGNORECASE)
@@ -237,23 +231,20 @@ def lacking(xml):
 
 
 def problems(xml):
-    """One sentence for each package whose headers lack more than before."""
+    """One sentence for each package whose headers lack something."""
     for package, (_, silent, unitless) in lacking(xml).items():
-        if silent > SILENT.get(package, 0):
-            yield "{}: {} public symbols have no comment, {} before; write one for what is new".format(package, silent, SILENT.get(package, 0))
+        if silent:
+            yield "{}: {} public symbols have no comment; write one".format(package, silent)
         if unitless:
             yield "{}: {} public numbers have no unit; write it in brackets".format(package, unitless)
 
 
 def pages(root, xml):
-    parts, counts = Headers(xml).parts, lacking(xml)
+    parts = Headers(xml).parts
     lines = ["# C++\n", "The public headers, one page for each folder. The libraries need no ROS.\n"]
     for package in SHOWN:
         for folder, headers in folders(root, package).items():
             name = "reference/cpp/{}.md".format(folder.replace("/", "_"))
             yield name, page_of(folder, headers, parts)
             lines.append("* [{}](cpp/{})".format(folder, name.rsplit("/", 1)[-1]))
-    lines += ["\n## What is not documented yet\n", "| package | public symbols | without a comment | numbers whose comment "
-              "names no unit |\n|---|---|---|---|"]
-    lines += ["| {} | {} | {} | {} |".format(package, *counts[package]) for package in sorted(counts)]
     yield "reference/cpp.md", "\n".join(lines) + "\n\n```{toctree}\n:hidden:\n:glob:\ncpp/*\n```\n"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Puts the sources of the site together: the Markdown pages of the workspace in the folders where they are, the pages
 that reference.py and api.py make, and a page for every file of code that a page links to. A link to what is not there,
-and headers that lack more comments than before, end the program with status 1 when all is written."""
+and headers that lack a comment or a unit, end the program with status 1 when all is written."""
 
 import argparse
 import os

@@ -238,8 +238,12 @@ Skill ProtocolReader::readSkill(const YamlField& field) const {
 Skill ProtocolReader::mixedSkill(const YamlField& field) const {
   Skill skill;
   double novice = 0;
+  bool begun = false;
   const std::vector<YamlField> entries = source_.map(field);
   for (const YamlField& entry : entries) {
+    if (entry.key != "like" && entry.key != "novice") continue;
+    if (begun) source_.fail(entry, "stands beside like or novice, and both say with what to begin; write one of them");
+    begun = true;
     if (entry.key == "like") skill = namedSkill(entry);
     if (entry.key == "novice") novice = source_.quantity(entry, "1", 0, 1);
   }
@@ -249,7 +253,7 @@ Skill ProtocolReader::mixedSkill(const YamlField& field) const {
                   {"pace", "1", 0.05, 5, &skill.pace},
                   {"reaction_time", "s", 0, 2, &skill.reaction_time},
                   {"look_time", "s", 0, 600, &skill.look_time},
-                  {"foresight", "", 0, 1, &skill.foresight},
+                  {"foresight", "1", 0, 1, &skill.foresight},
                   {"aim_error", "m", 0, 0.05, &skill.aim_error},
                   {"force_limit", "N", 0.1, 100, &skill.force_limit},
                   {"turns", "1", 0, 10, &skill.turns},

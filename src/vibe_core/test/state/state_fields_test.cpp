@@ -113,6 +113,8 @@ TEST(StateFields, TheFirstDifferenceHasNameAndIndex) {
   EXPECT_EQ(differenceOf([](State& s) { s.procedure.sutures[0].bites[0].weight[0] = 3; }),
             "procedure.sutures[0].bites[0].weight[0]: 1 against 3");
   EXPECT_EQ(differenceOf([](State& s) { s.procedure.pressed[2] = 1; }), "procedure.pressed[2]: 0 against 1");
+  EXPECT_EQ(differenceOf([](State& s) { s.random = ~std::uint64_t{0}; }),
+            "random: " + std::to_string(state.random) + " against 18446744073709551615");
   // the first in the order of the table, not the last
   EXPECT_EQ(differenceOf([](State& s) { s.energy.gas_work = 1, s.z[0] = -2; }), "z[0]: 0 against -2");
   // bits count, not values: a number that is not one equals itself, and zero has two signs

@@ -108,6 +108,7 @@ TEST(Protocol, SkillsLieBetweenExpertAndNovice) {
   EXPECT_DOUBLE_EQ(own.aim_error, 2e-3);
   EXPECT_EQ(own.attempts, 5);
   EXPECT_EQ(own.reaction_time, novice.reaction_time);
+  EXPECT_EQ(parse("skill: {foresight: 50 %}\ngoals: [withdraw]\n").skill.foresight, 0.5);
 }
 
 TEST(Protocol, ShippedOnesAreReadAndEndWithdrawn) {
@@ -138,6 +139,8 @@ TEST(Protocol, EveryMistakeIsNamedWithItsPlaceAndRemedy) {
   expect("goals: []\n", "no goals");
   expect("skill: clumsy\ngoals: [withdraw]\n", "novice");
   expect("skill: {aim: 1 mm}\ngoals: [withdraw]\n", "aim_error");
+  expect("skill: {foresight: 1 mm}\ngoals: [withdraw]\n", "a pure number");
+  expect("skill: {like: novice, novice: 0.5}\ngoals: [withdraw]\n", "one of them");
   EXPECT_NE(errorOf("goals:\n  - bite: {along: .nan}\n"), "no error");
 }
 

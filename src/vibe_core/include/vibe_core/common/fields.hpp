@@ -163,14 +163,15 @@ void transferList(Archive& archive, const std::vector<T>& items) {
 
 namespace fields {
 
-/// A plain value as text: reals with 17 digits, of which the same bits can be read back, others as whole numbers. Those
-/// of std::uint64_t from 2^63 on appear as negative.
+/// A plain value as text: reals with 17 digits, of which the same bits can be read back, others as whole numbers.
 template <class T>
 std::string plainText(const T& value) {
   std::ostringstream text;
   text.precision(17);
-  if constexpr (std::is_enum_v<T> || std::is_integral_v<T>)
+  if constexpr (std::is_enum_v<T> || (std::is_integral_v<T> && std::is_signed_v<T>))
     text << static_cast<std::int64_t>(value);
+  else if constexpr (std::is_integral_v<T>)
+    text << static_cast<std::uint64_t>(value);
   else
     text << value;
   return text.str();

@@ -77,7 +77,7 @@ struct ToolShape {
   double margin = 0;  ///< distance of the surface from the core of the Bullet shape, outwards [m]
 };
 
-/// Range of one of the seven inputs, from the <limit> of the joint with that name.
+/// Range of one of the seven inputs, from the `limit` of the joint with that name.
 struct JointLimits {
   double lower = 0;     ///< [m], [rad]
   double upper = 0;     ///< [m], [rad]
