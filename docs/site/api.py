@@ -13,15 +13,21 @@ UNIT = re.compile(r"\[|\bunit\b|\bshare\b|\bpart of\b|\b0 to \d|up to 1\b|quater
 
 # --- descriptions in Markdown
 
+def escaped(text):
+    """Text of which Markdown shall read nothing but code in backquotes, as the comments write it."""
+    return "".join(part if part.startswith("`") and part.endswith("`") and len(part) > 1 else part.translate(SPECIAL)
+                   for part in re.split(r"(`[^`]+`)", text or ""))
+
+
 def inline(node):
     """Text of a node; code in backquotes."""
     if node.tag == "computeroutput":
         return "`" + "".join(node.itertext()) + "`"
-    text = (node.text or "").translate(SPECIAL)
+    text = escaped(node.text)
     for child in node:
         if child.tag not in ("parameterlist", "simplesect", "itemizedlist", "verbatim", "programlisting"):
             text += inline(child)
-        text += (child.tail or "").translate(SPECIAL)
+        text += escaped(child.tail)
     return text
 
 
