@@ -18,6 +18,15 @@ constexpr double kPatience = 2;        // for joints of a simulator, or for it t
 constexpr std::uint32_t kQueue = 10;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
+/// A remapping of the former name, which rviz is given, is one of the present name in this release.
+std::string deviceTopic(const ros::NodeHandle& handle) {
+  const std::string present = "suturing_device/input/joint_states", former = "overstitch/measured_js";
+  if (handle.resolveName(former) == handle.resolveName(former, false)) return present;
+  ROS_WARN_STREAM_ONCE("The remapping of " << former << " has a former name and is taken as one of " << present
+                                           << "; write that.");
+  return former;
+}
+
 }  // namespace
 
 ScopeSender::ScopeSender(ScopeDrive::ButtonChange button_changed)
@@ -113,7 +122,7 @@ void ScopeSender::tick() {
     trouble_ = "No simulator listens to " + scope_.getTopic() + ". A recording cannot be driven.";
   if (!moveTo(now)) return;
   scope_.publish(scopeMessage(drive_.joints(), now));
-  overstitch_.publish(overstitchMessage(drive_.joints(), now));
+  suturing_device_.publish(suturingDeviceMessage(drive_.joints(), now));
 }
 
 /// @return whether time has passed; the stamps of messages never repeat
@@ -147,7 +156,7 @@ void ScopeSender::connect() {
   topics_ = ros::NodeHandle(requested_);
   topics_.setCallbackQueue(&queue_);
   scope_ = topics_.advertise<sensor_msgs::JointState>("scope/servo_jp", kQueue);
-  overstitch_ = topics_.advertise<sensor_msgs::JointState>("overstitch/measured_js", kQueue);
+  suturing_device_ = topics_.advertise<sensor_msgs::JointState>(deviceTopic(topics_), kQueue);
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   subscribers_.push_back(topics_.subscribe("procedure/state", kQueue, &ScopeSender::takeState, this, hints));
   subscribers_.push_back(topics_.subscribe<sensor_msgs::JointState>(
@@ -168,15 +177,19 @@ void ScopeSender::connect() {
       },
       nullptr, hints));
   watch<sensor_msgs::JointState>("scope/servo_jp", same_topic_);
-  watch<sensor_msgs::JointState>("overstitch/measured_js", same_topic_);
-  watch<sensor_msgs::JointState>("scope/measured_js", other_topic_);
+  watch<sensor_msgs::JointState>("suturing_device/input/joint_states", same_topic_);
+  watch<sensor_msgs::JointState>("scope/input/joint_states", other_topic_);
   watch<geometry_msgs::PoseStamped>("scope/servo_cp", other_topic_);
+  // drivers of the release before; what the simulator itself publishes there has efforts
+  watch<sensor_msgs::JointState>("overstitch/measured_js", same_topic_);
+  watch<sensor_msgs::JointState>("scope/measured_js", other_topic_,
+                                 [](const sensor_msgs::JointState& m) { return m.effort.empty(); });
 }
 
 void ScopeSender::disconnect() {
   endDriving();
   scope_ = {};
-  overstitch_ = {};
+  suturing_device_ = {};
   for (ros::Subscriber& subscriber : subscribers_) subscriber.shutdown();
   subscribers_.clear();
   connected_ = has_limits_ = false;
@@ -189,9 +202,11 @@ void ScopeSender::disconnect() {
 
 /// Notes which other node publishes a topic.
 template <class Message>
-void ScopeSender::watch(const std::string& topic, ControlWatch& watch) {
-  const boost::function<void(const ros::MessageEvent<const Message>&)> note = [this, &watch](const auto& event) {
+void ScopeSender::watch(const std::string& topic, ControlWatch& watch, bool (*counts)(const Message&)) {
+  const boost::function<void(const ros::MessageEvent<const Message>&)> note = [this, &watch,
+                                                                               counts](const auto& event) {
     if (event.getPublisherName() == ros::this_node::getName()) return;
+    if (counts != nullptr && !counts(*event.getMessage())) return;
     const std::lock_guard<std::mutex> lock(mutex_);
     watch.heard(event.getPublisherName(), steadySeconds());
   };

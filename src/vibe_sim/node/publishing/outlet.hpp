@@ -11,6 +11,8 @@
 #include <ros/publisher.h>
 #include <rosbag/bag.h>
 
+#include "vibe_node/former_names.hpp"
+
 namespace vibe::sim {
 
 /// Queue of a topic of small messages: long, because a simulation that runs faster than the wall clock must not lose
@@ -29,13 +31,16 @@ struct BagTarget {
 class Outlet {
  public:
   Outlet() = default;
-  explicit Outlet(ros::Publisher publisher) : publisher_(std::move(publisher)) {}
+  /// @param former  the same under a former name, or empty
+  explicit Outlet(ros::Publisher publisher, ros::Publisher former = {})
+      : publisher_(std::move(publisher)), former_(std::move(former)) {}
   Outlet(BagTarget& target, std::string topic) : target_(&target), topic_(std::move(topic)) {}
 
   template <class M>
   void publish(const M& message) const {
     if (target_ == nullptr) {
       if (publisher_) publisher_.publish(message);
+      if (former_) former_.publish(message);
     } else if (!topic_.empty()) {
       target_->bag.write(topic_, target_->time, message);
     }
@@ -43,11 +48,11 @@ class Outlet {
 
   std::uint32_t getNumSubscribers() const {
     if (target_ != nullptr) return topic_.empty() ? 0 : 1;
-    return publisher_ ? publisher_.getNumSubscribers() : 0;
+    return (publisher_ ? publisher_.getNumSubscribers() : 0) + (former_ ? former_.getNumSubscribers() : 0);
   }
 
  private:
-  ros::Publisher publisher_;
+  ros::Publisher publisher_, former_;
   BagTarget* target_ = nullptr;
   std::string topic_;
 };
@@ -72,7 +77,8 @@ class OutletSource {
     ros::SubscriberStatusCallback connected;
     if (on_connect) connected = [on_connect](const ros::SingleSubscriberPublisher&) { on_connect(); };
     return Outlet(
-        handle_->advertise<M>(topic, queue, connected, ros::SubscriberStatusCallback(), ros::VoidConstPtr(), latch));
+        handle_->advertise<M>(topic, queue, connected, ros::SubscriberStatusCallback(), ros::VoidConstPtr(), latch),
+        node::advertiseFormer<M>(*handle_, topic, queue, latch));
   }
 
  private:

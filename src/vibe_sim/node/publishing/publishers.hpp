@@ -31,7 +31,7 @@ class ArmPublishers {
   bool hasListener() const;
 
  private:
-  Outlet scope_, overstitch_, jacobian_, wall_, scope_state_, overstitch_state_;
+  Outlet scope_, suturing_device_, jacobian_, wall_, scope_state_, suturing_device_state_;
   JointArray last_joints_{};
   std::string last_state_;  // of both, to see a change
   std::int64_t last_state_stamp_ = 0;

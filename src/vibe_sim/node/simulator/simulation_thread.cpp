@@ -208,7 +208,7 @@ void SimulationThread::takeStep() {
                                                         input, real_time, simulation_.state().joints))
     complain(sentence);
   status_.scope_moves = interpreter_.moves(InputChannel::Scope);
-  status_.overstitch_moves = interpreter_.moves(InputChannel::Overstitch);
+  status_.suturing_device_moves = interpreter_.moves(InputChannel::SuturingDevice);
   simulation_.addWarnings(publishers_.takeWarnings());
   simulation_.setInput(input);
   publishers_.appliedInput(simulation_);

@@ -24,8 +24,8 @@ class NodeletTest(unittest.TestCase):
         cls.scene.remove()
 
     def test_two_nodelets_share_images(self):
-        first = Recorder("overstitch/tracking", InstrumentTrackArray)
-        second = Recorder("second/overstitch/tracking", InstrumentTrackArray)
+        first = Recorder("suturing_device/tracking", InstrumentTrackArray)
+        second = Recorder("second/suturing_device/tracking", InstrumentTrackArray)
         manager = Program("nodelet", "nodelet", "manager", name="manager")
         follower = Program(
             "nodelet", "nodelet", "load", "vibe_vision/VisionNodelet", "/manager", "image:=/image_raw", "__ns:=second",
