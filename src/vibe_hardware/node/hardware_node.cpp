@@ -49,7 +49,7 @@ constexpr double kWait = 0.004;            // for a report; parameters wait as l
 constexpr double kButtonPeriod = 0.1;      // of buttons that do not change [s]
 constexpr double kStatisticsPeriod = 0.1;  // [s]
 constexpr double kCameraPatience = 1;      // a camera that is silent for longer tracks no more [s]
-constexpr double kComplaintPeriod = 1;     // [s]
+constexpr double kWarningPeriod = 1;       // [s]
 constexpr double kTimerPeriod = 0.02;      // [s]
 constexpr double kAfterHoming = 0.1;       // in which parameters belong to the positions before [s]
 constexpr std::uint32_t kDeviceQueue = 100;
@@ -248,7 +248,7 @@ void HardwareNode::onParameters(const vibe_msgs::HapticParameters& message) {
     haptic_.setTarget(readHapticParameters(message, joints_));
   } catch (const Error& error) {
     ++rejected_;
-    ROS_WARN_STREAM_THROTTLE(kComplaintPeriod, "A message on haptic/parameters is ignored: " << error.what());
+    ROS_WARN_STREAM_THROTTLE(kWarningPeriod, "A message on haptic/parameters is ignored: " << error.what());
   }
 }
 
@@ -265,7 +265,7 @@ void HardwareNode::onSuturingDevice(const ros::MessageEvent<const sensor_msgs::J
     suturing_device_->setPositions(readSuturingDeviceJoints(*event.getMessage()));
     camera_time_ = steadyTime();
   } catch (const Error& error) {
-    ROS_WARN_STREAM_THROTTLE(kComplaintPeriod,
+    ROS_WARN_STREAM_THROTTLE(kWarningPeriod,
                              "A message on suturing_device/input/joint_states is ignored: " << error.what());
   }
 }

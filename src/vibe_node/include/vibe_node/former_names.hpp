@@ -29,8 +29,9 @@ inline bool isFormerInput(const sensor_msgs::JointState& message) {
   return message.effort.empty();
 }
 
-/// Says once for each former name who uses it, and which name is the present one.
+/// Says once for each former name who publishes it, and which name is the present one.
 void warnOfFormerInput(const std::string& node, const std::string& former);
+/// Says once for each former name who listens to it, and which name is the present one.
 void warnOfFormerOutput(const std::string& node, const std::string& former);
 
 /// Gives remappings of former names to the present ones, with a warning for each, before ros::init() reads them.

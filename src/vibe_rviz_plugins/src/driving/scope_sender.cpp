@@ -10,11 +10,11 @@
 namespace vibe::rviz_plugins {
 namespace {
 
-constexpr double kPeriod = 1.0 / 60;   // [s]
-constexpr double kLongestStep = 0.25;  // after a longer gap the joints do not catch up [s]
-constexpr double kStall = 0.25;        // a simulator that is silent for longer takes no steps [s]
-constexpr double kClosing = 0.5;       // a topic that is left and taken again at once could lose its subscribers [s]
-constexpr double kPatience = 2;        // for joints of a simulator, or for it to listen [s]
+constexpr double kPeriod = 1.0 / 60;     // [s]
+constexpr double kLongestStep = 0.25;    // after a longer gap the joints do not catch up [s]
+constexpr double kStall = 0.25;          // a simulator that is silent for longer takes no steps [s]
+constexpr double kClosing = 0.5;         // a topic that is left and taken again at once could lose its subscribers [s]
+constexpr double kSimulatorTimeout = 2;  // for joints of a simulator, or for it to listen [s]
 constexpr std::uint32_t kQueue = 10;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -118,7 +118,7 @@ void ScopeSender::tick() {
   const ros::Time now = ros::Time::now();
   if (!driving_ && (!active_ || !begin(now))) return;
   const bool heard = scope_.getNumSubscribers() > 1;  // this object is a subscriber too
-  if (!heard && steadySeconds() - driving_since_ > kPatience)
+  if (!heard && steadySeconds() - driving_since_ > kSimulatorTimeout)
     trouble_ = "No simulator listens to " + scope_.getTopic() + ". A recording cannot be driven.";
   if (!moveTo(now)) return;
   scope_.publish(scopeMessage(drive_.joints(), now));
@@ -230,7 +230,7 @@ std::string ScopeSender::findTrouble() {
   if (!rival.empty()) return rival + " drives the scope. Stop it to drive by hand.";
   const std::string wrong = findLimits();
   if (!wrong.empty()) return wrong;
-  if (!present_ && !driving_ && now - waiting_since_ > kPatience) {
+  if (!present_ && !driving_ && now - waiting_since_ > kSimulatorTimeout) {
     if (state_->paused) return "The simulator is paused. Resume it to drive.";
     return "No joints arrive on " + topics_.resolveName("joint_states") + ". Does the scene have a scope?";
   }

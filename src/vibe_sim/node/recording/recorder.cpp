@@ -19,7 +19,7 @@ namespace vibe::sim {
 namespace {
 
 constexpr std::uint32_t kUnlimited = 0;
-constexpr double kPatience = 10;              // with publishers that are registered and do not answer [s of wall time]
+constexpr double kPublisherTimeout = 10;      // with publishers that are registered and do not answer [s of wall time]
 constexpr std::uint32_t kChunk = 256 * 1024;  // written at once [bytes]
 constexpr double kChunkPeriod = 2;            // after which a chunk is written though it is not full [s of wall time]
 constexpr double kEarly = 0.99;   // of the period of a topic that is thinned, after which a message counts as due
@@ -138,7 +138,7 @@ bool Recorder::areConnected(const ros::master::V_TopicInfo& published) const {
 bool Recorder::isPatienceOver(const ros::master::V_TopicInfo& published) {
   const ros::SteadyTime now = ros::SteadyTime::now();
   if (last_topic_found_.isZero()) last_topic_found_ = now;
-  if ((now - last_topic_found_).toSec() < kPatience) return false;
+  if ((now - last_topic_found_).toSec() < kPublisherTimeout) return false;
   std::string silent;
   for (const ros::master::TopicInfo& topic : published) {
     const auto entry = subscribers_.find(topic.name);

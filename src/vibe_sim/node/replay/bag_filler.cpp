@@ -110,7 +110,7 @@ BagFiller::BagFiller(const Recording& recording, const std::string& file)
       file_(file),
       target_{*bag_, recording.prefix(),
               [prefix = recording.prefix()](const std::string& topic) { return isReplayed(topic, prefix); }},
-      publishers_(OutletSource(target_), hasClock(recording)) {}
+      publishers_(SinkSource(target_), hasClock(recording)) {}
 
 // A bag is closed by its destructor, and one that cannot be written throws there, which ends the program.
 BagFiller::~BagFiller() {

@@ -119,19 +119,19 @@ void Inputs::receive(const std::string& name, const std::string& publisher, cons
   try {
     take(name, topic, publisher, read());
   } catch (const Error& error) {
-    complain(topic, "A message on " + name + " from " + publisher + " is ignored: " + error.what());
+    warnThrottled(topic, "A message on " + name + " from " + publisher + " is ignored: " + error.what());
   }
 }
 
 void Inputs::take(const std::string& name, Topic& topic, const std::string& publisher, const InputSample& sample) {
   const std::string fault = faultOf(sample.stamp, now_(), window_);
   if (!fault.empty())
-    return complain(topic, "A message on " + name + " from " + publisher + " is ignored: " + fault +
-                               "; check the clock of that node and whether both read the same /use_sim_time.");
+    return warnThrottled(topic, "A message on " + name + " from " + publisher + " is ignored: " + fault +
+                                    "; check the clock of that node and whether both read the same /use_sim_time.");
   if (!queue_.push(sample))
-    return complain(topic, "A message on " + name + " from " + publisher +
-                               " is ignored: " + std::to_string(InputQueue::kCapacity) +
-                               " messages with later stamps wait already; send less ahead.");
+    return warnThrottled(topic, "A message on " + name + " from " + publisher +
+                                    " is ignored: " + std::to_string(InputQueue::kCapacity) +
+                                    " messages with later stamps wait already; send less ahead.");
   topic.owner = publisher;
   topic.last_message = steadyTime();
   arrived_(sample.channel);
@@ -142,8 +142,8 @@ bool Inputs::obeys(const std::string& name, Topic& topic, const std::string& pub
   const bool owned = !topic.owner.empty() && topic.owner != publisher && topic.publishers() > 1 &&
                      now - topic.last_message < kOwnerPatience;
   if (owned) {
-    complain(topic, "Two nodes publish " + name + ": " + topic.owner + " is obeyed and " + publisher +
-                        " ignored; stop one of them.");
+    warnThrottled(topic, "Two nodes publish " + name + ": " + topic.owner + " is obeyed and " + publisher +
+                             " ignored; stop one of them.");
     return false;
   }
   return true;
@@ -158,10 +158,10 @@ void Inputs::stopOrphan(const ros::WallTimerEvent&) {
   if (queue_.push(stop)) arrived_(stop.channel);
 }
 
-void Inputs::complain(Topic& topic, const std::string& sentence) {
+void Inputs::warnThrottled(Topic& topic, const std::string& sentence) {
   const double now = steadyTime();
-  if (now - topic.last_complaint < kComplaintPeriod) return;
-  topic.last_complaint = now;
+  if (now - topic.last_warning < kWarningPeriod) return;
+  topic.last_warning = now;
   ROS_WARN_STREAM(sentence);
   publishers_.warn(sentence);
 }

@@ -54,6 +54,7 @@ class VisionTest(unittest.TestCase):
     def setUpClass(cls):
         cls.scene = Scene("moving", FRAMES)
         cls.tracking = Recorder("suturing_device/tracking", InstrumentTrackArray)
+        cls.former = Recorder("overstitch/tracking", InstrumentTrackArray)
         cls.measured = Recorder("suturing_device/input/joint_states", JointState)
         cls.predicted = Recorder("suturing_device/predicted_js", JointState)
         cls.camera_info = Recorder("camera_info", CameraInfo)
@@ -71,7 +72,7 @@ class VisionTest(unittest.TestCase):
     def tearDown(self):
         for program in self.programs:
             program.stop()
-        for recorder in (self.tracking, self.measured, self.predicted, self.camera_info, self.diagnostics):
+        for recorder in (self.tracking, self.former, self.measured, self.predicted, self.camera_info, self.diagnostics):
             recorder.clear()
 
     def start(self, name="vision_node", **parameters):
@@ -87,6 +88,9 @@ class VisionTest(unittest.TestCase):
     def waits_for_the_end(self, node):
         last = max(self.scene.stamps)
         self.assertIsNotNone(self.tracking.waits_for(lambda m: m.frame_sequence == last, 60), node.output())
+        # by its former name, too, with one warning
+        self.assertIsNotNone(self.former.waits_for(lambda m: m.frame_sequence == last), node.output())
+        self.assertEqual(node.count("listens to overstitch/tracking, a former name"), 1, node.output())
 
     def assert_accurate(self, scene, tracks):
         slides, rotations = errors_of(scene, tracks, "helix")

@@ -62,6 +62,7 @@ class SuturingDeviceFingers {
   Positions positions_{};
   std::array<int, kSuturingDeviceJointCount> direction_{};  // 1: forward, -1: backward
 };
+/// The former name.
 using OverstitchFingers [[deprecated("has been renamed SuturingDeviceFingers")]] = SuturingDeviceFingers;
 
 /// Hand and arm at the axes of the haptic device. Form: see HandImpedance; the values are a design choice: a natural

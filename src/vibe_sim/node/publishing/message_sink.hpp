@@ -28,13 +28,13 @@ struct BagTarget {
 };
 
 /// Where the messages of one topic go: to listeners in the graph, or into a bag. Used like a ros::Publisher.
-class Outlet {
+class MessageSink {
  public:
-  Outlet() = default;
+  MessageSink() = default;
   /// @param former  the same under a former name, or empty
-  explicit Outlet(ros::Publisher publisher, ros::Publisher former = {})
+  explicit MessageSink(ros::Publisher publisher, ros::Publisher former = {})
       : publisher_(std::move(publisher)), former_(std::move(former)) {}
-  Outlet(BagTarget& target, std::string topic) : target_(&target), topic_(std::move(topic)) {}
+  MessageSink(BagTarget& target, std::string topic) : target_(&target), topic_(std::move(topic)) {}
 
   template <class M>
   void publish(const M& message) const {
@@ -57,26 +57,26 @@ class Outlet {
   std::string topic_;
 };
 
-/// Makes outlets, in the graph or into a bag.
-class OutletSource {
+/// Makes sinks, in the graph or into a bag.
+class SinkSource {
  public:
-  OutletSource(const ros::NodeHandle& handle) : handle_(handle) {}  // NOLINT: a handle is enough
-  /// @param target  lives as long as the outlets
-  OutletSource(BagTarget& target) : target_(&target) {}  // NOLINT: so is a bag
+  SinkSource(const ros::NodeHandle& handle) : handle_(handle) {}  // NOLINT: a handle is enough
+  /// @param target  lives as long as the sinks
+  SinkSource(BagTarget& target) : target_(&target) {}  // NOLINT: so is a bag
 
   bool isGraph() const { return target_ == nullptr; }
 
   /// @param on_connect  called from the thread of ROS when somebody begins to listen; never for a bag
   template <class M>
-  Outlet advertise(const std::string& topic, std::uint32_t queue, bool latch = false,
-                   const std::function<void()>& on_connect = {}) {
+  MessageSink advertise(const std::string& topic, std::uint32_t queue, bool latch = false,
+                        const std::function<void()>& on_connect = {}) {
     if (target_ != nullptr) {
       const std::string whole = topic[0] == '/' ? topic : target_->prefix + topic;
-      return Outlet(*target_, target_->wanted(whole) ? whole : "");
+      return MessageSink(*target_, target_->wanted(whole) ? whole : "");
     }
     ros::SubscriberStatusCallback connected;
     if (on_connect) connected = [on_connect](const ros::SingleSubscriberPublisher&) { on_connect(); };
-    return Outlet(
+    return MessageSink(
         handle_->advertise<M>(topic, queue, connected, ros::SubscriberStatusCallback(), ros::VoidConstPtr(), latch),
         node::advertiseFormer<M>(*handle_, topic, queue, latch));
   }
