@@ -13,9 +13,9 @@ MARKED = re.compile(r"^<!-- measured: (\w+) -->\n(.*?)^<!-- end of measured -->$
 OTHER_TABLES = {
     "Force rendered by a haptic device": "bounds, haptic_test",
     "Self-contact": "bounds, self_contact tests",
-    "Robustness": "bounds, tests of vibe_core/test/simulator",
+    "Robustness": "bounds, tests of vibe_core/test/system",
     "Wall": "bounds, shape_matching_test",
-    "Motion": "bounds, shape_matching_test and tests of vibe_core/test/simulator",
+    "Motion": "bounds, shape_matching_test and tests of vibe_core/test/system",
     "Gas": "bounds, gas_test",
     "Tool": "bounds, tool_test",
     "Energy balance": "definitions, and bounds of energy_test",

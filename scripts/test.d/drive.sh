@@ -94,7 +94,7 @@ instrumentsMove() {
 import sys
 import rosbag
 bag = rosbag.Bag(sys.argv[1])
-measured = [m for _, m, _ in bag.read_messages(topics=["/overstitch/measured_js"])]
+measured = [m for _, m, _ in bag.read_messages(topics=["/suturing_device/input/joint_states"])]
 assert len(measured) > 50, "{} messages of the camera".format(len(measured))
 assert all(len(m.velocity) == 3 for m in measured), "buttons move the instruments, too"
 inputs = [message for _, message, _ in bag.read_messages(topics=["/applied_input"])]

@@ -32,7 +32,7 @@ sensor_msgs::Joy buttonsOf(const DeviceSample& sample, const ros::Time& stamp) {
 
 void publishAll(std::istream& device) {
   ros::NodeHandle handle;
-  const ros::Publisher joints = handle.advertise<sensor_msgs::JointState>("scope/measured_js", 10);
+  const ros::Publisher joints = handle.advertise<sensor_msgs::JointState>("scope/input/joint_states", 10);
   const ros::Publisher buttons = handle.advertise<sensor_msgs::Joy>("scope/buttons", 10);
   const ros::Time start = ros::Time::now();
   DeviceStream stream;

@@ -98,7 +98,8 @@ std::string CrtkTeleopNode::nameOf(const std::string& topic) const {
 
 void CrtkTeleopNode::advertise(ros::NodeHandle& handle) {
   scope_ = handle.advertise<sensor_msgs::JointState>("scope/servo_jp", kArmQueue);
-  if (mapping_.gripper) overstitch_ = handle.advertise<sensor_msgs::JointState>("overstitch/servo_jp", kArmQueue);
+  if (mapping_.gripper)
+    suturing_device_ = handle.advertise<sensor_msgs::JointState>("suturing_device/servo_jp", kArmQueue);
   button_publisher_ = handle.advertise<sensor_msgs::Joy>("scope/buttons", kArmQueue);
   if (mapping_.force_scale == 0) return;
   force_ = handle.advertise<geometry_msgs::WrenchStamped>(nameOf(mapping_.force_topic), kArmQueue);
@@ -117,7 +118,7 @@ void CrtkTeleopNode::subscribe(ros::NodeHandle& handle) {
       handle.subscribe(nameOf("measured_cp"), kArmQueue, &CrtkTeleopNode::onPose, this, hints),
       handle.subscribe(nameOf("operating_state"), kArmQueue, &CrtkTeleopNode::onState, this, hints),
       handle.subscribe("scope/setpoint_js", kArmQueue, &CrtkTeleopNode::onScope, this, hints),
-      handle.subscribe("overstitch/simulated/measured_js", kArmQueue, &CrtkTeleopNode::onOverstitch, this, hints),
+      handle.subscribe("suturing_device/measured_js", kArmQueue, &CrtkTeleopNode::onSuturingDevice, this, hints),
       handle.subscribe("haptic/parameters", kArmQueue, &CrtkTeleopNode::onParameters, this, hints)};
   if (mapping_.gripper)
     subscribers_.push_back(
@@ -183,8 +184,8 @@ void CrtkTeleopNode::onScope(const sensor_msgs::JointState& message) {
   scope_known_ |= readJointsInto(message, 0, kScopeJointCount, input_.joints);
 }
 
-void CrtkTeleopNode::onOverstitch(const sensor_msgs::JointState& message) {
-  overstitch_known_ |= readJointsInto(message, kScopeJointCount, kOverstitchJointCount, input_.joints);
+void CrtkTeleopNode::onSuturingDevice(const sensor_msgs::JointState& message) {
+  suturing_device_known_ |= readJointsInto(message, kScopeJointCount, kSuturingDeviceJointCount, input_.joints);
 }
 
 void CrtkTeleopNode::onParameters(const vibe_msgs::HapticParameters& message) {
@@ -207,7 +208,7 @@ void CrtkTeleopNode::tick(const ros::WallTimerEvent&) {
 }
 
 void CrtkTeleopNode::advance(double now) {
-  input_.ready = scope_known_ && overstitch_known_ && arm_ready_;
+  input_.ready = scope_known_ && suturing_device_known_ && arm_ready_;
   const bool was_engaged = state_.engaged;
   const TeleopOutput output = step(mapping_, limits_, std::max(now, state_.time), input_, state_);
   input_.sample.reset();
@@ -240,7 +241,7 @@ void CrtkTeleopNode::publishCommands(const TeleopOutput& output, double now, con
     DriveState drive;
     drive.joints = output.joints;
     scope_.publish(scopeCommand(drive, stamp));
-    if (mapping_.gripper) overstitch_.publish(overstitchCommand(drive, stamp));
+    if (mapping_.gripper) suturing_device_.publish(suturingDeviceCommand(drive, stamp));
   }
   const auto buttons = state_.last ? buttons_ : std::array<std::uint8_t, kButtonCount>{};
   if (buttons == sent_buttons_ && now - last_buttons_ < kArmButtonInterval) return;

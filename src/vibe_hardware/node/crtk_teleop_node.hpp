@@ -43,7 +43,7 @@ class CrtkTeleopNode {
   TeleopState state_;
   TeleopInput input_;
 
-  bool scope_known_ = false, overstitch_known_ = false;
+  bool scope_known_ = false, suturing_device_known_ = false;
   bool arm_ready_ = true;  // an arm without operating_state may be used
   std::string arm_state_, base_frame_;
   double worst_age_ = 0;  // of a measurement at its arrival, since the last diagnostics [s]
@@ -51,7 +51,7 @@ class CrtkTeleopNode {
   double last_buttons_ = -1e9, last_joints_ = -1e9;  // published [s]
   std::array<std::uint8_t, kButtonCount> buttons_{}, sent_buttons_{};
 
-  ros::Publisher force_, scope_, overstitch_, button_publisher_, absolute_, gravity_;
+  ros::Publisher force_, scope_, suturing_device_, button_publisher_, absolute_, gravity_;
   std::vector<ros::Subscriber> subscribers_;
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;
@@ -65,7 +65,7 @@ class CrtkTeleopNode {
   void onGripper(const sensor_msgs::JointState& message);
   void onState(const vibe_msgs::OperatingState& message);
   void onScope(const sensor_msgs::JointState& message);
-  void onOverstitch(const sensor_msgs::JointState& message);
+  void onSuturingDevice(const sensor_msgs::JointState& message);
   void onParameters(const vibe_msgs::HapticParameters& message);
   void tick(const ros::WallTimerEvent& event);
   void advance(double now);

@@ -83,7 +83,7 @@ GamepadNode::GamepadNode(ros::NodeHandle handle, const GamepadParameters& parame
       feedback_(mapping_),
       link_(makePadLink(handle, parameters, mapping_.joy)),
       scope_(handle.advertise<sensor_msgs::JointState>("scope/servo_jp", kPadQueue)),
-      overstitch_(handle.advertise<sensor_msgs::JointState>("overstitch/measured_js", kPadQueue)),
+      suturing_device_(handle.advertise<sensor_msgs::JointState>("suturing_device/input/joint_states", kPadQueue)),
       buttons_(handle.advertise<sensor_msgs::Joy>("scope/buttons", kPadQueue)),
       updater_(handle) {
   if (!parameters_.record.empty()) PadRecorder::checkFile(parameters_.record);
@@ -184,7 +184,7 @@ void GamepadNode::publish(double now) {
   if (ros::Time::now().isZero()) return;  // simulated time has not begun; stamp 0 would mark invalid data
   const ros::Time stamp = joint_stamps_.at(now);
   scope_.publish(scopeCommand(*drive_, stamp));
-  overstitch_.publish(overstitchCommand(*drive_, stamp));
+  suturing_device_.publish(suturingDeviceCommand(*drive_, stamp));
   ++published_;
   if (drive_->buttons != sent_buttons_ || now - last_buttons_ >= kButtonInterval) publishButtons(now);
 }

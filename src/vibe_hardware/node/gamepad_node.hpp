@@ -65,7 +65,7 @@ class GamepadNode {
   std::array<std::uint8_t, kButtonCount> sent_buttons_{};
   StampSource joint_stamps_, button_stamps_;
 
-  ros::Publisher scope_, overstitch_, buttons_;
+  ros::Publisher scope_, suturing_device_, buttons_;
   std::vector<ros::Subscriber> subscribers_;
   diagnostic_updater::Updater updater_;
   std::uint64_t events_before_ = 0;  // at the last diagnostics

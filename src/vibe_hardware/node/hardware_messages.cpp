@@ -77,7 +77,7 @@ sensor_msgs::JointState makeHapticJoints(const ScopeJoints& joints, const ros::T
   return message;
 }
 
-sensor_msgs::JointState makeOverstitchJoints(const OverstitchDrive& drive, const ros::Time& stamp) {
+sensor_msgs::JointState makeSuturingDeviceJoints(const SuturingDeviceDrive& drive, const ros::Time& stamp) {
   sensor_msgs::JointState message;
   message.header.stamp = stamp;
   message.name.assign(kJointNames.begin() + kScopeJointCount, kJointNames.end());
@@ -103,9 +103,9 @@ HapticDriver::Targets readHapticParameters(const vibe_msgs::HapticParameters& me
   return targets;
 }
 
-OverstitchDrive::Positions readOverstitchJoints(const sensor_msgs::JointState& message) {
+SuturingDeviceDrive::Positions readSuturingDeviceJoints(const sensor_msgs::JointState& message) {
   if (message.name.size() != message.position.size()) throw Error("names and positions differ in number.");
-  OverstitchDrive::Positions positions{};
+  SuturingDeviceDrive::Positions positions{};
   for (std::size_t j = 0; j < positions.size(); ++j) {
     const std::string name = kJointNames[kScopeJointCount + j];
     positions[j] = message.position[placeOf(message.name, name)];
@@ -137,7 +137,7 @@ sensor_msgs::JointState scopeCommand(const DriveState& drive, const ros::Time& s
   return jointMessage(drive, stamp, 0, kScopeJointCount);
 }
 
-sensor_msgs::JointState overstitchCommand(const DriveState& drive, const ros::Time& stamp) {
+sensor_msgs::JointState suturingDeviceCommand(const DriveState& drive, const ros::Time& stamp) {
   return jointMessage(drive, stamp, kScopeJointCount, kJointCount);
 }
 

@@ -33,7 +33,7 @@ class StampSource {
 sensor_msgs::JointState makeScopeJoints(const ScopeJoints& joints, const ros::Time& stamp);
 /// Joints of the haptic device, with the commanded torque as effort.
 sensor_msgs::JointState makeHapticJoints(const ScopeJoints& joints, const ros::Time& stamp);
-sensor_msgs::JointState makeOverstitchJoints(const OverstitchDrive& drive, const ros::Time& stamp);
+sensor_msgs::JointState makeSuturingDeviceJoints(const SuturingDeviceDrive& drive, const ros::Time& stamp);
 sensor_msgs::Joy makeButtons(const ScopeButtons& buttons, const ros::Time& stamp);
 
 /// The spring-dampers of the message on the axes of the haptic device; axes without a joint get none.
@@ -44,15 +44,15 @@ HapticDriver::Targets readHapticParameters(const vibe_msgs::HapticParameters& me
 JointSpring readSpring(const vibe_msgs::HapticParameters& message, const std::string& joint);
 
 /// @throws Error as in the simulator: unknown, missing or repeated joints, values that are not finite
-OverstitchDrive::Positions readOverstitchJoints(const sensor_msgs::JointState& message);
+SuturingDeviceDrive::Positions readSuturingDeviceJoints(const sensor_msgs::JointState& message);
 
 /// As CRTK has it: DISABLED, ENABLED, PAUSED or FAULT.
 std::string operatingState(const DeviceStatistics& device, const HapticStatistics& haptic);
 
 /// For scope/servo_jp: the joints of the scope as a command.
 sensor_msgs::JointState scopeCommand(const DriveState& drive, const ros::Time& stamp);
-/// For overstitch/measured_js.
-sensor_msgs::JointState overstitchCommand(const DriveState& drive, const ros::Time& stamp);
+/// For suturing_device/input/joint_states.
+sensor_msgs::JointState suturingDeviceCommand(const DriveState& drive, const ros::Time& stamp);
 /// For scope/buttons.
 sensor_msgs::Joy buttonCommand(const DriveState& drive, const ros::Time& stamp);
 

@@ -6,6 +6,7 @@
 #include "vibe_core/common/step_timer.hpp"
 #include "vibe_hardware/hid/hidraw_bus.hpp"
 #include "vibe_hardware/hid/socket_bus.hpp"
+#include "vibe_node/former_names.hpp"
 #include "vibe_node/parameter_reader.hpp"
 
 namespace vibe::hardware {
@@ -48,10 +49,11 @@ constexpr double kWait = 0.004;            // for a report; parameters wait as l
 constexpr double kButtonPeriod = 0.1;      // of buttons that do not change [s]
 constexpr double kStatisticsPeriod = 0.1;  // [s]
 constexpr double kCameraPatience = 1;      // a camera that is silent for longer tracks no more [s]
-constexpr double kComplaintPeriod = 1;     // [s]
+constexpr double kWarningPeriod = 1;       // [s]
 constexpr double kTimerPeriod = 0.02;      // [s]
 constexpr double kAfterHoming = 0.1;       // in which parameters belong to the positions before [s]
 constexpr std::uint32_t kDeviceQueue = 100;
+const char* const kTracked = "suturing_device/input/joint_states";  // by a camera, or driven by buttons
 
 /// The drivers of both devices say the same about a bus that does not work.
 void log(Severity severity, const std::string& sentence) {
@@ -82,7 +84,8 @@ HardwareNode::HardwareNode(ros::NodeHandle handle, const HardwareParameters& par
               callbacksOf(DeviceKind::Haptic)),
       input_(*input_bus_, DeviceKind::Input, joints_.calibration().devices[indexOf(DeviceKind::Input)], steadyTime,
              callbacksOf(DeviceKind::Input)) {
-  if (joints_.calibration().overstitch) overstitch_.emplace(*joints_.calibration().overstitch);
+  if (!joints_.calibration().remark.empty()) log(Severity::Warning, joints_.calibration().remark);
+  if (joints_.calibration().suturing_device) suturing_device_.emplace(*joints_.calibration().suturing_device);
   advertise(handle);
   publishState();
   startThreads();
@@ -113,15 +116,16 @@ DeviceDriver::Callbacks HardwareNode::callbacksOf(DeviceKind kind) {
 
 void HardwareNode::advertise(ros::NodeHandle& handle) {
   using sensor_msgs::JointState;
-  scope_publisher_ = handle.advertise<JointState>("scope/measured_js", kDeviceQueue);
+  scope_publisher_ = handle.advertise<JointState>("scope/input/joint_states", kDeviceQueue);
   button_publisher_ = handle.advertise<sensor_msgs::Joy>("scope/buttons", kDeviceQueue);
   haptic_publisher_ = handle.advertise<JointState>("haptic/measured_js", kDeviceQueue);
   state_publisher_ = handle.advertise<vibe_msgs::OperatingState>("haptic/operating_state", 1, true);
   const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
   parameters_subscriber_ = handle.subscribe("haptic/parameters", 1, &HardwareNode::onParameters, this, no_delay);
-  if (overstitch_) {
-    overstitch_publisher_ = handle.advertise<JointState>("overstitch/measured_js", kDeviceQueue);
-    overstitch_subscriber_ = handle.subscribe("overstitch/measured_js", 1, &HardwareNode::onOverstitch, this);
+  if (suturing_device_) {
+    suturing_device_publisher_ = handle.advertise<JointState>(kTracked, kDeviceQueue);
+    suturing_device_subscriber_ = handle.subscribe(kTracked, 1, &HardwareNode::onSuturingDevice, this);
+    former_subscriber_ = handle.subscribe(node::formerInput(kTracked), 1, &HardwareNode::onFormerName, this);
   }
   updater_.setHardwareID("none");
   for (const DeviceKind kind : {DeviceKind::Haptic, DeviceKind::Input}) {
@@ -175,7 +179,7 @@ void HardwareNode::onSample(DeviceKind kind, const DeviceSample& sample) {
   }
   publishJoints(kind, sample.time);
   publishButtons(sample.time, buttons_.take(kind, sample.buttons));
-  if (joints_.leads(kind)) publishOverstitch(sample.time);
+  if (joints_.leads(kind)) publishSuturingDevice(sample.time);
 }
 
 void HardwareNode::onLost(DeviceKind kind, double now) {
@@ -214,13 +218,13 @@ void HardwareNode::publishButtons(double time, bool changed) {
   button_publisher_.publish(makeButtons(buttons_, button_stamps_.at(time)));
 }
 
-void HardwareNode::publishOverstitch(double time) {
-  if (!overstitch_) return;
+void HardwareNode::publishSuturingDevice(double time) {
+  if (!suturing_device_) return;
   const bool tracked = steadyTime() - camera_time_ < kCameraPatience;
-  if (!tracked) overstitch_->advance(buttons_, time - last_overstitch_);
-  last_overstitch_ = time;
+  if (!tracked) suturing_device_->advance(buttons_, time - last_suturing_device_);
+  last_suturing_device_ = time;
   if (tracked) return;
-  overstitch_publisher_.publish(makeOverstitchJoints(*overstitch_, overstitch_stamps_.at(time)));
+  suturing_device_publisher_.publish(makeSuturingDeviceJoints(*suturing_device_, suturing_device_stamps_.at(time)));
 }
 
 void HardwareNode::publishState() {
@@ -244,19 +248,25 @@ void HardwareNode::onParameters(const vibe_msgs::HapticParameters& message) {
     haptic_.setTarget(readHapticParameters(message, joints_));
   } catch (const Error& error) {
     ++rejected_;
-    ROS_WARN_STREAM_THROTTLE(kComplaintPeriod, "A message on haptic/parameters is ignored: " << error.what());
+    ROS_WARN_STREAM_THROTTLE(kWarningPeriod, "A message on haptic/parameters is ignored: " << error.what());
   }
 }
 
-void HardwareNode::onOverstitch(const ros::MessageEvent<const sensor_msgs::JointState>& event) {
+void HardwareNode::onFormerName(const ros::MessageEvent<const sensor_msgs::JointState>& event) {
+  node::warnOfFormerInput(event.getPublisherName(), node::formerInput(kTracked));
+  onSuturingDevice(event);
+}
+
+void HardwareNode::onSuturingDevice(const ros::MessageEvent<const sensor_msgs::JointState>& event) {
   if (event.getPublisherName() == ros::this_node::getName()) return;
   const std::lock_guard<std::mutex> lock(mutex_);
   if (event.getMessage()->header.stamp.isZero()) return;  // not valid
   try {
-    overstitch_->setPositions(readOverstitchJoints(*event.getMessage()));
+    suturing_device_->setPositions(readSuturingDeviceJoints(*event.getMessage()));
     camera_time_ = steadyTime();
   } catch (const Error& error) {
-    ROS_WARN_STREAM_THROTTLE(kComplaintPeriod, "A message on overstitch/measured_js is ignored: " << error.what());
+    ROS_WARN_STREAM_THROTTLE(kWarningPeriod,
+                             "A message on suturing_device/input/joint_states is ignored: " << error.what());
   }
 }
 

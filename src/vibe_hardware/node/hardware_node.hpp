@@ -44,25 +44,25 @@ class HardwareNode {
   std::mutex mutex_;  // of everything that more than one thread uses, down to the buses
   ScopeJoints joints_;
   ScopeButtons buttons_;
-  std::optional<OverstitchDrive> overstitch_;
+  std::optional<SuturingDeviceDrive> suturing_device_;
   std::array<DeviceStatistics, kDeviceKinds> device_statistics_;
   HapticStatistics haptic_statistics_;
   std::array<SilenceWatch, kDeviceKinds> silence_;
   std::uint64_t rejected_ = 0;
-  double last_buttons_ = -1;    // time of the last message [s]
-  double last_overstitch_ = 0;  // time of the last motion [s]
-  double camera_time_ = -1e9;   // arrival of the last message of another node on overstitch/measured_js [s]
+  double last_buttons_ = -1;         // time of the last message [s]
+  double last_suturing_device_ = 0;  // time of the last motion [s]
+  double camera_time_ = -1e9;  // arrival of the last message of another node on suturing_device/input/joint_states [s]
   std::string operating_state_;
   bool was_homed_ = false;
-  StampSource scope_stamps_, haptic_stamps_, button_stamps_, overstitch_stamps_;
+  StampSource scope_stamps_, haptic_stamps_, button_stamps_, suturing_device_stamps_;
 
   std::unique_ptr<HidBus> haptic_bus_, input_bus_;
   HapticDriver haptic_;
   DeviceDriver input_;
   double next_statistics_[kDeviceKinds] = {};
 
-  ros::Publisher scope_publisher_, button_publisher_, haptic_publisher_, state_publisher_, overstitch_publisher_;
-  ros::Subscriber parameters_subscriber_, overstitch_subscriber_;
+  ros::Publisher scope_publisher_, button_publisher_, haptic_publisher_, state_publisher_, suturing_device_publisher_;
+  ros::Subscriber parameters_subscriber_, suturing_device_subscriber_, former_subscriber_;
   diagnostic_updater::Updater updater_;
   std::array<DiagnosticMemory, kDeviceKinds> memory_;
   ros::WallTimer timer_;
@@ -77,10 +77,11 @@ class HardwareNode {
   void watchSilence(DeviceKind kind);
   void publishJoints(DeviceKind kind, double time);
   void publishButtons(double time, bool changed);
-  void publishOverstitch(double time);
+  void publishSuturingDevice(double time);
   void publishState();
   void onParameters(const vibe_msgs::HapticParameters& message);
-  void onOverstitch(const ros::MessageEvent<const sensor_msgs::JointState>& event);
+  void onSuturingDevice(const ros::MessageEvent<const sensor_msgs::JointState>& event);
+  void onFormerName(const ros::MessageEvent<const sensor_msgs::JointState>& event);
 };
 
 }  // namespace vibe::hardware

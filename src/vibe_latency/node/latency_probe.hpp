@@ -45,11 +45,11 @@ class EventTable {
 
 /// What to watch, from private parameters.
 struct ProbeParameters {
-  std::string folder;                        ///< for the tables; required
-  std::string joint = "tip_left_right";      ///< that blinks
-  std::string device = "scope/measured_js";  ///< topic on which it comes in
-  std::string state = "scope/setpoint_js";   ///< topic on which the simulator answers
-  bool screen = true;                        ///< also watch the lamp on the screen
+  std::string folder;                               ///< for the tables; required
+  std::string joint = "tip_left_right";             ///< that blinks
+  std::string device = "scope/input/joint_states";  ///< topic on which it comes in
+  std::string state = "scope/setpoint_js";          ///< topic on which the simulator answers
+  bool screen = true;                               ///< also watch the lamp on the screen
 };
 
 /// @throws Error for an unknown parameter, one of a wrong type, or an unknown joint

@@ -19,6 +19,7 @@
 #include <sys/resource.h>
 
 #include "vibe_core/common/error.hpp"
+#include "vibe_node/former_names.hpp"
 
 namespace vibe::node {
 namespace {
@@ -64,6 +65,7 @@ std::string logFolderFault() {
 void init(int& argc, char** argv, const std::string& name, std::uint32_t options) {
   const std::string fault = logFolderFault();
   if (!fault.empty()) throw Error(fault);
+  renameRemappings(argc, argv);
   ros::init(argc, argv, name, options);
 }
 

@@ -7,7 +7,7 @@
 namespace vibe::vision {
 namespace {
 
-constexpr double kComplaintPeriod = 1;  // [s]
+constexpr double kWarningPeriod = 1;  // [s]
 
 }  // namespace
 
@@ -82,7 +82,7 @@ void TopicInput::count(std::uint64_t sequence) {
 }
 
 void TopicInput::refuse(const std::string& complaint) {
-  ROS_WARN_STREAM_THROTTLE(kComplaintPeriod, "A message on " << topic_ << " is ignored: " << complaint);
+  ROS_WARN_STREAM_THROTTLE(kWarningPeriod, "A message on " << topic_ << " is ignored: " << complaint);
   ++statistics_.unreadable;
   complaint_ = complaint;
 }

@@ -15,13 +15,13 @@ namespace vibe::vision {
 
 ros::Time toStamp(double time);  ///< @param time  Unix time [s], to the nearest nanosecond
 
-/// For overstitch/tracking. @param samples  of the joints, by instrument
+/// For suturing_device/tracking. @param samples  of the joints, by instrument
 vibe_msgs::InstrumentTrackArray makeTracks(const VisionConfig& config, const Frame& frame,
                                            const Measurements& measurements, const std::vector<JointSample>& samples,
                                            const std::string& frame_id, const StageTimes& times);
 
-/// For overstitch/measured_js: positions as measured, velocities as filtered. Nothing unless all instruments are
-/// tracked: a message has all joints, and none of them may be made up.
+/// For suturing_device/input/joint_states: positions as measured, velocities as filtered. Nothing unless all
+/// instruments are tracked: a message has all joints, and none of them may be made up.
 std::optional<sensor_msgs::JointState> makeMeasuredJoints(const VisionConfig& config, double time,
                                                           const std::vector<JointSample>& samples);
 /// The same with the last positions of instruments that are lost, velocity NaN. Nothing unless one is tracked and all
@@ -30,7 +30,7 @@ std::optional<sensor_msgs::JointState> makeMeasuredJoints(const VisionConfig& co
 std::optional<sensor_msgs::JointState> makeHeldJoints(const VisionConfig& config, double time,
                                                       const std::vector<JointSample>& samples,
                                                       std::vector<double>& last);
-/// For overstitch/predicted_js: where the joints will be, stamped with that time. Nothing unless all are tracked.
+/// For suturing_device/predicted_js: where the joints will be, stamped with that time. Nothing unless all are tracked.
 std::optional<sensor_msgs::JointState> makePredictedJoints(const VisionConfig& config, double time, double lead,
                                                            const std::vector<JointSample>& samples);
 

@@ -15,7 +15,7 @@ struct VisionParameters {
   bool start_stamped = false;  ///< stamps of image messages are the start of the exposure, not its middle
   bool compressed = false;     ///< images of a topic are sensor_msgs/CompressedImage
   std::string udp;             ///< host:port; empty: no datagrams
-  double lead = 0;             ///< of overstitch/predicted_js [s]; 0: not published
+  double lead = 0;             ///< of suturing_device/predicted_js [s]; 0: not published
   std::string frame_id = "camera_optical";
   bool hold_lost = false;  ///< publish the last position of a lost instrument as long as another one is tracked
   double debug_rate = 15;  ///< of the debug image at most [Hz]

@@ -7,6 +7,7 @@
 #include <sensor_msgs/image_encodings.h>
 
 #include "vibe_core/common/step_timer.hpp"
+#include "vibe_node/former_names.hpp"
 #include "vibe_vision/record/annotation.hpp"
 
 namespace vibe::vision {
@@ -40,14 +41,20 @@ cv::Mat drawDebugImage(const VisionConfig& config, const Frame& frame, const Mea
 namespace {
 
 constexpr std::uint32_t kQueue = 10;
+const char* const kTracking = "suturing_device/tracking";
+const char* const kPredicted = "suturing_device/predicted_js";
 
 }  // namespace
 
 VisionPublisher::VisionPublisher(ros::NodeHandle handle, const VisionConfig& config, const VisionParameters& parameters)
     : config_(config), parameters_(parameters), transport_(handle) {
-  measured_ = handle.advertise<sensor_msgs::JointState>("overstitch/measured_js", kQueue);
-  if (parameters.lead > 0) predicted_ = handle.advertise<sensor_msgs::JointState>("overstitch/predicted_js", kQueue);
-  tracking_ = handle.advertise<vibe_msgs::InstrumentTrackArray>("overstitch/tracking", kQueue);
+  measured_ = handle.advertise<sensor_msgs::JointState>("suturing_device/input/joint_states", kQueue);
+  if (parameters.lead > 0) {
+    predicted_ = handle.advertise<sensor_msgs::JointState>(kPredicted, kQueue);
+    former_predicted_ = node::advertiseFormer<sensor_msgs::JointState>(handle, kPredicted, kQueue);
+  }
+  tracking_ = handle.advertise<vibe_msgs::InstrumentTrackArray>(kTracking, kQueue);
+  former_tracking_ = node::advertiseFormer<vibe_msgs::InstrumentTrackArray>(handle, kTracking, kQueue);
   if (parameters.publish_images) debug_ = transport_.advertise("debug_image", 1);
   if (parameters.fromTopic()) return;  // the camera's node publishes the other two
   camera_info_ = handle.advertise<sensor_msgs::CameraInfo>("camera_info", kQueue);
@@ -73,14 +80,18 @@ void VisionPublisher::publishJoints(const FrameResult& result) {
   if (measured) measured_.publish(*measured);
   if (!predicted_) return;
   const auto predicted = makePredictedJoints(config_, stamp, parameters_.lead, result.samples);
-  if (predicted) predicted_.publish(*predicted);
+  if (!predicted) return;
+  predicted_.publish(*predicted);
+  former_predicted_.publish(*predicted);
 }
 
 double VisionPublisher::publishTracks(const FrameResult& result) {
   StageTimes times = result.times;
   times.publish = ros::Time::now().toSec() - result.tracked_at;
-  tracking_.publish(
-      makeTracks(config_, result.frame, result.measurements, result.samples, parameters_.frame_id, times));
+  const vibe_msgs::InstrumentTrackArray tracks =
+      makeTracks(config_, result.frame, result.measurements, result.samples, parameters_.frame_id, times);
+  tracking_.publish(tracks);
+  former_tracking_.publish(tracks);
   return times.publish;
 }
 

@@ -27,7 +27,7 @@ class VisionPublisher {
 
   /// @param times  times of the frame; `publish` is filled. @return that time [s]
   double publish(const FrameResult& result);
-  /// Without an image: only overstitch/tracking.
+  /// Without an image: only suturing_device/tracking.
   void publishSilence(const FrameResult& result);
   void reset() { held_.clear(); }
 
@@ -36,6 +36,7 @@ class VisionPublisher {
   VisionParameters parameters_;
   image_transport::ImageTransport transport_;
   ros::Publisher measured_, predicted_, tracking_, camera_info_;
+  ros::Publisher former_predicted_, former_tracking_;  // by their former names; empty: not published
   image_transport::Publisher image_, debug_;
   std::vector<double> held_;  // positions of all joints as published last, for hold_lost
   double next_debug_ = 0;     // when the next debug image is due, steady clock [s]

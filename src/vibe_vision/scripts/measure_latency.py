@@ -52,7 +52,7 @@ def start_camera(graph, arguments, folder):
 
 
 def record(graph, arguments, folder):
-    """{frame: (exposure, age)} of the datagrams, and {frame: message} of overstitch/tracking."""
+    """{frame: (exposure, age)} of the datagrams, and {frame: message} of suturing_device/tracking."""
     import rospy
     from vibe_msgs.msg import InstrumentTrackArray
 
@@ -66,7 +66,7 @@ def record(graph, arguments, folder):
     os.environ.update(graph.env)
     rospy.init_node("measure_latency", anonymous=True, disable_signals=True)
     tracks, ages = {}, {}
-    rospy.Subscriber("overstitch/tracking", InstrumentTrackArray, lambda m: tracks.setdefault(m.frame_sequence, m))
+    rospy.Subscriber("suturing_device/tracking", InstrumentTrackArray, lambda m: tracks.setdefault(m.frame_sequence, m))
     wait_for(lambda: tracks, 30, "frame")
     while len(ages) < arguments.frames:
         _, _, _, _, exposure, frame, _, age, _ = HEADER.unpack_from(receiver.recv(2048))

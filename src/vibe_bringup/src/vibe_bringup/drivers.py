@@ -78,7 +78,7 @@ class Device(Driver):
 
     def start(self, graph):
         # the simulator obeys one node only: the camera's, also while an instrument is lost
-        remapped = ["overstitch/measured_js:=overstitch/buttons_js"] if self.arguments.camera else []
+        remapped = ["suturing_device/input/joint_states:=suturing_device/buttons_js"] if self.arguments.camera else []
         self.senders = [graph.start_node("vibe_hardware", "hardware_node", *remapped, visible=True)]
 
 

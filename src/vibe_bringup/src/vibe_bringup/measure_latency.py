@@ -44,7 +44,8 @@ class Measurement:
         self.joint = "helix_advance" if arguments.camera else "tip_left_right"
         self.base = CAMERA_BASE if arguments.camera else 0.0
         self.jump = CAMERA_JUMP if arguments.camera else HID_JUMP
-        self.follow = "" if arguments.free else ("overstitch" if arguments.camera else "scope") + "/measured_js"
+        source = "suturing_device" if arguments.camera else "scope"
+        self.follow = "" if arguments.free else source + "/input/joint_states"
         self.begin = 0  # of what counts [ns]
         self.probe = None
 
@@ -101,7 +102,7 @@ class Measurement:
         return path
 
     def set_parameters(self):
-        put, source = self.graph.set_parameter, "overstitch" if self.arguments.camera else "scope"
+        put, source = self.graph.set_parameter, "suturing_device" if self.arguments.camera else "scope"
         put("/use_sim_time", False)
         put("/sim_node/scene", self.scene())
         put("/sim_node/summary_file", self.path("summary.txt"))
@@ -111,8 +112,8 @@ class Measurement:
         put("/hardware_node/realtime_priority", max(0, self.arguments.realtime - 1))
         put("/latency_probe/folder", self.output)
         put("/latency_probe/joint", self.joint)
-        put("/latency_probe/device", source + "/measured_js")
-        put("/latency_probe/state", source + ("/simulated/measured_js" if self.arguments.camera else "/setpoint_js"))
+        put("/latency_probe/device", source + "/input/joint_states")
+        put("/latency_probe/state", source + ("/measured_js" if self.arguments.camera else "/setpoint_js"))
         put("/latency_probe/screen", not self.arguments.headless)
 
     def start(self):
@@ -123,7 +124,8 @@ class Measurement:
         print(graph.how_to_attach(), flush=True)
         self.set_parameters()
         graph.start_robot()
-        remapped = ["overstitch/measured_js:=overstitch/predicted_js"] if self.arguments.lead > 0 else []
+        predicted = ["suturing_device/input/joint_states:=suturing_device/predicted_js"]
+        remapped = predicted if self.arguments.lead > 0 else []
         graph.start_node("vibe_sim", "sim_node", *remapped, patience=30.0)
         if not self.arguments.headless:
             self.start_rviz()
@@ -145,7 +147,7 @@ class Measurement:
         """The configuration of sessions with the lamp."""
         with open(places.find(places.RVIZ_CONFIG), encoding="utf-8") as file:
             config = yaml.safe_load(file)
-        topic = "overstitch/simulated/measured_js" if self.arguments.camera else "scope/setpoint_js"
+        topic = "suturing_device/measured_js" if self.arguments.camera else "scope/setpoint_js"
         lamp = dict(LAMP, Joint=self.joint, Threshold=self.base + 0.5 * self.jump, Topic=topic)
         config["Visualization Manager"]["Displays"].append(lamp)
         path = self.path("latency.rviz")
@@ -183,7 +185,7 @@ class Measurement:
         command += ["--hand", "blink", HAND] + self.blink_options() if blinks else ["--hand", "script", HAND]
         emulator = self.graph.start("vibe_emulator", command)
         self.wait_for(emulator, "input", "the emulator offers no devices")
-        remapped = ["overstitch/measured_js:=buttons_js"] if arguments.camera else []
+        remapped = ["suturing_device/input/joint_states:=buttons_js"] if arguments.camera else []
         self.graph.start_node("vibe_hardware", "hardware_node", *remapped)
 
     def blink_options(self):

@@ -14,7 +14,7 @@
 namespace vibe::graphics {
 namespace {
 
-constexpr int kPatience = 30;  // for Xvfb to be ready, on a busy machine [s]
+constexpr int kStartTimeout = 30;  // for Xvfb to be ready, on a busy machine [s]
 
 const char* const kRemedy =
     "There is no display, and Xvfb, which would replace it, does not start; install it with apt-get install "
@@ -45,7 +45,7 @@ std::string readNumber(int pipe) {
   std::string number;
   char letter = 0;
   pollfd ready{pipe, POLLIN, 0};
-  while (poll(&ready, 1, 1000 * kPatience) == 1 && read(pipe, &letter, 1) == 1) {
+  while (poll(&ready, 1, 1000 * kStartTimeout) == 1 && read(pipe, &letter, 1) == 1) {
     if (letter == '\n') return number;
     number += letter;
   }

@@ -32,7 +32,7 @@ class CalibrationReader {
   void readHoming(const YamlField& field);
   void readButtons(const YamlField& field);
   DeviceButton readButton(const YamlField& field) const;
-  void readOverstitch(const YamlField& field);
+  void readSuturingDevice(const YamlField& field);
   ButtonDrive readDrive(const YamlField& field, int joint) const;
   void checkAxesOnce(const YamlField& field) const;
   void checkHome(const YamlField& field, int joint, double home) const;
@@ -41,6 +41,7 @@ class CalibrationReader {
 namespace {
 
 const std::vector<std::string> kDeviceNames{"haptic", "input"};
+const char* const kFormerKey = "overstitch";  // of suturing_device, until the next release
 constexpr double kMinScale = 1e-6, kMaxScale = 1e3;
 
 bool isLength(int joint) {
@@ -101,14 +102,14 @@ std::vector<YamlField> CalibrationReader::mapOf(const YamlField& field, const st
 }
 
 Calibration CalibrationReader::read() {
-  const std::vector<YamlField> fields =
-      mapOf(source_.root(), {"devices", "joints", "homing", "buttons", "overstitch"}, {"devices", "joints"});
+  const std::vector<YamlField> fields = mapOf(
+      source_.root(), {"devices", "joints", "homing", "buttons", "suturing_device", kFormerKey}, {"devices", "joints"});
   // homing needs the joints, wherever they stand in the file
   for (const YamlField& field : fields) {
     if (field.key == "devices") readDevices(field);
     if (field.key == "joints") readJoints(field);
     if (field.key == "buttons") readButtons(field);
-    if (field.key == "overstitch") readOverstitch(field);
+    if (field.key == "suturing_device" || field.key == kFormerKey) readSuturingDevice(field);
   }
   for (const YamlField& field : fields) {
     if (field.key == "homing") readHoming(field);
@@ -222,12 +223,17 @@ DeviceButton CalibrationReader::readButton(const YamlField& field) const {
   return button;
 }
 
-void CalibrationReader::readOverstitch(const YamlField& field) {
+void CalibrationReader::readSuturingDevice(const YamlField& field) {
   const std::vector<std::string> names = jointNames(kScopeJointCount, kJointCount);
-  calibration_.overstitch.emplace();
+  if (calibration_.suturing_device) source_.fail(field, "is there by both of its names; keep suturing_device");
+  if (field.key == kFormerKey)
+    calibration_.remark = source_.place() + ":" + std::to_string(field.line) + ": the key '" + kFormerKey +
+                          "' is the former name of suturing_device and is read in this release for the last time; "
+                          "rename it.";
+  calibration_.suturing_device.emplace();
   for (const YamlField& entry : mapOf(field, names, names)) {
     const int index = indexOf(names, entry.key);
-    (*calibration_.overstitch)[static_cast<std::size_t>(index)] = readDrive(entry, kScopeJointCount + index);
+    (*calibration_.suturing_device)[static_cast<std::size_t>(index)] = readDrive(entry, kScopeJointCount + index);
   }
 }
 

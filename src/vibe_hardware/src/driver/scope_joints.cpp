@@ -84,7 +84,7 @@ constexpr double kLongestStep = 0.1;  // a gap in the samples is not a motion [s
 
 }  // namespace
 
-void OverstitchDrive::advance(const ScopeButtons& buttons, double elapsed) {
+void SuturingDeviceDrive::advance(const ScopeButtons& buttons, double elapsed) {
   const double time = std::clamp(elapsed, 0.0, kLongestStep);
   Positions moved = positions_;
   for (std::size_t j = 0; j < drives_.size(); ++j) {
@@ -94,7 +94,7 @@ void OverstitchDrive::advance(const ScopeButtons& buttons, double elapsed) {
   setPositions(moved);
 }
 
-void OverstitchDrive::setPositions(const Positions& positions) {
+void SuturingDeviceDrive::setPositions(const Positions& positions) {
   for (std::size_t j = 0; j < drives_.size(); ++j) {
     positions_[j] = std::clamp(positions[j], drives_[j].lower, drives_[j].upper);
   }

@@ -22,7 +22,7 @@ int TickSchedule::due(double now) {
   return count;
 }
 
-void OverstitchFingers::decide(const Positions& intended, double report_period) {
+void SuturingDeviceFingers::decide(const Positions& intended, double report_period) {
   for (std::size_t j = 0; j < drives_.size(); ++j) {
     const ButtonDrive& drive = drives_[j];
     const double step = drive.speed * report_period;
@@ -32,7 +32,7 @@ void OverstitchFingers::decide(const Positions& intended, double report_period) 
   }
 }
 
-bool OverstitchFingers::isPressed(const DeviceButton& button) const {
+bool SuturingDeviceFingers::isPressed(const DeviceButton& button) const {
   for (std::size_t j = 0; j < drives_.size(); ++j)
     for (const int direction : {1, -1}) {
       const DeviceButton& other = direction == 1 ? drives_[j].forward : drives_[j].backward;
@@ -66,7 +66,7 @@ Emulator::Emulator(const EmulatorSetup& setup, std::shared_ptr<const Hand> hand)
       hand_(std::move(hand)),
       haptic_(setup.haptic, plantsOf(setup), setup.serial),
       input_(setup.input, setup.serial) {
-  if (setup.calibration.overstitch) fingers_.emplace(*setup.calibration.overstitch);
+  if (setup.calibration.suturing_device) fingers_.emplace(*setup.calibration.suturing_device);
   const HandSample first = hand_->at(0);
   for (std::size_t joint = 0; joint < kScopeJointCount; ++joint)
     if (std::abs(axisPosition(setup_.calibration.joints[joint].scale, first.joints[joint])) > 1e-6)
@@ -111,7 +111,7 @@ void Emulator::tick() {
   const HandSample sample = intention();
   const auto report_ticks = static_cast<std::int64_t>(setup_.input.report_ticks);
   if (fingers_ && ticks_ % report_ticks == 0) {
-    OverstitchFingers::Positions intended;
+    SuturingDeviceFingers::Positions intended;
     std::copy(sample.joints.begin() + kScopeJointCount, sample.joints.end(), intended.begin());
     fingers_->decide(intended, kTick * static_cast<double>(report_ticks));
   }

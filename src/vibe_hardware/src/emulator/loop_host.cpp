@@ -10,7 +10,7 @@ LoopHost::LoopHost(EmulatorBus& bus, const Calibration& calibration, std::functi
       buttons_(calibration),
       haptic_(bus, calibration.devices[0], clock, callbacksOf(DeviceKind::Haptic)),
       input_driver_(bus, DeviceKind::Input, calibration.devices[1], clock, callbacksOf(DeviceKind::Input)) {
-  if (calibration.overstitch) overstitch_.emplace(*calibration.overstitch);
+  if (calibration.suturing_device) suturing_device_.emplace(*calibration.suturing_device);
 }
 
 DeviceDriver::Callbacks LoopHost::callbacksOf(DeviceKind kind) {
@@ -32,10 +32,10 @@ void LoopHost::poll() {
 void LoopHost::take(DeviceKind kind, const DeviceSample& sample) {
   joints_.take(kind, sample);
   buttons_.take(kind, sample.buttons);
-  if (kind == DeviceKind::Input && overstitch_) {
-    overstitch_->advance(buttons_, sample.time - last_time_);
+  if (kind == DeviceKind::Input && suturing_device_) {
+    suturing_device_->advance(buttons_, sample.time - last_time_);
     last_time_ = sample.time;
-    std::copy(overstitch_->positions().begin(), overstitch_->positions().end(),
+    std::copy(suturing_device_->positions().begin(), suturing_device_->positions().end(),
               input_.joints.begin() + kScopeJointCount);
   }
   std::copy(joints_.positions().begin(), joints_.positions().end(), input_.joints.begin());

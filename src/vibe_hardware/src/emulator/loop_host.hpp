@@ -38,7 +38,7 @@ class LoopHost {
 
   ScopeJoints joints_;
   ScopeButtons buttons_;
-  std::optional<OverstitchDrive> overstitch_;
+  std::optional<SuturingDeviceDrive> suturing_device_;
   HapticDriver haptic_;
   DeviceDriver input_driver_;
   StepInput input_;

@@ -63,8 +63,8 @@ HandLimits handLimits(const Calibration& calibration) {
   for (std::size_t joint = 0; joint < kJointCount; ++joint) {
     if (joint < kScopeJointCount) {
       limits[joint] = {calibration.joints[joint].lower, calibration.joints[joint].upper};
-    } else if (calibration.overstitch) {
-      const ButtonDrive& drive = (*calibration.overstitch)[joint - kScopeJointCount];
+    } else if (calibration.suturing_device) {
+      const ButtonDrive& drive = (*calibration.suturing_device)[joint - kScopeJointCount];
       limits[joint] = {drive.lower, drive.upper};
     }
   }

@@ -58,9 +58,17 @@ TEST(Calibration, TheShippedOneIsRead) {
   EXPECT_EQ(c.joints[Rotation].home, 0.0);
   EXPECT_EQ(c.buttons[Insufflate]->bit, 5);
   EXPECT_EQ(c.homing->bit, 6);
-  ASSERT_TRUE(c.overstitch);
-  EXPECT_NEAR((*c.overstitch)[1].speed, 12.566, 1e-3);
-  EXPECT_DOUBLE_EQ((*c.overstitch)[2].upper, 0.018);
+  ASSERT_TRUE(c.suturing_device);
+  EXPECT_NEAR((*c.suturing_device)[1].speed, 12.566, 1e-3);
+  EXPECT_DOUBLE_EQ((*c.suturing_device)[2].upper, 0.018);
+}
+
+TEST(Calibration, TheFormerNameOfASectionIsReadWithARemark) {
+  const Calibration c = Calibration::parse(with("\nsuturing_device:", "\noverstitch:"), "devices.yaml");
+  EXPECT_TRUE(c.suturing_device);
+  EXPECT_NE(c.remark.find("the key 'overstitch' is the former name of suturing_device"), std::string::npos) << c.remark;
+  EXPECT_EQ(Calibration::parse(shipped(), "").remark, "");
+  EXPECT_NE(errorOf(shipped() + "\noverstitch: {}\n").find("is there by both of its names"), std::string::npos);
 }
 
 TEST(Calibration, DirectionSerialAndMissingSections) {
@@ -71,7 +79,7 @@ TEST(Calibration, DirectionSerialAndMissingSections) {
             "007");
   const std::string text = shipped();
   const Calibration small = Calibration::parse(text.substr(0, text.find("homing:")), "");
-  EXPECT_FALSE(small.homing || small.overstitch || small.buttons[0]);
+  EXPECT_FALSE(small.homing || small.suturing_device || small.buttons[0]);
   EXPECT_FALSE(small.joints[0].home);
 }
 
@@ -122,9 +130,10 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"bit: 6}", "bit: 16}", "homing.button.bit: '16' is out of range; write a whole number from 0 to 15"},
         Mistake{"  apc_pedal:", "  apc_petal:", "buttons.apc_petal: is not a known key; did you mean 'apc_pedal'?"},
         Mistake{"speed: 10 mm/s", "speed: 10 mm",
-                "overstitch.helix_advance.speed: '10 mm' is a length, but it must be a speed"},
-        Mistake{"    speed: 10 mm/s\n", "", "overstitch.helix_advance: lacks the key 'speed'"},
-        Mistake{"limits: [0 mm, 30 mm]", "limits: [5 mm, 30 mm]", "overstitch.helix_advance: has limits without 0"}));
+                "suturing_device.helix_advance.speed: '10 mm' is a length, but it must be a speed"},
+        Mistake{"    speed: 10 mm/s\n", "", "suturing_device.helix_advance: lacks the key 'speed'"},
+        Mistake{"limits: [0 mm, 30 mm]", "limits: [5 mm, 30 mm]",
+                "suturing_device.helix_advance: has limits without 0"}));
 
 TEST(Calibration, FileAndLineAreThoseOfTheMistake) {
   EXPECT_EQ(errorOf("devices:\n  haptic: {id: 1209:0001}\n  inptu: {id: 1209:0002}\njoints: {}\n"),

@@ -103,10 +103,10 @@ TEST(ScopeButtons, TellsOnlyChangesOfTheSixButtons) {
   EXPECT_TRUE(buttons.take(DeviceKind::Input, 0));
 }
 
-TEST(OverstitchDrive, MovesWhileAButtonIsHeldAndStopsAtTheLimits) {
+TEST(SuturingDeviceDrive, MovesWhileAButtonIsHeldAndStopsAtTheLimits) {
   const Calibration calibration = Calibration::load("../config/devices.yaml");
   ScopeButtons buttons(calibration);
-  OverstitchDrive drive(*calibration.overstitch);
+  SuturingDeviceDrive drive(*calibration.suturing_device);
   buttons.take(DeviceKind::Input, 1 << 8 | 1 << 11);  // helix forward, turning back
   for (int i = 0; i < 100; ++i) drive.advance(buttons, 0.01);
   EXPECT_NEAR(drive.positions()[0], 0.01, 1e-9);
@@ -120,10 +120,10 @@ TEST(OverstitchDrive, MovesWhileAButtonIsHeldAndStopsAtTheLimits) {
   EXPECT_EQ(drive.positions()[0], 0.03);
 }
 
-TEST(OverstitchDrive, AGapIsNoMotionAndACameraSetsThePosition) {
+TEST(SuturingDeviceDrive, AGapIsNoMotionAndACameraSetsThePosition) {
   const Calibration calibration = Calibration::load("../config/devices.yaml");
   ScopeButtons buttons(calibration);
-  OverstitchDrive drive(*calibration.overstitch);
+  SuturingDeviceDrive drive(*calibration.suturing_device);
   buttons.take(DeviceKind::Input, 1 << 8);
   drive.advance(buttons, 60);
   EXPECT_NEAR(drive.positions()[0], 1e-3, 1e-9);

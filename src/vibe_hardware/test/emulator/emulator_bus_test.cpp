@@ -78,10 +78,10 @@ TEST(EmulatorBus, TheSimulatorIsToldWhatTheScriptSays) {
   EXPECT_EQ(host.statistics().refused, 0U);
 }
 
-TEST(OverstitchFingers, FollowNoFasterThanTheHost) {
+TEST(SuturingDeviceFingers, FollowNoFasterThanTheHost) {
   const Calibration calibration = Bench::setup().calibration;
-  OverstitchFingers fingers(*calibration.overstitch);
-  const auto& helix = (*calibration.overstitch)[0];
+  SuturingDeviceFingers fingers(*calibration.suturing_device);
+  const auto& helix = (*calibration.suturing_device)[0];
   int steps = 0;
   while (std::abs(fingers.positions()[0] - 0.01) > 1e-5 && steps < 1000) {
     fingers.decide({0.01, 0, 0}, 0.01);

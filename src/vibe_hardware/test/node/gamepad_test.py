@@ -15,7 +15,7 @@ from vibe_testing.program import Program
 from vibe_testing.wait import wait_until
 
 SCOPE = ["insertion", "rotation", "tip_up_down", "tip_left_right"]
-OVERSTITCH = ["helix_advance", "helix_rotation", "needle_driver"]
+SUTURING_DEVICE = ["helix_advance", "helix_rotation", "needle_driver"]
 START = [0.05, 0.3, -0.2, 0.1, 0.004, 1.0, 0.006]
 RECORDING = os.path.join(os.path.dirname(os.path.abspath(__file__)), "pad_session.evemu")
 INSERTION_RATE = 0.04  # of two_stick.yaml [m/s]
@@ -25,13 +25,14 @@ class Simulator:
     """Takes commands over at once and publishes the joints, as the simulator does."""
 
     def __init__(self):
-        self.joints = dict(zip(SCOPE + OVERSTITCH, START))
-        self.scope, self.overstitch, self.buttons = [], [], []
+        self.joints = dict(zip(SCOPE + SUTURING_DEVICE, START))
+        self.scope, self.suturing_device, self.buttons = [], [], []
         self.publisher = rospy.Publisher("joint_states", JointState, queue_size=10)
         self.subscribers = [
             rospy.Subscriber("scope/servo_jp", JointState, self.take, self.scope, queue_size=1000, tcp_nodelay=True),
             rospy.Subscriber(
-                "overstitch/measured_js", JointState, self.take, self.overstitch, queue_size=1000, tcp_nodelay=True
+                "suturing_device/input/joint_states", JointState, self.take, self.suturing_device, queue_size=1000,
+                tcp_nodelay=True
             ),
             rospy.Subscriber("scope/buttons", Joy, self.buttons.append, queue_size=1000, tcp_nodelay=True),
         ]
@@ -74,7 +75,7 @@ class GamepadTest(unittest.TestCase):
         scope, buttons = self.simulator.scope, self.simulator.buttons
         self.assertEqual(scope[0].name, SCOPE)
         self.assertEqual(list(scope[0].position), START[:4])  # no jump at the start
-        self.assertEqual(list(self.simulator.overstitch[0].position), START[4:])
+        self.assertEqual(list(self.simulator.suturing_device[0].position), START[4:])
         steps = [abs(b.position[0] - a.position[0]) for a, b in zip(scope, scope[1:])]
         self.assertLess(max(steps), INSERTION_RATE * 0.1 + 1e-9)
         moved = scope[-1].position[0] - START[0]

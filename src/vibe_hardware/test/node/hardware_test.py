@@ -13,7 +13,7 @@ import rosgraph
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
-from hardware_test_support import OVERSTITCH_JOINTS, SCOPE_JOINTS, Emulator
+from hardware_test_support import SUTURING_DEVICE_JOINTS, SCOPE_JOINTS, Emulator
 from sensor_msgs.msg import JointState, Joy
 from vibe_msgs.msg import HapticParameters, OperatingState
 from vibe_testing.diagnostics import Diagnostics
@@ -53,10 +53,10 @@ def spring(stiffness, position, touching=True, damping=1.0):
 class HardwareTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.scope = Recorder("scope/measured_js", JointState)
+        cls.scope = Recorder("scope/input/joint_states", JointState)
         cls.buttons = Recorder("scope/buttons", Joy)
         cls.haptic = Recorder("haptic/measured_js", JointState)
-        cls.overstitch = Recorder("overstitch/measured_js", JointState)
+        cls.suturing_device = Recorder("suturing_device/input/joint_states", JointState)
         cls.state = Recorder("haptic/operating_state", OperatingState)
         cls.diagnostics = Recorder("/diagnostics", DiagnosticArray)
         cls.haptic_diagnostics = Diagnostics(cls.diagnostics, "haptic device")
@@ -70,7 +70,7 @@ class HardwareTest(unittest.TestCase):
     def tearDown(self):
         self.node.stop()
         self.emulator.stop()
-        for recorder in (self.scope, self.buttons, self.haptic, self.overstitch, self.state, self.diagnostics):
+        for recorder in (self.scope, self.buttons, self.haptic, self.suturing_device, self.state, self.diagnostics):
             recorder.clear()
 
     def start(self):
@@ -97,7 +97,7 @@ class HardwareTest(unittest.TestCase):
             self.assertAlmostEqual(position, expected, delta=0.01)
         self.assertEqual(self.haptic.messages[-1].name, SCOPE_JOINTS[:2])
         self.assertEqual(len(self.haptic.messages[-1].effort), 2)
-        self.assertEqual(self.overstitch.messages[-1].name, OVERSTITCH_JOINTS)
+        self.assertEqual(self.suturing_device.messages[-1].name, SUTURING_DEVICE_JOINTS)
         self.assertEqual(list(self.buttons.messages[-1].buttons), [1, 0, 0, 0, 0, 0])
         button_stamps = self.buttons.stamps()
         self.assertEqual(button_stamps, sorted(set(button_stamps)))
@@ -207,19 +207,29 @@ class HardwareTest(unittest.TestCase):
 
     def test_a_camera_takes_the_suturing_device_over(self):
         self.start()
-        camera = rospy.Publisher("overstitch/measured_js", JointState, queue_size=1)
+        camera = rospy.Publisher("suturing_device/input/joint_states", JointState, queue_size=1)
         wait_until(lambda: camera.get_num_connections() > 1)
         for _ in range(30):
-            message = JointState(name=OVERSTITCH_JOINTS, position=[0.01, 2, 0.005])
+            message = JointState(name=SUTURING_DEVICE_JOINTS, position=[0.01, 2, 0.005])
             message.header.stamp = rospy.Time.now()
             camera.publish(message)
             time.sleep(1 / 30)
-        recent = [m for m in self.overstitch.messages[-15:]]
+        recent = [m for m in self.suturing_device.messages[-15:]]
         self.assertEqual({tuple(m.position) for m in recent}, {(0.01, 2, 0.005)})
         time.sleep(0.5)
-        silent = len(self.overstitch.messages)
-        self.assertTrue(wait_until(lambda: len(self.overstitch.messages) > silent + 10, 3))
-        self.assertEqual(tuple(self.overstitch.messages[-1].position), (0.01, 2, 0.005))
+        silent = len(self.suturing_device.messages)
+        self.assertTrue(wait_until(lambda: len(self.suturing_device.messages) > silent + 10, 3))
+        self.assertEqual(tuple(self.suturing_device.messages[-1].position), (0.01, 2, 0.005))
+        former = rospy.Publisher("overstitch/measured_js", JointState, queue_size=1)
+        self.assertTrue(wait_until(lambda: former.get_num_connections() > 0))
+        for _ in range(2):
+            message.header.stamp = rospy.Time.now()
+            former.publish(message)
+        self.assertTrue(self.node.says("publishes overstitch/measured_js, the former name"), self.node.output())
+        message.position[0] = 0.02
+        former.publish(message)
+        self.assertIsNotNone(self.suturing_device.waits_for(lambda m: m.position[0] == 0.02))
+        self.assertEqual(self.node.count("former name"), 1)
 
     def test_a_node_that_ends_releases_the_buttons(self):
         self.start()

@@ -8,7 +8,7 @@ from vibe_testing.program import Program
 from vibe_testing.wait import wait_until
 
 SCOPE_JOINTS = ["insertion", "rotation", "tip_up_down", "tip_left_right"]
-OVERSTITCH_JOINTS = ["helix_advance", "helix_rotation", "needle_driver"]
+SUTURING_DEVICE_JOINTS = ["helix_advance", "helix_rotation", "needle_driver"]
 
 
 class Emulator:

@@ -60,7 +60,7 @@ class SessionTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.applied = Recorder("applied_input", StepInput)
-        cls.scope = Recorder("scope/measured_js", JointState)
+        cls.scope = Recorder("scope/input/joint_states", JointState)
         cls.haptic = Recorder("haptic/measured_js", JointState)
         cls.parameters = Recorder("haptic/parameters", HapticParameters)
         cls.events = Recorder("procedure/events", ProcedureEvent)

@@ -10,13 +10,22 @@
 namespace vibe::rviz_plugins {
 namespace {
 
-constexpr double kPeriod = 1.0 / 60;   // [s]
-constexpr double kLongestStep = 0.25;  // after a longer gap the joints do not catch up [s]
-constexpr double kStall = 0.25;        // a simulator that is silent for longer takes no steps [s]
-constexpr double kClosing = 0.5;       // a topic that is left and taken again at once could lose its subscribers [s]
-constexpr double kPatience = 2;        // for joints of a simulator, or for it to listen [s]
+constexpr double kPeriod = 1.0 / 60;     // [s]
+constexpr double kLongestStep = 0.25;    // after a longer gap the joints do not catch up [s]
+constexpr double kStall = 0.25;          // a simulator that is silent for longer takes no steps [s]
+constexpr double kClosing = 0.5;         // a topic that is left and taken again at once could lose its subscribers [s]
+constexpr double kSimulatorTimeout = 2;  // for joints of a simulator, or for it to listen [s]
 constexpr std::uint32_t kQueue = 10;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// A remapping of the former name, which rviz is given, is one of the present name in this release.
+std::string deviceTopic(const ros::NodeHandle& handle) {
+  const std::string present = "suturing_device/input/joint_states", former = "overstitch/measured_js";
+  if (handle.resolveName(former) == handle.resolveName(former, false)) return present;
+  ROS_WARN_STREAM_ONCE("The remapping of " << former << " has a former name and is taken as one of " << present
+                                           << "; write that.");
+  return former;
+}
 
 }  // namespace
 
@@ -109,11 +118,11 @@ void ScopeSender::tick() {
   const ros::Time now = ros::Time::now();
   if (!driving_ && (!active_ || !begin(now))) return;
   const bool heard = scope_.getNumSubscribers() > 1;  // this object is a subscriber too
-  if (!heard && steadySeconds() - driving_since_ > kPatience)
+  if (!heard && steadySeconds() - driving_since_ > kSimulatorTimeout)
     trouble_ = "No simulator listens to " + scope_.getTopic() + ". A recording cannot be driven.";
   if (!moveTo(now)) return;
   scope_.publish(scopeMessage(drive_.joints(), now));
-  overstitch_.publish(overstitchMessage(drive_.joints(), now));
+  suturing_device_.publish(suturingDeviceMessage(drive_.joints(), now));
 }
 
 /// @return whether time has passed; the stamps of messages never repeat
@@ -147,7 +156,7 @@ void ScopeSender::connect() {
   topics_ = ros::NodeHandle(requested_);
   topics_.setCallbackQueue(&queue_);
   scope_ = topics_.advertise<sensor_msgs::JointState>("scope/servo_jp", kQueue);
-  overstitch_ = topics_.advertise<sensor_msgs::JointState>("overstitch/measured_js", kQueue);
+  suturing_device_ = topics_.advertise<sensor_msgs::JointState>(deviceTopic(topics_), kQueue);
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   subscribers_.push_back(topics_.subscribe("procedure/state", kQueue, &ScopeSender::takeState, this, hints));
   subscribers_.push_back(topics_.subscribe<sensor_msgs::JointState>(
@@ -168,15 +177,19 @@ void ScopeSender::connect() {
       },
       nullptr, hints));
   watch<sensor_msgs::JointState>("scope/servo_jp", same_topic_);
-  watch<sensor_msgs::JointState>("overstitch/measured_js", same_topic_);
-  watch<sensor_msgs::JointState>("scope/measured_js", other_topic_);
+  watch<sensor_msgs::JointState>("suturing_device/input/joint_states", same_topic_);
+  watch<sensor_msgs::JointState>("scope/input/joint_states", other_topic_);
   watch<geometry_msgs::PoseStamped>("scope/servo_cp", other_topic_);
+  // drivers of the release before; what the simulator itself publishes there has efforts
+  watch<sensor_msgs::JointState>("overstitch/measured_js", same_topic_);
+  watch<sensor_msgs::JointState>("scope/measured_js", other_topic_,
+                                 [](const sensor_msgs::JointState& m) { return m.effort.empty(); });
 }
 
 void ScopeSender::disconnect() {
   endDriving();
   scope_ = {};
-  overstitch_ = {};
+  suturing_device_ = {};
   for (ros::Subscriber& subscriber : subscribers_) subscriber.shutdown();
   subscribers_.clear();
   connected_ = has_limits_ = false;
@@ -189,9 +202,11 @@ void ScopeSender::disconnect() {
 
 /// Notes which other node publishes a topic.
 template <class Message>
-void ScopeSender::watch(const std::string& topic, ControlWatch& watch) {
-  const boost::function<void(const ros::MessageEvent<const Message>&)> note = [this, &watch](const auto& event) {
+void ScopeSender::watch(const std::string& topic, ControlWatch& watch, bool (*counts)(const Message&)) {
+  const boost::function<void(const ros::MessageEvent<const Message>&)> note = [this, &watch,
+                                                                               counts](const auto& event) {
     if (event.getPublisherName() == ros::this_node::getName()) return;
+    if (counts != nullptr && !counts(*event.getMessage())) return;
     const std::lock_guard<std::mutex> lock(mutex_);
     watch.heard(event.getPublisherName(), steadySeconds());
   };
@@ -215,7 +230,7 @@ std::string ScopeSender::findTrouble() {
   if (!rival.empty()) return rival + " drives the scope. Stop it to drive by hand.";
   const std::string wrong = findLimits();
   if (!wrong.empty()) return wrong;
-  if (!present_ && !driving_ && now - waiting_since_ > kPatience) {
+  if (!present_ && !driving_ && now - waiting_since_ > kSimulatorTimeout) {
     if (state_->paused) return "The simulator is paused. Resume it to drive.";
     return "No joints arrive on " + topics_.resolveName("joint_states") + ". Does the scene have a scope?";
   }

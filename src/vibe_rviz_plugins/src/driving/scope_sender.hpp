@@ -18,10 +18,10 @@
 
 namespace vibe::rviz_plugins {
 
-/// Publishes the joints of a ScopeDrive on scope/servo_jp and overstitch/measured_js, 60 times a second in a thread of
-/// its own, so that slow drawing does not make the motion rough. It begins where the simulator's joints are and is
-/// silent while there is no simulator, while time stands still, and while another node drives the scope. Functions may
-/// be called from any thread; changes of buttons are reported in the thread of the call.
+/// Publishes the joints of a ScopeDrive on scope/servo_jp and suturing_device/input/joint_states, 60 times a second in
+/// a thread of its own, so that slow drawing does not make the motion rough. It begins where the simulator's joints are
+/// and is silent while there is no simulator, while time stands still, and while another node drives the scope.
+/// Functions may be called from any thread; changes of buttons are reported in the thread of the call.
 class ScopeSender {
  public:
   explicit ScopeSender(ScopeDrive::ButtonChange button_changed);
@@ -68,7 +68,7 @@ class ScopeSender {
 
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_, topics_;
-  ros::Publisher scope_, overstitch_;
+  ros::Publisher scope_, suturing_device_;
   std::vector<ros::Subscriber> subscribers_;
   ros::WallTimer timer_;
   ros::AsyncSpinner spinner_;
@@ -77,7 +77,7 @@ class ScopeSender {
   void connect();
   void disconnect();
   template <class Message>
-  void watch(const std::string& topic, ControlWatch& watch);
+  void watch(const std::string& topic, ControlWatch& watch, bool (*counts)(const Message&) = nullptr);
   void takeState(const vibe_msgs::ProcedureState::ConstPtr& state);
   std::string findTrouble();
   std::string findLimits();

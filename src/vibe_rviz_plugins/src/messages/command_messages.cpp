@@ -62,7 +62,7 @@ sensor_msgs::JointState scopeMessage(const Joints& joints, const ros::Time& stam
   return messageOf(joints, 0, kScopeJoints, stamp);
 }
 
-sensor_msgs::JointState overstitchMessage(const Joints& joints, const ros::Time& stamp) {
+sensor_msgs::JointState suturingDeviceMessage(const Joints& joints, const ros::Time& stamp) {
   return messageOf(joints, kScopeJoints, joints.size(), stamp);
 }
 

@@ -20,8 +20,8 @@ bool readJoints(const sensor_msgs::JointState& message, Joints& joints);
 
 /// For scope/servo_jp: the first four joints.
 sensor_msgs::JointState scopeMessage(const Joints& joints, const ros::Time& stamp);
-/// For overstitch/measured_js: the other three.
-sensor_msgs::JointState overstitchMessage(const Joints& joints, const ros::Time& stamp);
+/// For suturing_device/input/joint_states: the other three.
+sensor_msgs::JointState suturingDeviceMessage(const Joints& joints, const ros::Time& stamp);
 
 /// Whether the state did not follow from the one before by steps: a reset, a snapshot or another scene was loaded.
 bool isOtherSession(const vibe_msgs::ProcedureState& before, const vibe_msgs::ProcedureState& now);

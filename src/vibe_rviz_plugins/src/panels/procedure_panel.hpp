@@ -78,7 +78,7 @@ class ProcedureWidget : public QWidget {
   void displayStatus(double now);
 };
 
-/// The cockpit as a panel of rviz. Keeps the namespace in rviz's configuration.
+/// ProcedureWidget as a panel of rviz. Keeps the namespace in rviz's configuration.
 class ProcedurePanel : public rviz::Panel {
   Q_OBJECT
  public:

@@ -13,7 +13,7 @@
 namespace vibe::rviz_plugins {
 namespace {
 
-constexpr int kPatience = 10000;  // for the recorder to write what it holds, when rviz is closed [ms]
+constexpr int kCloseTimeout = 10000;  // for the recorder to write what it holds, when rviz is closed [ms]
 
 }  // namespace
 
@@ -53,7 +53,7 @@ RecordBox::~RecordBox() {
   process_.disconnect();
   if (process_.state() == QProcess::NotRunning) return;
   process_.terminate();
-  process_.waitForFinished(kPatience);
+  process_.waitForFinished(kCloseTimeout);
 }
 
 void RecordBox::setFolder(const QString& folder) {

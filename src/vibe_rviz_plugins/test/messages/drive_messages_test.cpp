@@ -60,7 +60,7 @@ TEST(DriveMessages, JointsAreMatchedByName) {
 
 TEST(DriveMessages, MessagesHoldTheJointsOfTheirTopics) {
   const Joints joints = {0, 1, 2, 3, 4, 5, 6};
-  const auto scope = scopeMessage(joints, ros::Time(5)), device = overstitchMessage(joints, ros::Time(5));
+  const auto scope = scopeMessage(joints, ros::Time(5)), device = suturingDeviceMessage(joints, ros::Time(5));
   EXPECT_EQ(scope.name, (std::vector<std::string>{"insertion", "rotation", "tip_up_down", "tip_left_right"}));
   EXPECT_EQ(scope.position, (std::vector<double>{0, 1, 2, 3}));
   EXPECT_EQ(device.name, (std::vector<std::string>{"helix_advance", "helix_rotation", "needle_driver"}));

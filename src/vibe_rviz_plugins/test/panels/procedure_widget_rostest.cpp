@@ -279,7 +279,7 @@ TEST_F(ProcedureWidgetTest, NamespaceIsSavedInTheConfiguration) {
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "cockpit_test");
+  ros::init(argc, argv, "procedure_widget_test");
   ros::NodeHandle handle;  // keeps the node up
   return RUN_ALL_TESTS();
 }

@@ -14,7 +14,7 @@ from sensor_msgs.msg import JointState, Joy
 from vibe_testing.recorder import Recorder
 
 from rviz_under_test import RvizUnderTest
-from small_simulator import OVERSTITCH, SCOPE, START, SmallSimulator
+from small_simulator import SUTURING_DEVICE, SCOPE, START, SmallSimulator
 
 RVIZ = rospkg.RosPack().get_path("vibe_description") + "/rviz/"
 INSERTION_SPEED = 0.03  # with the properties of the shipped configuration [m/s]
@@ -29,7 +29,7 @@ class DriveScope(unittest.TestCase):
         cls.simulator = SmallSimulator()
         cls.simulator.publishes = False
         cls.scope = Recorder("/scope/servo_jp", JointState)
-        cls.overstitch = Recorder("/overstitch/measured_js", JointState)
+        cls.suturing_device = Recorder("/suturing_device/input/joint_states", JointState)
         cls.buttons = Recorder("/scope/buttons", Joy)
         cls.simulator.start()
         cls.rviz = RvizUnderTest(RVIZ + "drive.rviz")
@@ -51,9 +51,9 @@ class DriveScope(unittest.TestCase):
         self.simulator.clock_runs = self.simulator.runs = self.simulator.publishes = True
         self.simulator.reset()
         time.sleep(0.2)
-        self.scope.clear(), self.overstitch.clear(), self.buttons.clear()
+        self.scope.clear(), self.suturing_device.clear(), self.buttons.clear()
         self.rviz.tell("tool Drive Scope")
-        for recorder in (self.scope, self.overstitch, self.buttons):
+        for recorder in (self.scope, self.suturing_device, self.buttons):
             self.wait(lambda: recorder.messages, "messages of the tool on " + recorder.subscriber.name)
 
     def wait(self, condition, what):
@@ -65,7 +65,7 @@ class DriveScope(unittest.TestCase):
         self.rviz.wait_for_frames(4)
 
     def joint(self, name):
-        recorder = self.scope if name in SCOPE else self.overstitch
+        recorder = self.scope if name in SCOPE else self.suturing_device
         message = recorder.messages[-1]
         return message.position[message.name.index(name)]
 
@@ -89,11 +89,11 @@ class DriveScope(unittest.TestCase):
 
     def test_begins_where_the_simulator_is(self):
         time.sleep(1)
-        for message in self.scope.messages + self.overstitch.messages:
+        for message in self.scope.messages + self.suturing_device.messages:
             for name, position in zip(message.name, message.position):
                 self.assertEqual(position, START[name], name)
         self.assertEqual(self.scope.messages[0].name, SCOPE)
-        self.assertEqual(self.overstitch.messages[0].name, OVERSTITCH)
+        self.assertEqual(self.suturing_device.messages[0].name, SUTURING_DEVICE)
 
     def test_key_moves_a_joint_smoothly(self):
         self.rviz.tell("down Key_W")
@@ -166,10 +166,10 @@ class DriveScope(unittest.TestCase):
             setattr(self.simulator, stop, False)
             self.simulator.tell_state()
             time.sleep(1)
-            self.scope.clear(), self.overstitch.clear(), self.buttons.clear()
+            self.scope.clear(), self.suturing_device.clear(), self.buttons.clear()
             self.tell_and_wait("down Key_W")
             self.tell_and_wait("up Key_W")
-            self.assertEqual((self.scope.messages, self.overstitch.messages), ([], []), stop)
+            self.assertEqual((self.scope.messages, self.suturing_device.messages), ([], []), stop)
             if stop == "runs":
                 self.assertEqual(self.buttons.messages, [])
             setattr(self.simulator, stop, True)
@@ -188,7 +188,21 @@ class DriveScope(unittest.TestCase):
         self.assertLess(abs(self.simulator.joints["insertion"] - START["insertion"]), 0.02)
 
     def test_another_device_is_respected(self):
-        device = rospy.Publisher("/scope/measured_js", JointState, queue_size=10)
+        self.respect("/scope/input/joint_states")
+
+    def test_a_device_of_the_release_before_is_respected(self):
+        """The joints of the tool have the same name now, and efforts."""
+        tool = rospy.Publisher("/scope/measured_js", JointState, queue_size=10)
+        self.wait(lambda: tool.get_num_connections() > 0, "the tool to listen")
+        for _ in range(50):
+            tool.publish(JointState(name=SCOPE, position=[0.2, 0, 0, 0], effort=[0, 0, 0, 0]))
+            time.sleep(0.02)
+        self.scope.clear()
+        self.wait(lambda: self.scope.messages, "messages while a tool publishes its joints")
+        self.respect("/scope/measured_js")
+
+    def respect(self, topic):
+        device = rospy.Publisher(topic, JointState, queue_size=10)
         message = JointState(name=SCOPE, position=[0.2, 0, 0, 0])
         since = time.monotonic()
         while time.monotonic() - since < 2:

@@ -10,9 +10,9 @@ from sensor_msgs.msg import JointState
 from vibe_msgs.msg import ProcedureState
 
 SCOPE = ["insertion", "rotation", "tip_up_down", "tip_left_right"]
-OVERSTITCH = ["helix_advance", "helix_rotation", "needle_driver"]
-SPEEDS = dict(zip(SCOPE + OVERSTITCH, [0.15, 3.1, 3.1, 3.1, 0.1, 25.0, 0.1]))  # greatest ones, as in the URDF [1/s]
-START = dict(zip(SCOPE + OVERSTITCH, [0.1, 0.5, 0.3, -0.2, 0.01, 2.0, 0.005]))
+SUTURING_DEVICE = ["helix_advance", "helix_rotation", "needle_driver"]
+SPEEDS = dict(zip(SCOPE + SUTURING_DEVICE, [0.15, 3.1, 3.1, 3.1, 0.1, 25.0, 0.1]))  # greatest ones, as in the URDF [1/s]
+START = dict(zip(SCOPE + SUTURING_DEVICE, [0.1, 0.5, 0.3, -0.2, 0.01, 2.0, 0.005]))
 PERIOD = 1.0 / 60  # of a step [s]
 STATE_INTERVAL = 0.5  # of wall time [s]
 
@@ -29,8 +29,8 @@ class SmallSimulator:
         self.positions = rospy.Publisher("/joint_states", JointState, queue_size=10)
         self.subscribers = [
             rospy.Subscriber("/scope/servo_jp", JointState, self.take, queue_size=100),
-            rospy.Subscriber("/scope/measured_js", JointState, self.take, queue_size=100),
-            rospy.Subscriber("/overstitch/measured_js", JointState, self.take, queue_size=100),
+            rospy.Subscriber("/scope/input/joint_states", JointState, self.take, queue_size=100),
+            rospy.Subscriber("/suturing_device/input/joint_states", JointState, self.take, queue_size=100),
         ]
         self.last_state = 0.0
         self.ends = threading.Event()

@@ -176,8 +176,8 @@ sensor_msgs::JointState makeScopeJoints(const StepInput& input, std::int64_t sta
   return makeJoints(input.joints, jointsOf(InputChannel::Scope), stamp);
 }
 
-sensor_msgs::JointState makeOverstitchJoints(const StepInput& input, std::int64_t stamp) {
-  return makeJoints(input.joints, jointsOf(InputChannel::Overstitch), stamp);
+sensor_msgs::JointState makeSuturingDeviceJoints(const StepInput& input, std::int64_t stamp) {
+  return makeJoints(input.joints, jointsOf(InputChannel::SuturingDevice), stamp);
 }
 
 sensor_msgs::Joy makeButtons(const StepInput& input, std::int64_t stamp) {

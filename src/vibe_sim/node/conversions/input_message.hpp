@@ -55,7 +55,7 @@ InputSample readTipVelocity(const geometry_msgs::TwistStamped& message);
 InputSample readPull(const vibe_msgs::TissuePull& message);
 
 sensor_msgs::JointState makeScopeJoints(const StepInput& input, std::int64_t stamp);
-sensor_msgs::JointState makeOverstitchJoints(const StepInput& input, std::int64_t stamp);
+sensor_msgs::JointState makeSuturingDeviceJoints(const StepInput& input, std::int64_t stamp);
 sensor_msgs::Joy makeButtons(const StepInput& input, std::int64_t stamp);
 
 /// Without run and hashes.

@@ -40,8 +40,8 @@ sensor_msgs::JointState makeMeasuredScope(const State& state, const JointArray& 
   return message;
 }
 
-sensor_msgs::JointState makeMeasuredOverstitch(const State& state, const JointArray& velocity, std::int64_t stamp) {
-  return makeMeasured(state, velocity, jointsOf(InputChannel::Overstitch), stamp);
+sensor_msgs::JointState makeMeasuredSuturingDevice(const State& state, const JointArray& velocity, std::int64_t stamp) {
+  return makeMeasured(state, velocity, jointsOf(InputChannel::SuturingDevice), stamp);
 }
 
 geometry_msgs::TwistStamped makeTipTwist(const Eigen::Isometry3d& before, const Eigen::Isometry3d& now, double seconds,

@@ -28,7 +28,7 @@ JointArray toolJoints(const State& state);
 /// @param velocity  of all joints, mean over the step [m/s], [rad/s]
 sensor_msgs::JointState makeMeasuredScope(const State& state, const JointArray& velocity, std::int64_t stamp);
 /// The same of the suturing device, whose joints have no effort.
-sensor_msgs::JointState makeMeasuredOverstitch(const State& state, const JointArray& velocity, std::int64_t stamp);
+sensor_msgs::JointState makeMeasuredSuturingDevice(const State& state, const JointArray& velocity, std::int64_t stamp);
 
 /// Velocity of the tip between two of its poses in the world: linear [m/s] and angular [rad/s], mean over the time.
 /// @param seconds  from one to the other, above 0

@@ -23,7 +23,7 @@ double leastJerk(double s) {
 std::string nameOf(const InputSample& sample) {
   const bool scope = sample.channel == InputChannel::Scope;
   const bool twist = sample.target == ScopeTarget::VelocityInWorld || sample.target == ScopeTarget::VelocityInBase;
-  return std::string(scope ? "scope/" : "overstitch/") + (sample.move ? "move_" : "servo_") +
+  return std::string(scope ? "scope/" : "suturing_device/") + (sample.move ? "move_" : "servo_") +
          (sample.target == ScopeTarget::Joints ? "jp"
           : twist                              ? "cv"
                                                : "cp");
@@ -68,7 +68,7 @@ std::string applyValues(const InputSample& sample, const Model& model, StepInput
     case InputChannel::Scope:
       std::copy_n(sample.joints.begin(), kScopeJointCount, input.joints.begin());
       break;
-    case InputChannel::Overstitch:
+    case InputChannel::SuturingDevice:
       std::copy(sample.joints.begin() + kScopeJointCount, sample.joints.end(), input.joints.begin() + kScopeJointCount);
       break;
     case InputChannel::Buttons:

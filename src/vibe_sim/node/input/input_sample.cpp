@@ -7,9 +7,9 @@ namespace vibe::sim {
 const char* toString(InputChannel channel) {
   switch (channel) {
     case InputChannel::Scope:
-      return "scope/measured_js";
-    case InputChannel::Overstitch:
-      return "overstitch/measured_js";
+      return "scope/input/joint_states";
+    case InputChannel::SuturingDevice:
+      return "suturing_device/input/joint_states";
     case InputChannel::Buttons:
       return "scope/buttons";
     case InputChannel::Pull:

@@ -11,7 +11,7 @@ namespace vibe::sim {
 using JointArray = std::array<double, kJointCount>;
 
 /// Where an input comes from. Each has its own queue, because each has its own rate.
-enum class InputChannel { Scope, Overstitch, Buttons, Pull };
+enum class InputChannel { Scope, SuturingDevice, Buttons, Pull };
 constexpr int kInputChannelCount = 4;
 constexpr int kLockstepChannelCount = 3;  ///< the first ones; a pull is optional
 

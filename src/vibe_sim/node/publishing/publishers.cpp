@@ -35,21 +35,20 @@ int hapticInterval(double step_period) {
   return static_cast<int>(std::ceil(1 / (kHapticRate * step_period) - 1e-6));
 }
 
-bool anyIsHeard(std::initializer_list<const Outlet*> outlets) {
-  return std::any_of(outlets.begin(), outlets.end(),
-                     [](const Outlet* outlet) { return outlet->getNumSubscribers() > 0; });
+bool anyIsHeard(std::initializer_list<const MessageSink*> sinks) {
+  return std::any_of(sinks.begin(), sinks.end(), [](const MessageSink* sink) { return sink->getNumSubscribers() > 0; });
 }
 
 }  // namespace
 
-ArmPublishers::ArmPublishers(OutletSource& outlets)
-    : scope_(outlets.advertise<sensor_msgs::JointState>("scope/simulated/measured_js", kSmallQueue)),
-      overstitch_(outlets.advertise<sensor_msgs::JointState>("overstitch/simulated/measured_js", kSmallQueue)),
-      jacobian_(outlets.advertise<std_msgs::Float64MultiArray>("scope/jacobian", kSmallQueue)),
-      wall_(outlets.advertise<geometry_msgs::PoseStamped>("wall/measured_cp", kSmallQueue)),
-      scope_state_(outlets.advertise<vibe_msgs::OperatingState>("scope/operating_state", kSmallQueue, true)),
-      overstitch_state_(outlets.advertise<vibe_msgs::OperatingState>("overstitch/operating_state", kSmallQueue, true)) {
-}
+ArmPublishers::ArmPublishers(SinkSource& sinks)
+    : scope_(sinks.advertise<sensor_msgs::JointState>("scope/measured_js", kSmallQueue)),
+      suturing_device_(sinks.advertise<sensor_msgs::JointState>("suturing_device/measured_js", kSmallQueue)),
+      jacobian_(sinks.advertise<std_msgs::Float64MultiArray>("scope/jacobian", kSmallQueue)),
+      wall_(sinks.advertise<geometry_msgs::PoseStamped>("wall/measured_cp", kSmallQueue)),
+      scope_state_(sinks.advertise<vibe_msgs::OperatingState>("scope/operating_state", kSmallQueue, true)),
+      suturing_device_state_(
+          sinks.advertise<vibe_msgs::OperatingState>("suturing_device/operating_state", kSmallQueue, true)) {}
 
 void ArmPublishers::place(const TimedSimulation& simulation, bool continues, std::int64_t stamp) {
   const JointArray joints = toolJoints(simulation.state());
@@ -58,7 +57,7 @@ void ArmPublishers::place(const TimedSimulation& simulation, bool continues, std
     velocity[j] = (joints[j] - last_joints_[j]) / simulation.time().period();
   last_joints_ = joints;
   scope_.publish(makeMeasuredScope(simulation.state(), velocity, stamp));
-  overstitch_.publish(makeMeasuredOverstitch(simulation.state(), velocity, stamp));
+  suturing_device_.publish(makeMeasuredSuturingDevice(simulation.state(), velocity, stamp));
   if (jacobian_.getNumSubscribers() > 0)
     jacobian_.publish(makeJacobian(tipJacobian(simulation.model(), simulation.state())));
   if (wall_.getNumSubscribers() == 0) return;
@@ -71,47 +70,50 @@ void ArmPublishers::operatingState(const TimedSimulation& simulation, const RunS
   const std::int64_t since = simulation.now() - last_state_stamp_;
   const std::int64_t stamp = since <= 0 && since > -kSameTime ? last_state_stamp_ + 1 : simulation.now();
   const auto scope = makeOperatingState(present, status.paused, status.scope_moves, stamp);
-  const auto overstitch = makeOperatingState(present, status.paused, status.overstitch_moves, stamp);
-  const std::string state = scope.state + (scope.is_busy ? " scope" : "") + (overstitch.is_busy ? " overstitch" : "");
+  const auto suturing_device = makeOperatingState(present, status.paused, status.suturing_device_moves, stamp);
+  const std::string state =
+      scope.state + (scope.is_busy ? " scope" : "") + (suturing_device.is_busy ? " suturing_device" : "");
   if (state == last_state_) return;
   last_state_ = state;
   last_state_stamp_ = stamp;
   scope_state_.publish(scope);
-  overstitch_state_.publish(overstitch);
+  suturing_device_state_.publish(suturing_device);
 }
 
 bool ArmPublishers::hasListener() const {
-  return anyIsHeard({&scope_, &overstitch_, &jacobian_, &wall_, &scope_state_, &overstitch_state_});
+  // the simulator itself is one, since devices of the release before publish there (Inputs)
+  if (scope_.getNumSubscribers() > 1) return true;
+  return anyIsHeard({&suturing_device_, &jacobian_, &wall_, &scope_state_, &suturing_device_state_});
 }
 
-Publishers::Publishers(OutletSource outlets, bool with_clock)
-    : scope_pose_(outlets.advertise<geometry_msgs::PoseStamped>("scope/measured_cp", kSmallQueue)),
-      scope_twist_(outlets.advertise<geometry_msgs::TwistStamped>("scope/measured_cv", kSmallQueue)),
-      hand_pose_(outlets.advertise<geometry_msgs::PoseStamped>("scope/setpoint_cp", kSmallQueue)),
-      helix_pose_(outlets.advertise<geometry_msgs::PoseStamped>("overstitch/helix/measured_cp", kSmallQueue)),
-      wrench_(outlets.advertise<geometry_msgs::WrenchStamped>("scope/measured_cf", kSmallQueue)),
-      joint_states_(outlets.advertise<sensor_msgs::JointState>("joint_states", kSmallQueue)),
-      hand_joints_(outlets.advertise<sensor_msgs::JointState>("scope/setpoint_js", kSmallQueue)),
-      topology_(outlets.advertise<vibe_msgs::TissueTopology>("tissue/topology", 1, true)),
-      particles_(outlets.advertise<sensor_msgs::PointCloud2>("tissue/particles", kCloudQueue, true)),
-      procedure_(outlets.advertise<vibe_msgs::ProcedureState>("procedure/state", kSmallQueue, true)),
-      skill_metrics_(outlets.advertise<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kSmallQueue, true)),
-      events_(outlets.advertise<vibe_msgs::ProcedureEvent>("procedure/events", kSmallQueue)),
-      sutures_(outlets.advertise<vibe_msgs::SutureArray>("sutures", kCloudQueue, true)),
-      applied_input_(outlets.advertise<vibe_msgs::StepInput>("applied_input", kSmallQueue, false,
-                                                             [this] { snapshot_asked_ = true; })),
-      solver_statistics_(outlets.advertise<vibe_msgs::SolverStatistics>("solver_statistics", kSmallQueue)),
-      scene_(outlets.advertise<std_msgs::String>("scene", 1, true)),
-      haptic_(outlets.advertise<vibe_msgs::HapticParameters>("haptic/parameters", kSmallQueue)),
-      pull_(outlets.advertise<vibe_msgs::TissuePullState>("tissue/pull_state", kSmallQueue)),
-      step_result_(outlets.advertise<vibe_msgs::StepResult>("step_result", kSmallQueue, true)),
-      session_info_(outlets.advertise<vibe_msgs::SessionInfo>("session_info", kSmallQueue, true)),
-      snapshot_(outlets.advertise<vibe_msgs::StateSnapshot>("snapshot", kCloudQueue, false,
-                                                            [this] { snapshot_asked_ = true; })),
-      step_timing_(outlets.advertise<vibe_msgs::StepTiming>("step_timing", kSmallQueue)),
-      arms_(outlets) {
-  if (outlets.isGraph()) static_transforms_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>();
-  if (with_clock) clock_ = outlets.advertise<rosgraph_msgs::Clock>("/clock", kSmallQueue);
+Publishers::Publishers(SinkSource sinks, bool with_clock)
+    : scope_pose_(sinks.advertise<geometry_msgs::PoseStamped>("scope/measured_cp", kSmallQueue)),
+      scope_twist_(sinks.advertise<geometry_msgs::TwistStamped>("scope/measured_cv", kSmallQueue)),
+      hand_pose_(sinks.advertise<geometry_msgs::PoseStamped>("scope/setpoint_cp", kSmallQueue)),
+      helix_pose_(sinks.advertise<geometry_msgs::PoseStamped>("suturing_device/helix/measured_cp", kSmallQueue)),
+      wrench_(sinks.advertise<geometry_msgs::WrenchStamped>("scope/measured_cf", kSmallQueue)),
+      joint_states_(sinks.advertise<sensor_msgs::JointState>("joint_states", kSmallQueue)),
+      hand_joints_(sinks.advertise<sensor_msgs::JointState>("scope/setpoint_js", kSmallQueue)),
+      topology_(sinks.advertise<vibe_msgs::TissueTopology>("tissue/topology", 1, true)),
+      particles_(sinks.advertise<sensor_msgs::PointCloud2>("tissue/particles", kCloudQueue, true)),
+      procedure_(sinks.advertise<vibe_msgs::ProcedureState>("procedure/state", kSmallQueue, true)),
+      skill_metrics_(sinks.advertise<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kSmallQueue, true)),
+      events_(sinks.advertise<vibe_msgs::ProcedureEvent>("procedure/events", kSmallQueue)),
+      sutures_(sinks.advertise<vibe_msgs::SutureArray>("sutures", kCloudQueue, true)),
+      applied_input_(sinks.advertise<vibe_msgs::StepInput>("applied_input", kSmallQueue, false,
+                                                           [this] { snapshot_asked_ = true; })),
+      solver_statistics_(sinks.advertise<vibe_msgs::SolverStatistics>("solver_statistics", kSmallQueue)),
+      scene_(sinks.advertise<std_msgs::String>("scene", 1, true)),
+      haptic_(sinks.advertise<vibe_msgs::HapticParameters>("haptic/parameters", kSmallQueue)),
+      pull_(sinks.advertise<vibe_msgs::TissuePullState>("tissue/pull_state", kSmallQueue)),
+      step_result_(sinks.advertise<vibe_msgs::StepResult>("step_result", kSmallQueue, true)),
+      session_info_(sinks.advertise<vibe_msgs::SessionInfo>("session_info", kSmallQueue, true)),
+      snapshot_(sinks.advertise<vibe_msgs::StateSnapshot>("snapshot", kCloudQueue, false,
+                                                          [this] { snapshot_asked_ = true; })),
+      step_timing_(sinks.advertise<vibe_msgs::StepTiming>("step_timing", kSmallQueue)),
+      arms_(sinks) {
+  if (sinks.isGraph()) static_transforms_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>();
+  if (with_clock) clock_ = sinks.advertise<rosgraph_msgs::Clock>("/clock", kSmallQueue);
 }
 
 void Publishers::announceModel(const TimedSimulation& simulation) {

@@ -12,7 +12,7 @@
 
 #include "conversions/tissue_message.hpp"
 #include "input/input_sample.hpp"
-#include "publishing/outlet.hpp"
+#include "publishing/sink.hpp"
 #include "simulation/timed_simulation.hpp"
 
 namespace vibe::sim {
@@ -21,7 +21,7 @@ namespace vibe::sim {
 /// the tip needs. Belongs to the stepping thread.
 class ArmPublishers {
  public:
-  explicit ArmPublishers(OutletSource& outlets);
+  explicit ArmPublishers(SinkSource& sinks);
 
   /// The present place of a tool, of a scene with one.
   /// @param continues  the state follows by one step from that of the last call; false: velocities are 0
@@ -31,22 +31,22 @@ class ArmPublishers {
   bool hasListener() const;
 
  private:
-  Outlet scope_, overstitch_, jacobian_, wall_, scope_state_, overstitch_state_;
+  MessageSink scope_, suturing_device_, jacobian_, wall_, scope_state_, suturing_device_state_;
   JointArray last_joints_{};
   std::string last_state_;  // of both, to see a change
   std::int64_t last_state_stamp_ = 0;
 };
 
 /// Between warnings about the same [s].
-constexpr double kComplaintPeriod = 1;
+constexpr double kWarningPeriod = 1;
 
 /// Every topic that the simulator sends. Only warn() may be called from any thread; the rest belongs to the stepping
 /// thread.
 class Publishers {
  public:
-  /// @param outlets     a node handle, or the bag that takes the place of the graph
+  /// @param sinks     a node handle, or the bag that takes the place of the graph
   /// @param with_clock  also publish /clock
-  Publishers(OutletSource outlets, bool with_clock);
+  Publishers(SinkSource sinks, bool with_clock);
 
   /// A model begins to be simulated: scene, topology, static transforms.
   void announceModel(const TimedSimulation& simulation);
@@ -81,7 +81,7 @@ class Publishers {
   bool hasRecorder() const { return applied_input_.getNumSubscribers() > 0; }
 
  private:
-  Outlet scope_pose_, scope_twist_, hand_pose_, helix_pose_, wrench_, joint_states_, hand_joints_, topology_,
+  MessageSink scope_pose_, scope_twist_, hand_pose_, helix_pose_, wrench_, joint_states_, hand_joints_, topology_,
       particles_, procedure_, skill_metrics_, events_, sutures_, applied_input_, solver_statistics_, scene_, haptic_,
       pull_, step_result_, session_info_, snapshot_, step_timing_, clock_;
   ArmPublishers arms_;

@@ -12,13 +12,14 @@
 #include "recording/bag_name.hpp"
 #include "recording/recording.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_node/former_names.hpp"
 
 namespace vibe::sim {
 
 namespace {
 
 constexpr std::uint32_t kUnlimited = 0;
-constexpr double kPatience = 10;              // with publishers that are registered and do not answer [s of wall time]
+constexpr double kPublisherTimeout = 10;      // with publishers that are registered and do not answer [s of wall time]
 constexpr std::uint32_t kChunk = 256 * 1024;  // written at once [bytes]
 constexpr double kChunkPeriod = 2;            // after which a chunk is written though it is not full [s of wall time]
 constexpr double kEarly = 0.99;   // of the period of a topic that is thinned, after which a message counts as due
@@ -114,7 +115,7 @@ void Recorder::subscribe(const ros::master::TopicInfo& topic) {
   const RecordingRule* rule =
       depth_ == RecordingDepth::Everything ? nullptr : recordingRule(topic.name, topic.datatype, simulators_);
   ros::Subscriber& subscriber = subscribers_[topic.name];
-  if (rule != nullptr && rule->period == kNever) return;
+  if ((rule != nullptr && rule->period == kNever) || node::isFormerOutput(topic.name)) return;
   if (rule != nullptr) thinned_[topic.name].period = rule->period;
   ros::SubscribeOptions options;
   options.topic = topic.name;
@@ -137,7 +138,7 @@ bool Recorder::areConnected(const ros::master::V_TopicInfo& published) const {
 bool Recorder::isPatienceOver(const ros::master::V_TopicInfo& published) {
   const ros::SteadyTime now = ros::SteadyTime::now();
   if (last_topic_found_.isZero()) last_topic_found_ = now;
-  if ((now - last_topic_found_).toSec() < kPatience) return false;
+  if ((now - last_topic_found_).toSec() < kPublisherTimeout) return false;
   std::string silent;
   for (const ros::master::TopicInfo& topic : published) {
     const auto entry = subscribers_.find(topic.name);

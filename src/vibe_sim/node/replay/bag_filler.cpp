@@ -10,6 +10,7 @@
 #include "recording/bag_name.hpp"
 #include "recording/recording.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_node/former_names.hpp"
 
 namespace vibe::sim {
 
@@ -18,6 +19,17 @@ namespace {
 bool isReplayed(const std::string& topic, const std::string& prefix) {
   const RecordingRule* rule = recordingRule(topic, "", {prefix});
   return rule != nullptr && rule->replayed;
+}
+
+/// The whole name that a recorded topic has in this release.
+std::string presentName(const rosbag::MessageInstance& message, const std::string& prefix) {
+  const std::string topic = message.getTopic();
+  if (topic.compare(0, prefix.size(), prefix) != 0) return topic;
+  const std::string name = topic.substr(prefix.size()), input = node::presentInput(name);
+  if (input == name) return prefix + node::presentOutput(name);
+  const auto joints = message.instantiate<sensor_msgs::JointState>();
+  const bool is_feedback = joints && name == "scope/measured_js" && !node::isFormerInput(*joints);
+  return prefix + (is_feedback ? name : input);
 }
 
 bool hasClock(const Recording& recording) {
@@ -98,7 +110,7 @@ BagFiller::BagFiller(const Recording& recording, const std::string& file)
       file_(file),
       target_{*bag_, recording.prefix(),
               [prefix = recording.prefix()](const std::string& topic) { return isReplayed(topic, prefix); }},
-      publishers_(OutletSource(target_), hasClock(recording)) {}
+      publishers_(SinkSource(target_), hasClock(recording)) {}
 
 // A bag is closed by its destructor, and one that cannot be written throws there, which ends the program.
 BagFiller::~BagFiller() {
@@ -143,9 +155,11 @@ void BagFiller::finish(const TimedSimulation& simulation) {
   newState(simulation);
   try {
     const auto all = recording_.view([](const rosbag::ConnectionInfo*) { return true; });
-    for (const rosbag::MessageInstance& message : *all)
-      if (!isReplayed(message.getTopic(), recording_.prefix()) && filter_.has(message))
-        bag_->write(message.getTopic(), message.getTime(), message);
+    for (const rosbag::MessageInstance& message : *all) {
+      const std::string topic = presentName(message, recording_.prefix());
+      if (!isReplayed(topic, recording_.prefix()) && filter_.has(message))
+        bag_->write(topic, message.getTime(), message);
+    }
     bag_->close();
     rosbag::Bag whole(file_ + ".active", rosbag::bagmode::Read);
     count_ = rosbag::View(whole).size();

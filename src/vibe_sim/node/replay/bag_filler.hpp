@@ -8,7 +8,7 @@
 
 #include <rosbag/bag.h>
 
-#include "publishing/outlet.hpp"
+#include "publishing/message_sink.hpp"
 #include "publishing/publishers.hpp"
 #include "replay/replay.hpp"
 

@@ -115,8 +115,8 @@ class TimedSimulation {
 /// What the messages of a step say in addition to the simulation.
 struct RunStatus {
   bool paused = false;
-  bool scope_moves = false;       ///< scope/move_jp is under way
-  bool overstitch_moves = false;  ///< overstitch/move_jp is under way
+  bool scope_moves = false;            ///< scope/move_jp is under way
+  bool suturing_device_moves = false;  ///< suturing_device/move_jp is under way
 };
 
 }  // namespace vibe::sim

@@ -1,8 +1,15 @@
 #include "simulator/inputs.hpp"
 
+#include <ros/names.h>
+#include <ros/this_node.h>
+
+#include <algorithm>
+#include <type_traits>
+
 #include "conversions/input_message.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/step_timer.hpp"
+#include "vibe_node/former_names.hpp"
 
 namespace vibe::sim {
 
@@ -11,7 +18,23 @@ namespace {
 constexpr double kOwnerPatience = 2;   // a source that is silent for longer has given the topic up [s]
 constexpr double kOrphanPeriod = 0.1;  // between looks whether the source of a velocity is still there [s]
 const char* const kVelocity = "scope/servo_cv";
-constexpr std::uint32_t kInputQueue = 10000;  // none may be lost in lock-step; the queue bounds what really waits
+constexpr std::uint32_t kInputQueue = 10000;        // none may be lost in lock-step; the queue bounds what really waits
+const std::string kFeedback = "scope/measured_js";  // of this node; in the release before the topic of devices
+
+/// Whether a message by a former name is meant as an input.
+template <typename Message>
+bool isInput(const std::string& former, const ros::MessageEvent<const Message>& event) {
+  if constexpr (std::is_same_v<Message, sensor_msgs::JointState>) {
+    if (former != kFeedback) return true;
+    if (event.getPublisherName() == ros::this_node::getName()) return false;
+    if (node::isFormerInput(*event.getMessage())) return true;
+    ROS_WARN_STREAM_ONCE("A message on " << former << " from " << event.getPublisherName()
+                                         << " is ignored: it has efforts, as the joints of a simulated scope have; "
+                                            "a device publishes scope/input/joint_states.");
+    return false;
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -25,7 +48,7 @@ Inputs::Inputs(const ros::NodeHandle& handle, InputQueue& queue, Publishers& pub
       arrived_(std::move(arrived)) {
   using sensor_msgs::JointState;
   handle_.setCallbackQueue(&callbacks_);
-  listen<JointState>("scope/measured_js", [](const JointState& message) {
+  listen<JointState>("scope/input/joint_states", [](const JointState& message) {
     return readJoints(message, InputChannel::Scope, JointSource::Measured);
   });
   listen<JointState>("scope/servo_jp", [](const JointState& message) {
@@ -33,16 +56,16 @@ Inputs::Inputs(const ros::NodeHandle& handle, InputQueue& queue, Publishers& pub
   });
   listen<geometry_msgs::PoseStamped>("scope/servo_cp", readTipTarget);
   listen<geometry_msgs::TwistStamped>(kVelocity, readTipVelocity);
-  listen<JointState>("overstitch/measured_js", [](const JointState& message) {
-    return readJoints(message, InputChannel::Overstitch, JointSource::Measured);
+  listen<JointState>("suturing_device/input/joint_states", [](const JointState& message) {
+    return readJoints(message, InputChannel::SuturingDevice, JointSource::Measured);
   });
-  listen<JointState>("overstitch/servo_jp", [](const JointState& message) {
-    return readJoints(message, InputChannel::Overstitch, JointSource::Commanded);
+  listen<JointState>("suturing_device/servo_jp", [](const JointState& message) {
+    return readJoints(message, InputChannel::SuturingDevice, JointSource::Commanded);
   });
   listen<JointState>("scope/move_jp", [](const JointState& message) { return readMove(message, InputChannel::Scope); });
   listen<geometry_msgs::PoseStamped>("scope/move_cp", readTipMove);
-  listen<JointState>("overstitch/move_jp",
-                     [](const JointState& message) { return readMove(message, InputChannel::Overstitch); });
+  listen<JointState>("suturing_device/move_jp",
+                     [](const JointState& message) { return readMove(message, InputChannel::SuturingDevice); });
   listen<sensor_msgs::Joy>("scope/buttons", readButtons);
   listen<vibe_msgs::TissuePull>("tissue/pull", readPull);
   orphan_timer_ = handle_.createWallTimer(ros::WallDuration(kOrphanPeriod), &Inputs::stopOrphan, this);
@@ -56,14 +79,38 @@ Inputs::~Inputs() {
 
 template <typename Message>
 void Inputs::listen(const std::string& name, std::function<InputSample(const Message&)> read) {
-  using Arrival = ros::MessageEvent<const Message>;
-  const boost::function<void(const Arrival&)> callback = [this, name, read = std::move(read)](const Arrival& event) {
+  topics_[name].subscriber =
+      subscribe<Message>(name, [this, name, read](const ros::MessageEvent<const Message>& event) {
+        receive(name, event.getPublisherName(), [&] { return read(*event.getMessage()); });
+      });
+  listenToFormer<Message>(name, read);
+}
+
+template <typename Message>
+ros::Subscriber Inputs::subscribe(const std::string& name,
+                                  std::function<void(const ros::MessageEvent<const Message>&)> take) {
+  ros::SubscribeOptions options;
+  options.template initByFullCallbackType<const ros::MessageEvent<const Message>&>(name, kInputQueue, take);
+  options.transport_hints = ros::TransportHints().tcpNoDelay();
+  return handle_.subscribe(options);
+}
+
+template <typename Message>
+void Inputs::listenToFormer(const std::string& name, std::function<InputSample(const Message&)> read) {
+  const std::string former = node::formerInput(name);
+  if (former.empty()) return;
+  const auto take = [this, name, former, read](const ros::MessageEvent<const Message>& event) {
+    if (!isInput(former, event)) return;
+    node::warnOfFormerInput(event.getPublisherName(), former);
     receive(name, event.getPublisherName(), [&] { return read(*event.getMessage()); });
   };
-  ros::SubscribeOptions options;
-  options.template initByFullCallbackType<const Arrival&>(name, kInputQueue, callback);
-  options.transport_hints = ros::TransportHints().tcpNoDelay();
-  topics_[name].subscriber = handle_.subscribe(options);
+  topics_[name].former = subscribe<Message>(former, take);
+}
+
+std::uint32_t Inputs::Topic::publishers() const {
+  const std::uint32_t own = former && former.getTopic() == ros::names::resolve(kFeedback) ? 1 : 0;
+  const std::uint32_t all = subscriber.getNumPublishers() + former.getNumPublishers();
+  return all - std::min(own, all);
 }
 
 void Inputs::receive(const std::string& name, const std::string& publisher, const std::function<InputSample()>& read) {
@@ -72,19 +119,19 @@ void Inputs::receive(const std::string& name, const std::string& publisher, cons
   try {
     take(name, topic, publisher, read());
   } catch (const Error& error) {
-    complain(topic, "A message on " + name + " from " + publisher + " is ignored: " + error.what());
+    warnThrottled(topic, "A message on " + name + " from " + publisher + " is ignored: " + error.what());
   }
 }
 
 void Inputs::take(const std::string& name, Topic& topic, const std::string& publisher, const InputSample& sample) {
   const std::string fault = faultOf(sample.stamp, now_(), window_);
   if (!fault.empty())
-    return complain(topic, "A message on " + name + " from " + publisher + " is ignored: " + fault +
-                               "; check the clock of that node and whether both read the same /use_sim_time.");
+    return warnThrottled(topic, "A message on " + name + " from " + publisher + " is ignored: " + fault +
+                                    "; check the clock of that node and whether both read the same /use_sim_time.");
   if (!queue_.push(sample))
-    return complain(topic, "A message on " + name + " from " + publisher +
-                               " is ignored: " + std::to_string(InputQueue::kCapacity) +
-                               " messages with later stamps wait already; send less ahead.");
+    return warnThrottled(topic, "A message on " + name + " from " + publisher +
+                                    " is ignored: " + std::to_string(InputQueue::kCapacity) +
+                                    " messages with later stamps wait already; send less ahead.");
   topic.owner = publisher;
   topic.last_message = steadyTime();
   arrived_(sample.channel);
@@ -92,11 +139,11 @@ void Inputs::take(const std::string& name, Topic& topic, const std::string& publ
 
 bool Inputs::obeys(const std::string& name, Topic& topic, const std::string& publisher) {
   const double now = steadyTime();
-  const bool owned = !topic.owner.empty() && topic.owner != publisher && topic.subscriber.getNumPublishers() > 1 &&
+  const bool owned = !topic.owner.empty() && topic.owner != publisher && topic.publishers() > 1 &&
                      now - topic.last_message < kOwnerPatience;
   if (owned) {
-    complain(topic, "Two nodes publish " + name + ": " + topic.owner + " is obeyed and " + publisher +
-                        " ignored; stop one of them.");
+    warnThrottled(topic, "Two nodes publish " + name + ": " + topic.owner + " is obeyed and " + publisher +
+                             " ignored; stop one of them.");
     return false;
   }
   return true;
@@ -104,17 +151,17 @@ bool Inputs::obeys(const std::string& name, Topic& topic, const std::string& pub
 
 void Inputs::stopOrphan(const ros::WallTimerEvent&) {
   Topic& topic = topics_.at(kVelocity);
-  if (topic.owner.empty() || topic.subscriber.getNumPublishers() > 0) return;
+  if (topic.owner.empty() || topic.publishers() > 0) return;
   topic.owner.clear();
   InputSample stop;
   stop.target = ScopeTarget::VelocityInWorld;
   if (queue_.push(stop)) arrived_(stop.channel);
 }
 
-void Inputs::complain(Topic& topic, const std::string& sentence) {
+void Inputs::warnThrottled(Topic& topic, const std::string& sentence) {
   const double now = steadyTime();
-  if (now - topic.last_complaint < kComplaintPeriod) return;
-  topic.last_complaint = now;
+  if (now - topic.last_warning < kWarningPeriod) return;
+  topic.last_warning = now;
   ROS_WARN_STREAM(sentence);
   publishers_.warn(sentence);
 }

@@ -2,7 +2,10 @@
 
 #include <ros/param.h>
 
+#include <ros/console.h>
+
 #include "vibe_core/common/error.hpp"
+#include "vibe_node/former_names.hpp"
 #include "vibe_node/parameter_reader.hpp"
 
 namespace vibe::sim {
@@ -21,9 +24,14 @@ std::optional<InputChannel> readFollow(node::ParameterReader& reader) {
   std::string topic;
   reader.read("follow", topic);
   if (topic.empty()) return std::nullopt;
-  for (const InputChannel channel : {InputChannel::Scope, InputChannel::Overstitch})
+  if (const std::string present = node::presentInput(topic); present != topic) {
+    ROS_WARN_STREAM("Parameter ~follow is '" << topic << "', the former name of " << present << "; set it to that.");
+    topic = present;
+  }
+  for (const InputChannel channel : {InputChannel::Scope, InputChannel::SuturingDevice})
     if (topic == toString(channel)) return channel;
-  throw Error("Parameter ~follow is '" + topic + "'; set it to scope/measured_js or overstitch/measured_js.");
+  throw Error("Parameter ~follow is '" + topic +
+              "'; set it to scope/input/joint_states or suturing_device/input/joint_states.");
 }
 
 std::optional<std::uint64_t> readSeed(node::ParameterReader& reader) {

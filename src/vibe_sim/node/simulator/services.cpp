@@ -8,11 +8,14 @@
 #include <vibe_msgs/StateCommand.h>
 #include <vibe_msgs/Step.h>
 
+#include "vibe_node/former_names.hpp"
+
 namespace vibe::sim {
 
 namespace {
 
 constexpr std::uint32_t kCommandQueue = 10;
+using Event = ros::MessageEvent<const vibe_msgs::StateCommand>;
 
 // Both tools are always powered and homed, and there is one pause, that of the simulation.
 void obeyStateCommand(SimulationThread& thread, const std::string& topic, const std::string& command) {
@@ -43,6 +46,13 @@ void Services::offer(const std::string& name, Work work) {
 
 Services::Services(const ros::NodeHandle& handle, SimulationThread& thread) : handle_(handle) {
   handle_.setCallbackQueue(&queue_);
+  const std::string device = "suturing_device/state_command", former = node::formerInput(device);
+  for (const std::string& topic : {std::string("scope/state_command"), device, former})
+    commands_.push_back(handle_.subscribe<vibe_msgs::StateCommand>(
+        topic, kCommandQueue, boost::function<void(const Event&)>([&thread, topic, former](const Event& event) {
+          if (topic == former) node::warnOfFormerInput(event.getPublisherName(), former);
+          obeyStateCommand(thread, topic, event.getMessage()->string);
+        })));
   offer<std_srvs::SetBool>("pause",
                            [&thread](const std_srvs::SetBool::Request& r) { return thread.setPaused(r.data); });
   offer<vibe_msgs::Step>("step", [&thread](const vibe_msgs::Step::Request& r) { return thread.takeSteps(r.n); });
@@ -54,11 +64,6 @@ Services::Services(const ros::NodeHandle& handle, SimulationThread& thread) : ha
                              [&thread](const vibe_msgs::Snapshot::Request& r) { return thread.loadSnapshot(r.file); });
   offer<vibe_msgs::LoadScene>("load_scene",
                               [&thread](const vibe_msgs::LoadScene::Request& r) { return thread.loadScene(r.file); });
-  for (const char* topic : {"scope/state_command", "overstitch/state_command"})
-    commands_.push_back(handle_.subscribe<vibe_msgs::StateCommand>(
-        topic, kCommandQueue, [&thread, topic](const vibe_msgs::StateCommand::ConstPtr& command) {
-          obeyStateCommand(thread, topic, command->string);
-        }));
   spinner_ = std::make_unique<ros::AsyncSpinner>(4, &queue_);
   spinner_->start();
 }

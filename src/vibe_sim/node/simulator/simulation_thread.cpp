@@ -206,9 +206,9 @@ void SimulationThread::takeStep() {
   StepInput input = simulation_.input();
   for (const std::string& sentence : interpreter_.apply(pace_.inputTime(now, queue_.now()), queue_, simulation_.model(),
                                                         input, real_time, simulation_.state().joints))
-    complain(sentence);
+    warnThrottled(sentence);
   status_.scope_moves = interpreter_.moves(InputChannel::Scope);
-  status_.overstitch_moves = interpreter_.moves(InputChannel::Overstitch);
+  status_.suturing_device_moves = interpreter_.moves(InputChannel::SuturingDevice);
   simulation_.addWarnings(publishers_.takeWarnings());
   simulation_.setInput(input);
   publishers_.appliedInput(simulation_);
@@ -243,10 +243,10 @@ void SimulationThread::endTiming() {
 }
 
 // Of a command that is sent 100 times a second, one sentence a second is enough.
-void SimulationThread::complain(const std::string& sentence) {
-  double& last = complaints_.try_emplace(sentence.substr(0, sentence.find(' ')), -1e9).first->second;
+void SimulationThread::warnThrottled(const std::string& sentence) {
+  double& last = last_warnings_.try_emplace(sentence.substr(0, sentence.find(' ')), -1e9).first->second;
   const double now = steadyTime();
-  if (now - last < kComplaintPeriod) return;
+  if (now - last < kWarningPeriod) return;
   last = now;
   ROS_WARN_STREAM(sentence);
   publishers_.warn(sentence);

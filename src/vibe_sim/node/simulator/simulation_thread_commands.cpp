@@ -121,7 +121,7 @@ Reply SimulationThread::reset(std::uint64_t seed, bool keep_time) {
 
 void SimulationThread::afterReplacement() {
   interpreter_.endMoves();
-  status_.scope_moves = status_.overstitch_moves = false;
+  status_.scope_moves = status_.suturing_device_moves = false;
   pace_.restart(node::wallTime());
   publishers_.announceRun(simulation_);
   publishers_.wholeState(simulation_, status_);

@@ -15,17 +15,17 @@ constexpr std::size_t kMaxClouds = 100;
 }  // namespace
 
 InputSender::InputSender(ros::NodeHandle handle)
-    : scope_(handle.advertise<sensor_msgs::JointState>("scope/measured_js", kSenderQueue)),
-      overstitch_(handle.advertise<sensor_msgs::JointState>("overstitch/measured_js", kSenderQueue)),
+    : scope_(handle.advertise<sensor_msgs::JointState>("scope/input/joint_states", kSenderQueue)),
+      suturing_device_(handle.advertise<sensor_msgs::JointState>("suturing_device/input/joint_states", kSenderQueue)),
       buttons_(handle.advertise<sensor_msgs::Joy>("scope/buttons", kSenderQueue)) {}
 
 bool InputSender::hasListeners() const {
-  return scope_.getNumSubscribers() > 0 && overstitch_.getNumSubscribers() > 0 && buttons_.getNumSubscribers() > 0;
+  return scope_.getNumSubscribers() > 0 && suturing_device_.getNumSubscribers() > 0 && buttons_.getNumSubscribers() > 0;
 }
 
 void InputSender::send(const StepInput& input, std::int64_t stamp, bool with_buttons) {
   scope_.publish(makeScopeJoints(input, stamp));
-  overstitch_.publish(makeOverstitchJoints(input, stamp));
+  suturing_device_.publish(makeSuturingDeviceJoints(input, stamp));
   if (with_buttons) sendButtons(input, stamp);
 }
 

@@ -29,7 +29,7 @@ class InputSender {
   void sendButtons(const StepInput& input, std::int64_t stamp);
 
  private:
-  ros::Publisher scope_, overstitch_, buttons_;
+  ros::Publisher scope_, suturing_device_, buttons_;
 };
 
 /// What a trainee perceived after one step, and when.

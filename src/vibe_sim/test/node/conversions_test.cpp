@@ -33,11 +33,11 @@ TEST(Conversions, jointsSurviveTheRoundTripBitForBit) {
   StepInput input;
   input.joints = {0.1 / 3, 1e-300, -0.0, 3.0, 0.01, 1.5, 0.002};
   const InputSample scope = readJoints(makeScopeJoints(input, 42), InputChannel::Scope, JointSource::Measured);
-  const InputSample overstitch =
-      readJoints(makeOverstitchJoints(input, 42), InputChannel::Overstitch, JointSource::Measured);
+  const InputSample suturing_device =
+      readJoints(makeSuturingDeviceJoints(input, 42), InputChannel::SuturingDevice, JointSource::Measured);
   EXPECT_EQ(scope.stamp, 42);
   for (int i = 0; i < kJointCount; ++i) {
-    EXPECT_EQ(i < kScopeJointCount ? scope.joints[i] : overstitch.joints[i], input.joints[i]) << kJointNames[i];
+    EXPECT_EQ(i < kScopeJointCount ? scope.joints[i] : suturing_device.joints[i], input.joints[i]) << kJointNames[i];
   }
 }
 

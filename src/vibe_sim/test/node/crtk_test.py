@@ -8,7 +8,7 @@ import numpy
 import rospy
 import rostest
 from geometry_msgs.msg import PoseStamped, Twist, TwistStamped
-from node_test_support import OVERSTITCH_JOINTS, PERIOD, SCOPE_JOINTS, joints
+from node_test_support import SUTURING_DEVICE_JOINTS, PERIOD, SCOPE_JOINTS, joints
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, Header
 from vibe_msgs.msg import OperatingState, StateCommand, StepInput
@@ -38,24 +38,24 @@ def forward(pose):
 class CrtkTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.scope = Recorder("scope/simulated/measured_js", JointState)
-        cls.overstitch = Recorder("overstitch/simulated/measured_js", JointState)
+        cls.scope = Recorder("scope/measured_js", JointState)
+        cls.suturing_device = Recorder("suturing_device/measured_js", JointState)
         cls.state = Recorder("scope/operating_state", OperatingState)
-        cls.overstitch_state = Recorder("overstitch/operating_state", OperatingState)
+        cls.suturing_device_state = Recorder("suturing_device/operating_state", OperatingState)
         cls.pose = Recorder("scope/measured_cp", PoseStamped)
         cls.jacobian = Recorder("scope/jacobian", Float64MultiArray)
         cls.twist = Recorder("scope/measured_cv", TwistStamped)
         cls.wall = Recorder("wall/measured_cp", PoseStamped)
         cls.applied = Recorder("applied_input", StepInput)
         cls.setpoint = Recorder("scope/setpoint_cp", PoseStamped)
-        cls.recorders = [cls.setpoint, cls.scope, cls.overstitch, cls.pose, cls.twist, cls.jacobian, cls.wall]
+        cls.recorders = [cls.setpoint, cls.scope, cls.suturing_device, cls.pose, cls.twist, cls.jacobian, cls.wall]
         cls.recorders.append(cls.applied)
-        names = ["scope/measured_js", "scope/servo_jp", "scope/move_jp"]
-        names += ["overstitch/measured_js", "overstitch/servo_jp", "overstitch/move_jp"]
+        names = ["scope/input/joint_states", "scope/servo_jp", "scope/move_jp"]
+        names += ["suturing_device/input/joint_states", "suturing_device/servo_jp", "suturing_device/move_jp"]
         cls.to = {name: rospy.Publisher(name, JointState, queue_size=10) for name in names}
         for name in ("scope/servo_cp", "scope/move_cp"):
             cls.to[name] = rospy.Publisher(name, PoseStamped, queue_size=10)
-        for name in ("scope/state_command", "overstitch/state_command"):
+        for name in ("scope/state_command", "suturing_device/state_command"):
             cls.to[name] = rospy.Publisher(name, StateCommand, queue_size=10)
         rospy.wait_for_service("step", 20)
         cls.step_service = rospy.ServiceProxy("step", Step)
@@ -66,12 +66,12 @@ class CrtkTest(unittest.TestCase):
     def setUp(self):
         self.assertTrue(self.reset(seed=0, keep_time=False).success)
         self.send("scope/servo_jp", [0.0, 0.0, 0.0, 0.0])
-        self.send("overstitch/servo_jp", [0.0, 0.0, 0.0])
+        self.send("suturing_device/servo_jp", [0.0, 0.0, 0.0])
         self.step(1)
 
     def send(self, topic, positions):
-        names = SCOPE_JOINTS if topic.startswith("scope") else OVERSTITCH_JOINTS
-        stamp = rospy.Time(0) if "measured" not in topic else self.now()
+        names = SCOPE_JOINTS if topic.startswith("scope") else SUTURING_DEVICE_JOINTS
+        stamp = rospy.Time(0) if "input" not in topic else self.now()
         self.to[topic].publish(joints(names, positions, stamp))
         rospy.rostime.wallsleep(0.15)
 
@@ -83,7 +83,7 @@ class CrtkTest(unittest.TestCase):
         for recorder in self.recorders:
             recorder.clear()
         self.assertTrue(self.step_service(count).success)
-        for recorder in (self.applied, self.scope, self.overstitch, self.pose, self.twist, self.jacobian):
+        for recorder in (self.applied, self.scope, self.suturing_device, self.pose, self.twist, self.jacobian):
             self.assertTrue(wait_until(lambda: len(recorder.messages) >= count))
 
     def check_kinematics(self, recorder):
@@ -99,7 +99,7 @@ class CrtkTest(unittest.TestCase):
         target.header.frame_id = "world"
         target.pose.position.x = -0.04
         target.pose.orientation.w = 1
-        ways = ("scope/measured_js", "scope/servo_jp", "scope/move_jp")
+        ways = ("scope/input/joint_states", "scope/servo_jp", "scope/move_jp")
         ways = {name: lambda name=name: self.send(name, [0.06, 0.1, 0, 0]) for name in ways}
         ways["scope/servo_cp"] = lambda: (self.to["scope/servo_cp"].publish(target), rospy.rostime.wallsleep(0.15))
         self.assertEqual(len(ways), 4)
@@ -186,7 +186,7 @@ class CrtkTest(unittest.TestCase):
         numpy.testing.assert_allclose(place(self.setpoint.messages[-1]), place(self.setpoint.messages[0]), atol=1e-9)
 
     def test_the_state_is_commanded(self):
-        command = self.to["overstitch/state_command"]
+        command = self.to["suturing_device/state_command"]
         self.state.clear()
         for word in ("home", "no_such_command", "resume"):
             command.publish(StateCommand(string=word))
@@ -220,18 +220,18 @@ class CrtkTest(unittest.TestCase):
         self.assertFalse(self.state.messages[-1].is_busy)
 
     def test_the_suturing_device_takes_commands_and_moves(self):
-        self.send("overstitch/servo_jp", [0.01, 0.5, 0.001])
+        self.send("suturing_device/servo_jp", [0.01, 0.5, 0.001])
         self.step(60)
-        numpy.testing.assert_allclose(self.overstitch.messages[-1].position, [0.01, 0.5, 0.001], atol=1e-9)
-        self.assertEqual(self.overstitch.messages[-1].effort, ())
-        self.send("overstitch/move_jp", [0.02, 0.0, 0.0])
+        numpy.testing.assert_allclose(self.suturing_device.messages[-1].position, [0.01, 0.5, 0.001], atol=1e-9)
+        self.assertEqual(self.suturing_device.messages[-1].effort, ())
+        self.send("suturing_device/move_jp", [0.02, 0.0, 0.0])
         self.step(1)
-        self.assertTrue(self.overstitch_state.waits_for(lambda m: m.is_busy))
+        self.assertTrue(self.suturing_device_state.waits_for(lambda m: m.is_busy))
         self.assertFalse(self.state.messages[-1].is_busy)
         self.step(120)
-        self.check_kinematics(self.overstitch)
-        numpy.testing.assert_allclose(self.overstitch.messages[-1].position, [0.02, 0, 0], atol=1e-9)
-        self.assertFalse(self.overstitch_state.messages[-1].is_busy)
+        self.check_kinematics(self.suturing_device)
+        numpy.testing.assert_allclose(self.suturing_device.messages[-1].position, [0.02, 0, 0], atol=1e-9)
+        self.assertFalse(self.suturing_device_state.messages[-1].is_busy)
 
     def test_the_jacobian_tells_how_the_tip_moves(self):
         self.send("scope/servo_jp", [0.03, 0.2, 0.4, -0.3])

@@ -9,7 +9,7 @@ import unittest
 import rospy
 import rostest
 import tf2_ros
-from node_test_support import EPOCH, OVERSTITCH_JOINTS, SCOPE_JOINTS, buttons, joints, stamp_of
+from node_test_support import EPOCH, SUTURING_DEVICE_JOINTS, SCOPE_JOINTS, buttons, joints, stamp_of
 from sensor_msgs.msg import JointState, Joy
 from vibe_msgs.msg import ProcedureEvent, StepInput
 from vibe_msgs.srv import Reset, Step
@@ -26,14 +26,14 @@ class DrawnJointsTest(unittest.TestCase):
         cls.states = Recorder("joint_states", JointState)
         cls.applied = Recorder("applied_input", StepInput)
         cls.events = Recorder("procedure/events", ProcedureEvent)
-        cls.scope = rospy.Publisher("scope/measured_js", JointState, queue_size=100)
-        cls.overstitch = rospy.Publisher("overstitch/measured_js", JointState, queue_size=100)
+        cls.scope = rospy.Publisher("scope/input/joint_states", JointState, queue_size=100)
+        cls.suturing_device = rospy.Publisher("suturing_device/input/joint_states", JointState, queue_size=100)
         cls.buttons = rospy.Publisher("scope/buttons", Joy, queue_size=100)
         cls.tf = tf2_ros.Buffer()
         cls.tf_listener = tf2_ros.TransformListener(cls.tf)
         rospy.wait_for_service("step", 20)
         cls.step_service = rospy.ServiceProxy("step", Step)
-        publishers = (cls.scope, cls.overstitch, cls.buttons)
+        publishers = (cls.scope, cls.suturing_device, cls.buttons)
         assert wait_until(lambda: all(p.get_num_connections() > 0 for p in publishers), 20)
         assert wait_until(lambda: all(r.is_connected() for r in (cls.states, cls.applied, cls.events)), 20)
         assert rospy.ServiceProxy("reset", Reset)(seed=0, keep_time=False).success
@@ -51,7 +51,7 @@ class DrawnJointsTest(unittest.TestCase):
         stamp = rospy.Time(nsecs=EPOCH)
         for attempt in range(100):
             self.scope.publish(joints(SCOPE_JOINTS, (0.02, 0, 0, 0), stamp))
-            self.overstitch.publish(joints(OVERSTITCH_JOINTS, device, stamp))
+            self.suturing_device.publish(joints(SUTURING_DEVICE_JOINTS, device, stamp))
             self.buttons.publish(buttons(pressed, stamp))
             self.step(1)
             used = self.applied.messages[-1]

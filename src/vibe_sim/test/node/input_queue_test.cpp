@@ -24,9 +24,9 @@ InputSample buttonsAt(std::uint8_t grab, std::int64_t stamp) {
   return sample;
 }
 
-InputSample overstitchAt(double advance, std::int64_t stamp) {
+InputSample suturingDeviceAt(double advance, std::int64_t stamp) {
   InputSample sample;
-  sample.channel = InputChannel::Overstitch;
+  sample.channel = InputChannel::SuturingDevice;
   sample.stamp = stamp;
   sample.joints[HelixAdvance] = advance;
   return sample;
@@ -95,7 +95,7 @@ TEST_F(InputQueueTest, aRepeatedStampReplacesWhatWaits) {
 
 TEST_F(InputQueueTest, channelsTouchTheirOwnValuesOnly) {
   input.joints = {1, 2, 3, 4, 5, 6, 7};
-  queue.push(overstitchAt(0.01, 1));
+  queue.push(suturingDeviceAt(0.01, 1));
   apply(1);
   EXPECT_EQ(input.joints, (std::array<double, kJointCount>{1, 2, 3, 4, 0.01, 0, 0}));
   queue.push(scopeAt(0.02, 2));
@@ -116,14 +116,14 @@ TEST_F(InputQueueTest, aFullChannelRefusesAndTheOthersDoNotCare) {
 TEST_F(InputQueueTest, lockstepKnowsATimeWhenEveryChannelHasReachedIt) {
   EXPECT_FALSE(queue.knownUntil(100));
   queue.push(scopeAt(0, 100));
-  queue.push(overstitchAt(0, 105));
+  queue.push(suturingDeviceAt(0, 105));
   EXPECT_EQ(queue.missingAt(100), "scope/buttons");
   queue.push(buttonsAt(0, 99));
   EXPECT_FALSE(queue.knownUntil(100));
   queue.push(buttonsAt(0, 100));
   EXPECT_TRUE(queue.knownUntil(100));
   EXPECT_FALSE(queue.knownUntil(101));
-  EXPECT_EQ(queue.missingAt(101), "scope/measured_js, scope/buttons");
+  EXPECT_EQ(queue.missingAt(101), "scope/input/joint_states, scope/buttons");
   // applying does not make it forget what it knows
   apply(100);
   EXPECT_TRUE(queue.knownUntil(100));
@@ -243,7 +243,7 @@ TEST_F(PullQueueTest, aParticleThatDoesNotExistIsASentenceAndLetsGo) {
 
 TEST_F(PullQueueTest, lockstepDoesNotWaitForAHand) {
   queue.push(scopeAt(0, 100));
-  queue.push(overstitchAt(0, 100));
+  queue.push(suturingDeviceAt(0, 100));
   EXPECT_FALSE(queue.knownUntil(100));
   queue.push(buttonsAt(0, 100));
   EXPECT_TRUE(queue.knownUntil(100));

@@ -8,7 +8,7 @@ import unittest
 import rospy
 import rostest
 from geometry_msgs.msg import PoseStamped
-from node_test_support import EPOCH, OVERSTITCH_JOINTS, SCOPE_JOINTS, joints, scene
+from node_test_support import EPOCH, SUTURING_DEVICE_JOINTS, SCOPE_JOINTS, joints, scene
 from sensor_msgs.msg import JointState, Joy
 from vibe_msgs.msg import ProcedureEvent, SolverStatistics, StepInput, TissuePull
 from vibe_msgs.srv import Reset, Step
@@ -42,10 +42,10 @@ class InputsTest(unittest.TestCase):
         cls.performance = Recorder("solver_statistics", SolverStatistics)
         cls.poses = Recorder("scope/measured_cp", PoseStamped)
         topics = {
-            "scope/measured_js": JointState,
+            "scope/input/joint_states": JointState,
             "scope/servo_jp": JointState,
             "scope/servo_cp": PoseStamped,
-            "overstitch/measured_js": JointState,
+            "suturing_device/input/joint_states": JointState,
             "scope/buttons": Joy,
             "tissue/pull": TissuePull,
         }
@@ -94,19 +94,20 @@ class InputsTest(unittest.TestCase):
     def test_bad_messages_are_refused_with_a_reason(self):
         now = rospy.Time(nsecs=EPOCH)
         good = (0.04, 0, 0, 0)
+        scope, device = "scope/input/joint_states", "suturing_device/input/joint_states"
         cases = (
-            ("scope/measured_js", joints(SCOPE_JOINTS, (NAN, 0, 0, 0), now), ("insertion", "finite")),
-            ("overstitch/measured_js", joints(OVERSTITCH_JOINTS, (0, NAN, 0), now), ("helix_rotation",)),
+            (scope, joints(SCOPE_JOINTS, (NAN, 0, 0, 0), now), ("insertion", "finite")),
+            (device, joints(SUTURING_DEVICE_JOINTS, (0, NAN, 0), now), ("helix_rotation",)),
             ("scope/servo_jp", joints(SCOPE_JOINTS[:2], good[:2], now), ("2 positions",)),
-            ("scope/measured_js", joints(SCOPE_JOINTS, (0.04, 0, float("inf"), 0), now), ("tip_up_down", "finite")),
+            (scope, joints(SCOPE_JOINTS, (0.04, 0, float("inf"), 0), now), ("tip_up_down", "finite")),
             ("scope/servo_cp", pose(frame="map"), ("'map'", "world")),
             ("scope/buttons", Joy(buttons=[1, 0]), ("2 buttons",)),
-            ("scope/measured_js", joints(SCOPE_JOINTS, (0.04, 0, 0), now), ("3 positions",)),
+            (scope, joints(SCOPE_JOINTS, (0.04, 0, 0), now), ("3 positions",)),
             ("scope/servo_cp", pose(x=NAN), ("finite",)),
             ("scope/buttons", Joy(buttons=[0, 7, 0, 0, 0, 0]), ("helix_grab",)),
-            ("scope/measured_js", joints(OVERSTITCH_JOINTS + ["x"], good, now), ("helix_advance",)),
+            (scope, joints(SUTURING_DEVICE_JOINTS + ["x"], good, now), ("helix_advance",)),
             ("scope/servo_cp", pose(w=0.0), ("quaternion",)),
-            ("scope/measured_js", joints(SCOPE_JOINTS, good, rospy.Time(0)), ("stamp is 0",)),
+            (scope, joints(SCOPE_JOINTS, good, rospy.Time(0)), ("stamp is 0",)),
             ("tissue/pull", pull(frame="scope_tip"), ("'scope_tip'", "world")),
             ("tissue/pull", pull(x=NAN), ("finite",)),
             ("tissue/pull", pull(particle=-5), ("-5",)),
@@ -126,10 +127,10 @@ class InputsTest(unittest.TestCase):
         self.assertIn("1000000", warning.text)
 
     def test_a_flood_of_bad_messages_gives_one_warning_a_second(self):
-        self.wait_for_silence("scope/measured_js")
+        self.wait_for_silence("scope/input/joint_states")
         bad = joints(SCOPE_JOINTS, (NAN, 0, 0, 0), rospy.Time(nsecs=EPOCH))
         for _ in range(200):
-            self.publishers["scope/measured_js"].publish(bad)
+            self.publishers["scope/input/joint_states"].publish(bad)
         self.assertIsNotNone(self.events.waits_for(lambda m: True, 5))
         rospy.rostime.wallsleep(0.5)
         self.assertEqual(len(self.events.messages), 1)
@@ -146,11 +147,12 @@ class InputsTest(unittest.TestCase):
         for disturb in (False, True, None):
             self.setUp()
             if disturb is not None:  # the last run lacks the command: a hash that cannot change would prove nothing
-                self.publishers["scope/measured_js"].publish(start)
+                self.publishers["scope/input/joint_states"].publish(start)
             rospy.rostime.wallsleep(0.3)
             if disturb:
-                self.wait_for_silence("scope/measured_js", "scope/servo_cp", "scope/buttons")
-                self.publishers["scope/measured_js"].publish(joints(SCOPE_JOINTS, (NAN, 0, 0, 0), start.header.stamp))
+                self.wait_for_silence("scope/input/joint_states", "scope/servo_cp", "scope/buttons")
+                wrong = joints(SCOPE_JOINTS, (NAN, 0, 0, 0), start.header.stamp)
+                self.publishers["scope/input/joint_states"].publish(wrong)
                 self.publishers["scope/servo_cp"].publish(pose(frame="map"))
                 self.publishers["scope/buttons"].publish(Joy(buttons=[1]))
                 self.assertIsNotNone(self.events.waits_for(lambda m: "buttons" in m.text, 5))
@@ -160,7 +162,7 @@ class InputsTest(unittest.TestCase):
 
     def test_commands_beyond_the_limits_are_clamped(self):
         message = joints(SCOPE_JOINTS, (9.0, 0, 0, 0), rospy.Time(nsecs=EPOCH))
-        self.publishers["scope/measured_js"].publish(message)
+        self.publishers["scope/input/joint_states"].publish(message)
         rospy.rostime.wallsleep(0.3)
         self.assertEqual(self.last_input_after(200).joints[0], 9.0)
         tip = self.poses.messages[-1].pose.position.x
@@ -200,18 +202,18 @@ class InputsTest(unittest.TestCase):
         self.assertIsNone(self.events.waits_for(lambda m: "scope/servo_cp" in m.text, 0.5))
 
     def test_only_one_of_two_publishers_is_obeyed(self):
-        self.wait_for_silence("scope/measured_js")
+        self.wait_for_silence("scope/input/joint_states")
         ours = joints(SCOPE_JOINTS, (0.04, 0, 0, 0), rospy.Time(nsecs=EPOCH))
-        self.publishers["scope/measured_js"].publish(ours)
+        self.publishers["scope/input/joint_states"].publish(ours)
         rospy.rostime.wallsleep(0.2)
         other = Program("vibe_sim", "vibe_trainee", name="other", script=scene("poke.trainee.yaml"))
         try:
             deadline = time.monotonic() + 15
             warning = None
             while warning is None and time.monotonic() < deadline:
-                self.publishers["scope/measured_js"].publish(ours)
+                self.publishers["scope/input/joint_states"].publish(ours)
                 self.step(1)  # time must go on for the trainee to move
-                warning = self.events.waits_for(lambda m: "Two nodes publish scope/measured_js" in m.text, 0.02)
+                warning = self.events.waits_for(lambda m: "Two nodes publish scope/input/joint_states" in m.text, 0.02)
             self.assertIsNotNone(warning)
             self.assertIn(rospy.get_name() + " is obeyed", warning.text)
             self.assertIn("/other", warning.text)

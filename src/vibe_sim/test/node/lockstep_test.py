@@ -10,7 +10,7 @@ import unittest
 
 import rospy
 import rostest
-from node_test_support import OVERSTITCH_JOINTS, SCOPE_JOINTS, joints, scene, stamp_of, state_hash
+from node_test_support import SUTURING_DEVICE_JOINTS, SCOPE_JOINTS, joints, scene, stamp_of, state_hash
 from sensor_msgs.msg import JointState
 from vibe_msgs.msg import ProcedureEvent, ProcedureState, StepInput
 from vibe_msgs.srv import Step
@@ -98,7 +98,7 @@ class LockstepTest(unittest.TestCase):
         self.start_trainee()
         for _ in range(50):
             publisher.publish(joints(SCOPE_JOINTS, (float("nan"), 0, 0, 0), rospy.Time(1)))
-            publisher.publish(joints(OVERSTITCH_JOINTS, (0, 0, 0), rospy.Time(1)))
+            publisher.publish(joints(SUTURING_DEVICE_JOINTS, (0, 0, 0), rospy.Time(1)))
             rospy.rostime.wallsleep(0.01)
         self.assertEqual(simulator.ends(60), 0, simulator.output())
         self.assertEqual(state_hash(simulator.output()), self.reference)
@@ -115,7 +115,7 @@ class LockstepTest(unittest.TestCase):
         simulator = self.start_simulator(duration=DURATION, lockstep_timeout=1.5)
         self.assertEqual(simulator.ends(30), 1)
         self.assertEqual(simulator.count("ERROR"), 1, simulator.output())
-        self.assertIn("scope/measured_js, overstitch/measured_js, scope/buttons", simulator.output())
+        self.assertIn("scope/input/joint_states, suturing_device/input/joint_states, scope/buttons", simulator.output())
         # what there is of the session is summed up all the same
         self.assertIsNotNone(state_hash(simulator.output()))
 

@@ -8,7 +8,7 @@ from sensor_msgs.msg import JointState, Joy
 EPOCH = 1_000_000_000  # stamp of step 0 [ns]
 PERIOD = 1.0 / 60  # of balloon.yaml [s]
 SCOPE_JOINTS = ["insertion", "rotation", "tip_up_down", "tip_left_right"]
-OVERSTITCH_JOINTS = ["helix_advance", "helix_rotation", "needle_driver"]
+SUTURING_DEVICE_JOINTS = ["helix_advance", "helix_rotation", "needle_driver"]
 
 
 def scene(name):

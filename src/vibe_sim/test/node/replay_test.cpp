@@ -67,7 +67,7 @@ void step(TimedSimulation& simulation, Publishers& publishers, BagTarget& target
 void record(const std::string& file, bool keep_time = true) {
   rosbag::Bag bag(file, rosbag::bagmode::Write);
   BagTarget target{bag, "/", [](const std::string&) { return true; }, ros::Time(1)};
-  Publishers publishers{OutletSource(target), true};
+  Publishers publishers{SinkSource(target), true};
   const SceneModel made = modelOfText(kScene, "test");
   TimedSimulation simulation(made, made.model->scene.seed, kOrigin, 1);
   target.time = ros::Time(5);

@@ -27,7 +27,7 @@ class ServicesTest(unittest.TestCase):
         cls.procedure = Recorder("procedure/state", ProcedureState)
         cls.topology = Recorder("tissue/topology", TissueTopology)
         cls.performance = Recorder("solver_statistics", SolverStatistics)
-        cls.scope = rospy.Publisher("scope/measured_js", JointState, queue_size=100)
+        cls.scope = rospy.Publisher("scope/input/joint_states", JointState, queue_size=100)
         kinds = {
             "pause": SetBool,
             "step": Step,

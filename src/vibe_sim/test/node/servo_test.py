@@ -31,7 +31,7 @@ class ServoTest(unittest.TestCase):
     def setUpClass(cls):
         cls.progress = Recorder("trainee/progress", TraineeProgress)
         cls.applied = Recorder("applied_input", StepInput)
-        cls.motion = Recorder("scope/measured_js", JointState)
+        cls.motion = Recorder("scope/input/joint_states", JointState)
         cls.goals = rospy.Publisher("trainee/goal", TraineeGoal, queue_size=10)
         cls.cancel = rospy.Publisher("trainee/cancel", UInt32, queue_size=10)
 

@@ -64,7 +64,7 @@ class StepPath : public ::testing::Test {
   }
 
   void sendAll(double part, bool grabs) {
-    for (const InputChannel channel : {InputChannel::Scope, InputChannel::Overstitch, InputChannel::Buttons})
+    for (const InputChannel channel : {InputChannel::Scope, InputChannel::SuturingDevice, InputChannel::Buttons})
       send(channel, part, grabs);
   }
 

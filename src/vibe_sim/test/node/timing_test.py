@@ -30,7 +30,7 @@ class Device:
     """Sends joints at times begin + k * PERIOD of the wall clock, with stamps that are `ahead` of their sending [s]."""
 
     def __init__(self, begin, position_at=lambda time: 0.02, ahead=0.0):
-        self.publisher = rospy.Publisher("scope/measured_js", JointState, queue_size=10, tcp_nodelay=True)
+        self.publisher = rospy.Publisher("scope/input/joint_states", JointState, queue_size=10, tcp_nodelay=True)
         self.begin, self.position_at, self.ahead = begin, position_at, ahead
         self.ended = threading.Event()
         self.thread = threading.Thread(target=self.run, daemon=True)
@@ -113,7 +113,7 @@ class TimingTest(unittest.TestCase):
             self.assertEqual([s for s in self.stages_of(message) if s > 0], [message.stage_other])
 
     def test_steps_that_follow_begin_when_a_sample_arrives(self):
-        self.start(follow="scope/measured_js")
+        self.start(follow="scope/input/joint_states")
         device = self.device_after_steps()
         self.addCleanup(device.stop)
         self.assertTrue(wait_until(lambda: self.wait_before_step(device) < 0.3, 15), self.wait_before_step(device))
@@ -184,7 +184,7 @@ class TimingTest(unittest.TestCase):
 
     def test_wrong_parameters_are_refused(self):
         for words, parameters in (
-            ("scope/measured_js or overstitch/measured_js", {"follow": "scope/buttons"}),
+            ("scope/input/joint_states or suturing_device/input/joint_states", {"follow": "scope/buttons"}),
             ("realtime_priority must be a whole number from 0 to 99", {"realtime_priority": 100}),
         ):
             program = Program("vibe_sim", "sim_node", name="sim_node", scene=scene("light.yaml"), **parameters)

@@ -12,7 +12,7 @@ import rostest
 import sensor_msgs.point_cloud2
 import tf2_ros
 from geometry_msgs.msg import Point, PoseStamped, WrenchStamped
-from node_test_support import EPOCH, OVERSTITCH_JOINTS, PERIOD, SCOPE_JOINTS, buttons, joints, stamp_of
+from node_test_support import EPOCH, SUTURING_DEVICE_JOINTS, PERIOD, SCOPE_JOINTS, buttons, joints, stamp_of
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, Joy, PointCloud2
 from vibe_msgs.msg import ProcedureEvent, ProcedureState, SkillMetrics, SolverStatistics, StepInput, StepResult, SutureArray
@@ -23,7 +23,7 @@ from vibe_testing.wait import wait_until
 
 STREAMS = {
     "scope/measured_cp": (PoseStamped, "world"),
-    "overstitch/helix/measured_cp": (PoseStamped, "world"),
+    "suturing_device/helix/measured_cp": (PoseStamped, "world"),
     "scope/measured_cf": (WrenchStamped, "scope_tip"),
     "joint_states": (JointState, "scope_base"),
     "scope/setpoint_js": (JointState, "scope_base"),
@@ -44,8 +44,8 @@ class TopicsTest(unittest.TestCase):
         cls.skill = Recorder("procedure/skill_metrics", SkillMetrics)
         cls.topology = Recorder("tissue/topology", TissueTopology)
         cls.performance = Recorder("solver_statistics", SolverStatistics)
-        cls.scope = rospy.Publisher("scope/measured_js", JointState, queue_size=100)
-        cls.overstitch = rospy.Publisher("overstitch/measured_js", JointState, queue_size=100)
+        cls.scope = rospy.Publisher("scope/input/joint_states", JointState, queue_size=100)
+        cls.suturing_device = rospy.Publisher("suturing_device/input/joint_states", JointState, queue_size=100)
         cls.buttons = rospy.Publisher("scope/buttons", Joy, queue_size=100)
         cls.pull = rospy.Publisher("tissue/pull", TissuePull, queue_size=100)
         cls.pull_state = Recorder("tissue/pull_state", TissuePullState)
@@ -57,7 +57,7 @@ class TopicsTest(unittest.TestCase):
         everything = list(cls.recorders.values()) + [
             cls.clock, cls.events, cls.procedure, cls.skill, cls.performance, cls.pull_state]
         assert wait_until(lambda: all(r.is_connected() for r in everything), 20)
-        publishers = (cls.scope, cls.overstitch, cls.buttons, cls.pull)
+        publishers = (cls.scope, cls.suturing_device, cls.buttons, cls.pull)
         assert wait_until(lambda: all(p.get_num_connections() > 0 for p in publishers), 20)
 
     def setUp(self):
@@ -82,16 +82,16 @@ class TopicsTest(unittest.TestCase):
         self.last_step = self.recorders["applied_input"].messages[-1].step + 1
         return stamp_of(self.last_step)
 
-    def command(self, scope, overstitch=(0, 0, 0), pressed=()):
+    def command(self, scope, suturing_device=(0, 0, 0), pressed=()):
         """Sends inputs for the present time and waits until a step has used them."""
         stamp = rospy.Time(nsecs=EPOCH)
         for attempt in range(100):
             self.scope.publish(joints(SCOPE_JOINTS, scope, stamp))
-            self.overstitch.publish(joints(OVERSTITCH_JOINTS, overstitch, stamp))
+            self.suturing_device.publish(joints(SUTURING_DEVICE_JOINTS, suturing_device, stamp))
             self.buttons.publish(buttons(pressed, stamp))
             self.step(1)
             used = self.recorders["applied_input"].messages[-1]
-            wanted = tuple(scope) + tuple(overstitch)
+            wanted = tuple(scope) + tuple(suturing_device)
             if used.joints == wanted and [i for i in range(6) if used.buttons[i]] == list(pressed):
                 return attempt
         self.fail("the command was never used")
@@ -143,10 +143,10 @@ class TopicsTest(unittest.TestCase):
         self.assertEqual(rospy.get_rostime(), begin)
 
     def test_applied_input_is_what_was_sent(self):
-        scope, overstitch = (0.05, 0.1, -0.2, 0.3), (0.004, 0.5, 0.002)
-        self.command(scope, overstitch, pressed=(2, 5))
+        scope, suturing_device = (0.05, 0.1, -0.2, 0.3), (0.004, 0.5, 0.002)
+        self.command(scope, suturing_device, pressed=(2, 5))
         used = self.recorders["applied_input"].messages[-1]
-        self.assertEqual(used.joints, scope + overstitch)
+        self.assertEqual(used.joints, scope + suturing_device)
         self.assertEqual(list(used.buttons), [0, 0, 1, 0, 0, 1])
 
     def test_future_inputs_wait_for_their_step(self):
@@ -172,10 +172,10 @@ class TopicsTest(unittest.TestCase):
     def test_helix_advances_along_the_tip(self):
         self.command((0.02, 0, 0, 0), (0, 0, 0))
         self.step(60)
-        before = self.recorders["overstitch/helix/measured_cp"].messages[-1].pose.position
+        before = self.recorders["suturing_device/helix/measured_cp"].messages[-1].pose.position
         self.command((0.02, 0, 0, 0), (0.005, 0, 0))
         self.step(60)
-        after = self.recorders["overstitch/helix/measured_cp"].messages[-1].pose.position
+        after = self.recorders["suturing_device/helix/measured_cp"].messages[-1].pose.position
         self.assertAlmostEqual(after.x - before.x, 0.005, delta=1e-9)
         self.assertAlmostEqual(after.y - before.y, 0, delta=1e-9)
 
@@ -191,7 +191,7 @@ class TopicsTest(unittest.TestCase):
                 # what it sent before the tip was there may be all that there is yet
                 if self.tf.lookup_transform("world", "scope_tip", rospy.Time(0)).header.stamp.to_nsec() >= arrived:
                     break
-        for frame, topic in (("scope_tip", "scope/measured_cp"), ("helix", "overstitch/helix/measured_cp")):
+        for frame, topic in (("scope_tip", "scope/measured_cp"), ("helix", "suturing_device/helix/measured_cp")):
             with self.subTest(frame=frame):
                 transform = self.tf.lookup_transform("world", frame, rospy.Time(0)).transform.translation
                 position = self.recorders[topic].messages[-1].pose.position

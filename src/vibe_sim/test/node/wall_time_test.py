@@ -24,7 +24,7 @@ class WallTimeTest(unittest.TestCase):
         cls.applied = Recorder("applied_input", StepInput)
         cls.events = Recorder("procedure/events", ProcedureEvent)
         cls.performance = Recorder("solver_statistics", SolverStatistics)
-        cls.joints = Recorder("scope/measured_js", JointState)
+        cls.joints = Recorder("scope/input/joint_states", JointState)
         cls.simulator = Program("vibe_sim", "sim_node", name="sim_node", scene=scene("light.yaml"))
         rospy.wait_for_service("pause", 20)
         cls.pause = rospy.ServiceProxy("pause", SetBool)
@@ -91,7 +91,7 @@ class WallTimeTest(unittest.TestCase):
             self.assertRegex(told.text, "3(59[0-9]|60[0-9])[.][0-9] s (ahead of|behind) the simulator's time")
         self.assertFalse(any(m.joints[0] == 0.09 for m in self.applied.messages))
         command.unregister()
-        other = rospy.Publisher("scope/measured_js", JointState, queue_size=10)
+        other = rospy.Publisher("scope/input/joint_states", JointState, queue_size=10)
 
         def obeyed():
             other.publish(joints(SCOPE_JOINTS, (0.03, 0, 0, 0), rospy.Time.from_sec(time.time())))

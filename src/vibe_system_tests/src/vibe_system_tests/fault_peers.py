@@ -19,7 +19,7 @@ from io import BytesIO
 from sensor_msgs.msg import JointState
 
 SCOPE_JOINTS = ["insertion", "rotation", "tip_up_down", "tip_left_right"]
-OVERSTITCH_JOINTS = ["helix_advance", "helix_rotation", "needle_driver"]
+SUTURING_DEVICE_JOINTS = ["helix_advance", "helix_rotation", "needle_driver"]
 BATCH = 0.01  # between two bursts of a flood [s]
 POSITION = 0.0101  # of the first joint in the messages of a flood [m]
 TIMEOUT = 3.0  # for an answer [s]
@@ -236,7 +236,7 @@ def main():
     parser.add_argument("--rate", type=float, default=10000.0, help="[Hz]")
     parser.add_argument("--ahead", type=float, default=0.0, help="by which its clock is fast [s]")
     arguments = parser.parse_args()
-    joints = OVERSTITCH_JOINTS if "overstitch" in arguments.topic else SCOPE_JOINTS
+    joints = SUTURING_DEVICE_JOINTS if "suturing_device" in arguments.topic else SCOPE_JOINTS
     flood = Flood(message_of(arguments.kind, joints), arguments.rate, arguments.ahead)
     uri = os.environ["ROS_MASTER_URI"]
     publisher = RawPublisher(uri, arguments.name, arguments.topic, JointState, flood.serve)

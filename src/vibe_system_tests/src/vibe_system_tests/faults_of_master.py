@@ -29,7 +29,7 @@ class Master:
         expect(wait_until(self.answers), "no master answers")
         bench.observe()
         self.steps = Flow("applied_input", StepInput, True)
-        self.joints = Flow("scope/measured_js", JointState)
+        self.joints = Flow("scope/input/joint_states", JointState)
         bench.start_simulator()
         bench.start("vibe_trainee", "vibe_sim", "vibe_trainee",
                     script=bench.file("motions.yaml", script_of_motions("to and fro")))
@@ -86,7 +86,7 @@ class Master:
 
     def start_listener(self, name):
         """A node of the new graph, in a process of its own: this one is known to the old master only."""
-        self.bench.start_module(name, "listener", name, "/applied_input", "/scope/measured_js")
+        self.bench.start_module(name, "listener", name, "/applied_input", "/scope/input/joint_states")
         self.bench.says(name, "listens")
 
     def heard(self, name):
@@ -100,7 +100,7 @@ class Master:
         self.bench.commands["vibe_record"][-2] = self.bag + ".second"
         self.bench.start("vibe_record")
         times = []
-        for name, topic in (("sim_node", "/applied_input"), ("vibe_trainee", "/scope/measured_js")):
+        for name, topic in (("sim_node", "/applied_input"), ("vibe_trainee", "/scope/input/joint_states")):
             begin = self.bench.start(name)
             expect(wait_until(lambda topic=topic: topic in self.heard("stranger")), topic + " is not heard")
             times.append(self.heard("stranger")[topic] - begin)

@@ -60,14 +60,14 @@ class Nodes:
         self.listen()
         bench.start_simulator()
         bench.start("robot_state_publisher", "robot_state_publisher", "robot_state_publisher")
-        bench.start("vibe_trainee", "vibe_sim", "vibe_trainee", "scope/measured_js:=trainee/scope",
-                    "overstitch/measured_js:=trainee/overstitch", "scope/buttons:=trainee/buttons",
+        bench.start("vibe_trainee", "vibe_sim", "vibe_trainee", "scope/input/joint_states:=trainee/scope",
+                    "suturing_device/input/joint_states:=trainee/suturing_device", "scope/buttons:=trainee/buttons",
                     script=bench.file("motions.yaml", script_of_motions("to and fro")))
         bench.start("gamepad_node", "vibe_hardware", "gamepad_node", "scope/servo_jp:=pad/scope",
-                    "overstitch/measured_js:=pad/overstitch", "scope/buttons:=pad/buttons",
+                    "suturing_device/input/joint_states:=pad/suturing_device", "scope/buttons:=pad/buttons",
                     replay=places.find("package://vibe_hardware/test/node/pad_session.evemu"))
-        bench.start("hardware_node", "vibe_hardware", "hardware_node", "overstitch/measured_js:=overstitch/buttons_js",
-                    bus=self.sockets)
+        bench.start("hardware_node", "vibe_hardware", "hardware_node",
+                    "suturing_device/input/joint_states:=suturing_device/buttons_js", bus=self.sockets)
         bench.says("vibe_fake_camera", " serves ", seconds=90)
         bench.start("vision_node", "vibe_vision", "vision_node", config=rig, source="gige:127.0.0.1",
                     publish_images="false")
@@ -85,11 +85,11 @@ class Nodes:
             "robot_state_publisher": Flow("/tf"),
             "vibe_trainee": Flow("trainee/scope"),
             "gamepad_node": Flow("pad/scope"),
-            "hardware_node": Flow("scope/measured_js"),
-            "vision_node": Flow("overstitch/tracking", InstrumentTrackArray),
+            "hardware_node": Flow("scope/input/joint_states"),
+            "vision_node": Flow("suturing_device/tracking", InstrumentTrackArray),
         }
-        self.others = [Flow(topic) for topic in ("trainee/overstitch", "trainee/buttons", "pad/overstitch")]
-        self.frames = Flow("overstitch/tracking", InstrumentTrackArray, True, lambda m: m.exposure > 0)
+        self.others = [Flow(topic) for topic in ("trainee/suturing_device", "trainee/buttons", "pad/suturing_device")]
+        self.frames = Flow("suturing_device/tracking", InstrumentTrackArray, True, lambda m: m.exposure > 0)
         self.steps = Flow("applied_input", StepInput, True)
         self.events = Flow("procedure/events", ProcedureEvent, True)
         self.buttons = Flow("scope/buttons", Joy, True)
@@ -205,7 +205,7 @@ class Nodes:
         first = self.frames.wait(begin, seconds=CAMERA_LIMIT)
         expect(first is not None, "no frame is tracked: {}".format(self.bench.said("vision_node")[-5:]))
         row = Row("vision_node killed and started", "instruments stay where they were", seconds,
-                  "NO_FRAME on `overstitch/tracking` until the camera is open again: frames after {:.1f} s".format(
+                  "NO_FRAME on `suturing_device/tracking` until the camera is open again: frames after {:.1f} s".format(
                       first[0] - begin))
         return [row]
 
@@ -287,4 +287,4 @@ class Nodes:
         said = [line for line in self.bench.said("vision_node", mark)]
         self.check_others("vibe_fake_camera", begin)
         return [Row("camera stands still for 2.5 s", "its frames; instruments stay where they were", first[0] - back,
-                    "NO_FRAME on `overstitch/tracking`; the node said: {}".format(" / ".join(said) or "nothing"))]
+                    "NO_FRAME on `suturing_device/tracking`; the node said: {}".format(" / ".join(said) or "nothing"))]

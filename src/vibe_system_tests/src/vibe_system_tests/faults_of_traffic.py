@@ -40,18 +40,19 @@ class Traffic:
         self.steps = Flow("applied_input", StepInput, True)
         self.events = Flow("procedure/events", ProcedureEvent, True)
         self.poses = Flow("scope/measured_cp", PoseStamped, True)
-        self.commands = Flow("scope/measured_js", JointState, True)
+        self.commands = Flow("scope/input/joint_states", JointState, True)
         self.setpoints = Flow("scope/setpoint_js", JointState, True)
         bench.start_simulator()
-        self.aside = Flow("trainee/overstitch")  # it waits for a listener of all that it sends
-        bench.start("vibe_trainee", "vibe_sim", "vibe_trainee", "overstitch/measured_js:=trainee/overstitch",
+        self.aside = Flow("trainee/suturing_device")  # it waits for a listener of all that it sends
+        bench.start("vibe_trainee", "vibe_sim", "vibe_trainee",
+                    "suturing_device/input/joint_states:=trainee/suturing_device",
                     script=bench.file("motions.yaml", script_of_motions("to and fro")))
         expect(self.steps.wait(time.monotonic(), lambda m: m.joints[0] > 0.03), "the trainee does not drive")
         time.sleep(1)
 
     def faults(self):
         return [
-            ("a flood of valid messages", lambda: self.flood("valid", "overstitch/measured_js")),
+            ("a flood of valid messages", lambda: self.flood("valid", "suturing_device/input/joint_states")),
             ("a flood of invalid messages", lambda: self.flood("invalid", "scope/servo_jp")),
             ("a flood of messages that cannot be read", lambda: self.flood("garbage", "scope/servo_jp")),
             ("a node whose clock is an hour ahead", lambda: self.wrong_clock(HOUR)),
@@ -176,7 +177,7 @@ class Traffic:
 
 
 TOPICS = (
-    "scope/measured_cp", "overstitch/helix/measured_cp", "scope/measured_cf", "joint_states", "scope/setpoint_js",
+    "scope/measured_cp", "suturing_device/helix/measured_cp", "scope/measured_cf", "joint_states", "scope/setpoint_js",
     "tissue/topology", "tissue/particles", "procedure/state", "procedure/skill_metrics", "sutures", "applied_input",
     "solver_statistics", "step_result",
 )  # fmt: skip

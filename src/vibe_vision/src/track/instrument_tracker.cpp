@@ -27,7 +27,7 @@ constexpr double kMargin = 3;           // around the range of the search [px]
 constexpr double kFilterFloor = 1e-6;   // deviation that a measurement has at least for the prediction [m], [rad] * 1e3
 constexpr double kGoodLoss = 0.25;      // of a pixel: no other candidate needs to be looked at
 constexpr int kTries = 3;               // candidates that a frame may cost
-constexpr int kPatience = 15;           // lost frames after which it may cost one less: the best and one of the others
+constexpr int kLostFramesToRelax = 15;  // lost frames after which it may cost one less: the best and one of the others
 constexpr double kSearchVisible = 0.7;  // of a sleeve
 constexpr double kWholeFrom = 0.88, kWhole = 0.94;     // visible share of a sleeve that is seen as a whole
 constexpr double kPartMisfit = 1.5, kWholeMisfit = 4;  // that a search accepts of a part, of a whole sleeve
@@ -225,7 +225,7 @@ bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& predic
   best.loss = 1e9;
   bool is_last = false;  // whose pixels the fitter has
   reason_ = whyNothing(found);
-  const bool patient = lost_frames_ > kPatience;
+  const bool patient = lost_frames_ > kLostFramesToRelax;
   for (int i = 0; i < found.count && tries_ < (patient ? kTries - 1 : kTries); ++i, ++tries_) {
     const int other = patient && i > 0 ? 1 + lost_frames_ % (found.count - 1) : i;
     const MarkerFit fit = tryCandidate(frame, prediction, found.candidates[other]);

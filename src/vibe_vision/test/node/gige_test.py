@@ -26,7 +26,7 @@ class GigeTest(unittest.TestCase):
         cls.folder = tempfile.mkdtemp(prefix="vibe_vision_")
         cls.config = os.path.join(cls.folder, "config.yaml")
         cls.truth = os.path.join(cls.folder, "truth.csv")
-        cls.tracking = Recorder("overstitch/tracking", InstrumentTrackArray)
+        cls.tracking = Recorder("suturing_device/tracking", InstrumentTrackArray)
         cls.diagnostics = Diagnostics(Recorder("/diagnostics", DiagnosticArray), "camera")
 
     def setUp(self):

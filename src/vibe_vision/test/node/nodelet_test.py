@@ -24,8 +24,8 @@ class NodeletTest(unittest.TestCase):
         cls.scene.remove()
 
     def test_two_nodelets_share_images(self):
-        first = Recorder("overstitch/tracking", InstrumentTrackArray)
-        second = Recorder("second/overstitch/tracking", InstrumentTrackArray)
+        first = Recorder("suturing_device/tracking", InstrumentTrackArray)
+        second = Recorder("second/suturing_device/tracking", InstrumentTrackArray)
         manager = Program("nodelet", "nodelet", "manager", name="manager")
         follower = Program(
             "nodelet", "nodelet", "load", "vibe_vision/VisionNodelet", "/manager", "image:=/image_raw", "__ns:=second",
@@ -56,6 +56,10 @@ class NodeletTest(unittest.TestCase):
         try:
             self.assertTrue(manager.says("Parameter /wrong/config is not set"), manager.output())
             self.assertNotEqual(nodelet.ends(10), 0)
+            nodelet = Program("nodelet", "nodelet", "load", "vibe_vision/VisionNodelet", "manager2",
+                              "overstitch/measured_js:=camera", name="before")  # fmt: skip
+            remedy = "remap suturing_device/input/joint_states."
+            self.assertTrue(manager.says(remedy), manager.output())
             self.assertIsNone(manager.process.poll())  # other nodelets live on
         finally:
             nodelet.stop()

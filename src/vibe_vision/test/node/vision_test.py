@@ -53,9 +53,10 @@ class VisionTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.scene = Scene("moving", FRAMES)
-        cls.tracking = Recorder("overstitch/tracking", InstrumentTrackArray)
-        cls.measured = Recorder("overstitch/measured_js", JointState)
-        cls.predicted = Recorder("overstitch/predicted_js", JointState)
+        cls.tracking = Recorder("suturing_device/tracking", InstrumentTrackArray)
+        cls.former = Recorder("overstitch/tracking", InstrumentTrackArray)
+        cls.measured = Recorder("suturing_device/input/joint_states", JointState)
+        cls.predicted = Recorder("suturing_device/predicted_js", JointState)
         cls.camera_info = Recorder("camera_info", CameraInfo)
         cls.diagnostics = Recorder("/diagnostics", DiagnosticArray)
         cls.camera = Diagnostics(cls.diagnostics, "camera")
@@ -71,7 +72,7 @@ class VisionTest(unittest.TestCase):
     def tearDown(self):
         for program in self.programs:
             program.stop()
-        for recorder in (self.tracking, self.measured, self.predicted, self.camera_info, self.diagnostics):
+        for recorder in (self.tracking, self.former, self.measured, self.predicted, self.camera_info, self.diagnostics):
             recorder.clear()
 
     def start(self, name="vision_node", **parameters):
@@ -87,6 +88,9 @@ class VisionTest(unittest.TestCase):
     def waits_for_the_end(self, node):
         last = max(self.scene.stamps)
         self.assertIsNotNone(self.tracking.waits_for(lambda m: m.frame_sequence == last, 60), node.output())
+        # by its former name, too, with one warning
+        self.assertIsNotNone(self.former.waits_for(lambda m: m.frame_sequence == last), node.output())
+        self.assertEqual(node.count("listens to overstitch/tracking, a former name"), 1, node.output())
 
     def assert_accurate(self, scene, tracks):
         slides, rotations = errors_of(scene, tracks, "helix")
@@ -208,7 +212,7 @@ class VisionTest(unittest.TestCase):
 
     def test_images_of_a_topic(self):
         camera = self.start("camera", source=self.scene.source, loop="true")
-        tracking = Recorder("second/overstitch/tracking", InstrumentTrackArray)
+        tracking = Recorder("second/suturing_device/tracking", InstrumentTrackArray)
         arguments = ["image:=/image_raw", "__ns:=second"]
         given = dict(config=self.scene.config, source="topic", exposure=0.001)
         self.programs.append(Program("vibe_vision", "vision_node", *arguments, name="vision_node", **given))
@@ -229,7 +233,7 @@ class VisionTest(unittest.TestCase):
     def check_topic_without_camera_info(self, topic, kind, make, **parameters):
         """Frames of the scene as messages that make(picture) fills, one after the other."""
         publisher = rospy.Publisher(topic, kind, queue_size=1)
-        tracking = Recorder("other/overstitch/tracking", InstrumentTrackArray)
+        tracking = Recorder("other/suturing_device/tracking", InstrumentTrackArray)
         arguments = ["image:=/plain/image_raw", "__ns:=other"]
         given = dict(config=self.scene.config, source="topic", exposure=0.001, **parameters)
         node = Program("vibe_vision", "vision_node", *arguments, name="vision_node", **given)

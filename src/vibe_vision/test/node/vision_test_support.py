@@ -90,7 +90,7 @@ def rms(values):
 
 
 def errors_of(scene, tracks, instrument):
-    """Errors of slide [m] and rotation [rad] of an instrument in messages of overstitch/tracking."""
+    """Errors of slide [m] and rotation [rad] of an instrument in messages of suturing_device/tracking."""
     index = INSTRUMENTS.index(instrument)
     slides, rotations = [], []
     for message in tracks:

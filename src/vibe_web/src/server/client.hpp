@@ -44,7 +44,7 @@ class Client : public std::enable_shared_from_this<Client<Stream>> {
   }
 
   void accept(const Request& request) {
-    websocket::stream_base::timeout patience{kPatience, kSilence, true};
+    websocket::stream_base::timeout patience{kReadTimeout, kSilence, true};
     socket_.set_option(patience);
     socket_.read_message_max(kMaxCommand);
     socket_.binary(true);

@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 using Error = beast::error_code;
 using Request = http::request<http::empty_body>;
 
-constexpr auto kPatience = std::chrono::seconds(15);  ///< for a request, an answer or a handshake
+constexpr auto kReadTimeout = std::chrono::seconds(15);  ///< for a request, an answer or a handshake
 
 /// What a server and its connections share. All of it belongs to the thread of the server.
 struct Shared {

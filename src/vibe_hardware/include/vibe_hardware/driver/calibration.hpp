@@ -34,7 +34,7 @@ struct ButtonDrive {
   double lower = 0, upper = 0;  ///< [m], [rad]
 };
 /// Joints of the suturing device: helix_advance, helix_rotation, needle_driver.
-constexpr int kOverstitchJointCount = kJointCount - kScopeJointCount;
+constexpr int kSuturingDeviceJointCount = kJointCount - kScopeJointCount;
 
 /// What the user says about the devices and how they are held: docs/hardware.md, "Calibration".
 struct Calibration {
@@ -45,7 +45,10 @@ struct Calibration {
   /// Its press brings all joints that have a `home` there; empty: there is no homing.
   std::optional<DeviceButton> homing;
   /// helix_advance, helix_rotation, needle_driver; absent: these joints come from somewhere else
-  std::optional<std::array<ButtonDrive, kOverstitchJointCount>> overstitch;
+  std::optional<std::array<ButtonDrive, kSuturingDeviceJointCount>> suturing_device;
+
+  /// What should be changed in the file although it can be read, as a sentence; empty: nothing
+  std::string remark;
 
   /// @param address  file, or package:// address
   /// @throws Error with file, line, key and remedy

@@ -71,13 +71,13 @@ class ScopeButtons {
 
 /// Moves helix_advance, helix_rotation and needle_driver while buttons are held, for setups in which no camera tracks
 /// the instruments.
-class OverstitchDrive {
+class SuturingDeviceDrive {
  public:
   /// Positions of helix_advance, helix_rotation and needle_driver [m], [rad], [m]
-  using Positions = std::array<double, kOverstitchJointCount>;
+  using Positions = std::array<double, kSuturingDeviceJointCount>;
 
   /// All three joints begin at 0.
-  explicit OverstitchDrive(const std::array<ButtonDrive, kOverstitchJointCount>& drives) : drives_(drives) {}
+  explicit SuturingDeviceDrive(const std::array<ButtonDrive, kSuturingDeviceJointCount>& drives) : drives_(drives) {}
 
   /// @param elapsed  since the last call; longer gaps than 0.1 s count as that [s]
   void advance(const ScopeButtons& buttons, double elapsed);
@@ -88,8 +88,10 @@ class OverstitchDrive {
   const Positions& positions() const { return positions_; }  ///< [m], [rad], [m]
 
  private:
-  std::array<ButtonDrive, kOverstitchJointCount> drives_;
+  std::array<ButtonDrive, kSuturingDeviceJointCount> drives_;
   Positions positions_{};
 };
+/// The former name.
+using OverstitchDrive [[deprecated("has been renamed SuturingDeviceDrive")]] = SuturingDeviceDrive;
 
 }  // namespace vibe::hardware

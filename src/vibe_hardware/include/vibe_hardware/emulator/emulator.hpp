@@ -42,16 +42,16 @@ class TickSchedule {
   double delay_ = 0, worst_delay_ = 0, dropped_ = 0;
 };
 
-/// The fingers of an emulated hand on the buttons that move the suturing device (Calibration::overstitch). They press
-/// so that the joints follow intended positions, in steps of what the host adds up per report, and no faster than it
-/// does.
-class OverstitchFingers {
+/// The fingers of an emulated hand on the buttons that move the suturing device (Calibration::suturing_device). They
+/// press so that the joints follow intended positions, in steps of what the host adds up per report, and no faster than
+/// it does.
+class SuturingDeviceFingers {
  public:
   /// Positions of helix_advance, helix_rotation and needle_driver [m], [rad], [m]
-  using Positions = std::array<double, kOverstitchJointCount>;
+  using Positions = std::array<double, kSuturingDeviceJointCount>;
 
   /// Begins with nothing pressed and the joints at 0.
-  explicit OverstitchFingers(const std::array<ButtonDrive, kOverstitchJointCount>& drives) : drives_(drives) {}
+  explicit SuturingDeviceFingers(const std::array<ButtonDrive, kSuturingDeviceJointCount>& drives) : drives_(drives) {}
 
   /// To be called once per report. @param intended  [m], [rad], [m]
   void decide(const Positions& intended, double report_period);
@@ -61,10 +61,12 @@ class OverstitchFingers {
   const Positions& positions() const { return positions_; }  ///< that the host should have after the next report
 
  private:
-  std::array<ButtonDrive, kOverstitchJointCount> drives_;
+  std::array<ButtonDrive, kSuturingDeviceJointCount> drives_;
   Positions positions_{};
-  std::array<int, kOverstitchJointCount> direction_{};  // 1: forward, -1: backward
+  std::array<int, kSuturingDeviceJointCount> direction_{};  // 1: forward, -1: backward
 };
+/// The former name.
+using OverstitchFingers [[deprecated("has been renamed SuturingDeviceFingers")]] = SuturingDeviceFingers;
 
 /// Hand and arm at the axes of the haptic device: mass [kg], damping [N s/m] and stiffness [N/m] at the insertion.
 /// Form: see HandImpedance; the values are a design choice: a natural frequency of 8 Hz (insertion) and 17 Hz
@@ -119,7 +121,7 @@ class Emulator {
   std::shared_ptr<const Hand> hand_;
   EmulatedHaptic haptic_;
   EmulatedInput input_;
-  std::optional<OverstitchFingers> fingers_;
+  std::optional<SuturingDeviceFingers> fingers_;
   std::int64_t ticks_ = 0;
   double approach_ = 0;
 };

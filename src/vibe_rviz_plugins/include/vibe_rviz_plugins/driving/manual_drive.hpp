@@ -26,9 +26,9 @@ struct DriveView {
 };
 
 /// Drives the scope and the suturing device with keys, as Qt names them: publishes scope/servo_jp and
-/// overstitch/measured_js in a thread of its own, and scope/buttons while nobody else presses them. The tool 'Drive
-/// scope' and the page of vibe_web drive with it, so both move alike. All functions belong to the thread that spins the
-/// global queue of the node.
+/// suturing_device/input/joint_states in a thread of its own, and scope/buttons while nobody else presses them. The
+/// tool 'Drive scope' and the page of vibe_web drive with it, so both move alike. All functions belong to the thread
+/// that spins the global queue of the node.
 class ManualDrive {
  public:
   /// @param name  of the part of the program that presses buttons

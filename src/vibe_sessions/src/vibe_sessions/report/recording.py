@@ -187,7 +187,7 @@ class Reader:
             "sutures": self._sutures,
             "scope/measured_cp": self._tip,
             "scope/measured_cf": self._force,
-            "overstitch/tracking": self._tracking,
+            "suturing_device/tracking": self._tracking,
             "/diagnostics": self._diagnostic,
             **{topic: self._input for topic in INPUTS},
             **{topic: self._keep for topic in NEWEST},

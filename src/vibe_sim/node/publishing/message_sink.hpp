@@ -11,6 +11,8 @@
 #include <ros/publisher.h>
 #include <rosbag/bag.h>
 
+#include "vibe_node/former_names.hpp"
+
 namespace vibe::sim {
 
 /// Queue of a topic of small messages: long, because a simulation that runs faster than the wall clock must not lose
@@ -26,16 +28,19 @@ struct BagTarget {
 };
 
 /// Where the messages of one topic go: to listeners in the graph, or into a bag. Used like a ros::Publisher.
-class Outlet {
+class MessageSink {
  public:
-  Outlet() = default;
-  explicit Outlet(ros::Publisher publisher) : publisher_(std::move(publisher)) {}
-  Outlet(BagTarget& target, std::string topic) : target_(&target), topic_(std::move(topic)) {}
+  MessageSink() = default;
+  /// @param former  the same under a former name, or empty
+  explicit MessageSink(ros::Publisher publisher, ros::Publisher former = {})
+      : publisher_(std::move(publisher)), former_(std::move(former)) {}
+  MessageSink(BagTarget& target, std::string topic) : target_(&target), topic_(std::move(topic)) {}
 
   template <class M>
   void publish(const M& message) const {
     if (target_ == nullptr) {
       if (publisher_) publisher_.publish(message);
+      if (former_) former_.publish(message);
     } else if (!topic_.empty()) {
       target_->bag.write(topic_, target_->time, message);
     }
@@ -43,36 +48,37 @@ class Outlet {
 
   std::uint32_t getNumSubscribers() const {
     if (target_ != nullptr) return topic_.empty() ? 0 : 1;
-    return publisher_ ? publisher_.getNumSubscribers() : 0;
+    return (publisher_ ? publisher_.getNumSubscribers() : 0) + (former_ ? former_.getNumSubscribers() : 0);
   }
 
  private:
-  ros::Publisher publisher_;
+  ros::Publisher publisher_, former_;
   BagTarget* target_ = nullptr;
   std::string topic_;
 };
 
-/// Makes outlets, in the graph or into a bag.
-class OutletSource {
+/// Makes sinks, in the graph or into a bag.
+class SinkSource {
  public:
-  OutletSource(const ros::NodeHandle& handle) : handle_(handle) {}  // NOLINT: a handle is enough
-  /// @param target  lives as long as the outlets
-  OutletSource(BagTarget& target) : target_(&target) {}  // NOLINT: so is a bag
+  SinkSource(const ros::NodeHandle& handle) : handle_(handle) {}  // NOLINT: a handle is enough
+  /// @param target  lives as long as the sinks
+  SinkSource(BagTarget& target) : target_(&target) {}  // NOLINT: so is a bag
 
   bool isGraph() const { return target_ == nullptr; }
 
   /// @param on_connect  called from the thread of ROS when somebody begins to listen; never for a bag
   template <class M>
-  Outlet advertise(const std::string& topic, std::uint32_t queue, bool latch = false,
-                   const std::function<void()>& on_connect = {}) {
+  MessageSink advertise(const std::string& topic, std::uint32_t queue, bool latch = false,
+                        const std::function<void()>& on_connect = {}) {
     if (target_ != nullptr) {
       const std::string whole = topic[0] == '/' ? topic : target_->prefix + topic;
-      return Outlet(*target_, target_->wanted(whole) ? whole : "");
+      return MessageSink(*target_, target_->wanted(whole) ? whole : "");
     }
     ros::SubscriberStatusCallback connected;
     if (on_connect) connected = [on_connect](const ros::SingleSubscriberPublisher&) { on_connect(); };
-    return Outlet(
-        handle_->advertise<M>(topic, queue, connected, ros::SubscriberStatusCallback(), ros::VoidConstPtr(), latch));
+    return MessageSink(
+        handle_->advertise<M>(topic, queue, connected, ros::SubscriberStatusCallback(), ros::VoidConstPtr(), latch),
+        node::advertiseFormer<M>(*handle_, topic, queue, latch));
   }
 
  private:
