@@ -1,5 +1,6 @@
 """The pages: whole, in one file, safe from what a recording says; and the program, with many bags and with bad ones."""
 
+import base64
 import csv
 import html.parser
 import io
@@ -13,13 +14,15 @@ import tempfile
 import unittest
 from contextlib import redirect_stderr, redirect_stdout
 
+import numpy
 from report_bags import SyntheticSession
 
 from vibe_sessions.report import main as program
-from vibe_sessions.report import organ
+from vibe_sessions.report import organ, page as pages
 from vibe_sessions.report.distributions import MOST_GROUPS
 from vibe_sessions.report.session_work import names_of, page_names
 from vibe_sessions.report.tables import shown
+from vibe_sessions.report.viewer import viewer_script
 from vibe_sessions.report.workers import run_all
 
 NASTY = "<script>alert('x')</script> & \"quotes\" \u202e ]]>"
@@ -54,6 +57,7 @@ class Page(html.parser.HTMLParser):
 class PageTest(unittest.TestCase):
     def setUp(self):
         organ.DPI = 40  # so that the tests are quick
+        pages.viewer_script = lambda: ""
         self.folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, self.folder)
         self.output = os.path.join(self.folder, "out")
@@ -106,6 +110,32 @@ class SessionPageTest(PageTest):
         for part in ("13.1 ± 5.2", "34.6", "Trejos", "None of this is a grade", "suture", "0123456789abcdef"):
             self.assertIn(part, text)
         self.assertEqual(len([link for link in page.links if link.startswith("data:image/")]), 4)
+
+    def test_organ_to_turn(self):
+        pages.viewer_script = lambda: "look();"
+        self.report(self.make("a.bag"))
+        page = self.check_whole("index.html")
+        self.assertEqual(page.scripts, 2)
+        data = json.loads(next(text for text in page.text if text.startswith('{"lowest"')))
+        places = numpy.frombuffer(base64.b64decode(data["places"]), "<u2").reshape(-1, 3)
+        rest = numpy.frombuffer(base64.b64decode(data["rest"]), "<f4").reshape(-1, 3)
+        points = numpy.array(data["lowest"]) + places * numpy.array(data["step"])
+        self.assertLess(numpy.abs(points - rest).max(), 2e-6)  # half a step [m]
+        self.assertEqual(len(data["sutures"]["sets"][0]["bites"]), 2)
+        self.assertIn("look();", page.text)
+
+    @unittest.skipUnless(shutil.which("chromium") and viewer_script(), "needs Chromium and the page of vibe_web")
+    def test_a_browser_draws_the_organ_without_network(self):
+        pages.viewer_script = viewer_script
+        self.report(self.make("a.bag"))
+        words = "--headless --no-sandbox --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader --ignore-gpu-blocklist"
+        shown = subprocess.run(
+            ["chromium", *words.split(), "--disable-dev-shm-usage", "--host-resolver-rules=MAP * ~NOTFOUND", "--dump-dom",
+             "--virtual-time-budget=5000", "file://" + os.path.join(self.output, "index.html")],
+            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, timeout=120,
+        ).stdout  # fmt: skip
+        drawn = re.search(r'<canvas id="organ-canvas"[^>]* data-triangles="(\d+)"', shown)
+        self.assertTrue(drawn and int(drawn.group(1)) >= 2 * 384, shown[:300])  # both sides of the wall
 
     def test_text_of_a_recording_is_only_text(self):
         self.report(self.make("a.bag", scene_name=NASTY, event_text=NASTY, caller="/<b>me", origin=1.7e9))

@@ -47,14 +47,23 @@ json jointOf(const urdf::Joint& joint) {
   return link;
 }
 
+/// Where the server has a file: each folder has a number, because parts of two packages may have the same name.
+std::string pathOf(const std::string& file, RobotText& robot) {
+  const std::string folder = file.substr(0, file.rfind('/'));
+  const std::size_t number = robot.folders.emplace(folder, robot.folders.size()).first->second;
+  std::string path = "/mesh/" + std::to_string(number) + file.substr(folder.size());
+  robot.meshes[path] = file;
+  return path;
+}
+
 /// The material files that an OBJ names, which stand beside it.
-void addMaterials(const std::string& file, std::map<std::string, std::string>& meshes) {
+void addMaterials(const std::string& file, RobotText& robot) {
   std::ifstream stream(file);
   const std::string word = "mtllib ";
   for (std::string line; std::getline(stream, line);) {
     if (line.rfind(word, 0) != 0) continue;
     const std::string name = line.substr(word.size(), line.find_last_not_of(" \r") + 1 - word.size());
-    if (name.find('/') == std::string::npos) meshes["/mesh/" + name] = file.substr(0, file.rfind('/') + 1) + name;
+    if (name.find('/') == std::string::npos) pathOf(file.substr(0, file.rfind('/') + 1) + name, robot);
   }
 }
 
@@ -66,19 +75,17 @@ json capsuleText(const std::string& file) {
 }
 
 void addMesh(const std::string& address, json& visual, RobotText& robot) {
-  const std::string file = node::fileOf(address), name = file.substr(file.rfind('/') + 1);
-  const bool known = name.size() > 4 && name.substr(name.size() - 4) == ".obj" && std::ifstream(file).good();
+  const std::string file = node::fileOf(address);
+  const bool known = file.size() > 4 && file.substr(file.size() - 4) == ".obj" && std::ifstream(file).good();
   if (!known) {
     robot.problems.push_back("The mesh '" + address +
                              "' of the robot description is missing on the page, which reads " +
                              "OBJ files; convert it, or correct its path.");
     return;
   }
-  const std::string path = "/mesh/" + name;
-  visual["mesh"] = path;
-  robot.meshes[path] = file;
+  visual["mesh"] = pathOf(file, robot);
   visual["capsules"] = capsuleText(file);
-  addMaterials(file, robot.meshes);
+  addMaterials(file, robot);
 }
 
 json visualOf(const std::string& link, const urdf::Visual& visual, RobotText& robot) {
@@ -164,7 +171,7 @@ json constantText() {
   return {{"lens", lensText()},
           {"keys", keyText()},
           {"tallest_fold", graphics::kTallestFold},
-          {"pattern", {{"path", "/pattern"}, {"size", graphics::kPatternSize}}},
+          {"pattern", {{"size", graphics::kPatternSize}}},
           {"silence", kDeadMan}};
 }
 

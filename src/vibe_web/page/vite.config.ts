@@ -26,10 +26,14 @@ function gzipped(): Plugin {
   };
 }
 
-export default defineConfig({
+// `--mode viewer`: the viewer of reports, a script without modules, because a report has it in itself
+export default defineConfig(({ mode }) => ({
   base: './',
   resolve: { alias: { '@media': media } },
   server: { fs: { allow: ['.', media] } },
-  build: { target: 'es2021', emptyOutDir: true, assetsInlineLimit: 0, chunkSizeWarningLimit: 1200 },
-  plugins: [gzipped()],
-});
+  build: {
+    target: 'es2021', assetsInlineLimit: 0, chunkSizeWarningLimit: 1200,
+    ...(mode === 'viewer' ? { emptyOutDir: false, lib: { entry: 'src/viewer.ts', formats: ['iife'], name: 'viewer', fileName: () => 'viewer.js' } } : { emptyOutDir: true }),
+  },
+  plugins: mode === 'viewer' ? [] : [gzipped()],
+}));

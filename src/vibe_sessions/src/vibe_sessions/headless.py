@@ -21,11 +21,11 @@ class Stopped(Exception):
     """The session was no longer wanted."""
 
 
-def find_in_package(package, name):
-    """The path of a program, or of what else is private to a package: in a workspace that is sourced, or where packages of
-    the system are; None if it is not there."""
+def find_in_package(package, name, kind="lib"):
+    """The path of a program, or of what else is private to a package (`kind`: in lib or in share): in a workspace that is
+    sourced, or where packages of the system are; None if it is not there."""
     for prefix in [*os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep), "/usr"]:
-        path = os.path.join(prefix, "lib", package, name)
+        path = os.path.join(prefix, kind, package, name)
         if prefix and os.access(path, os.R_OK):
             return path
     return None

@@ -7,16 +7,26 @@ import {
 import { AutoExposure } from './exposure';
 import type { Lens, Source } from './messages';
 import { kEndoscopeLayer } from './organ';
-import { castShadow, type Capsule } from './shadow';
+import type { Robot } from './robot';
+import { castShadow } from './shadow';
 import { materialOf } from './shaders';
 
+const kBase = 0.004; // from the left lens to the right one, as in endoscope_camera [m]
 const kMeter = 32; // edge of the picture that measures the level [px]
+
+/** As unseenShare() of endoscope_lens.cpp: within this share of half the picture of the whole only that of the middle is shown. */
+function unseenShare({ field_of_view, whole, middle }: Lens): number {
+  if (middle.size === 0) return 0;
+  const edge = 0.85 * middle.half_width; // kFirstBlend
+  return Math.max(0, edge - ((1 + edge * edge) * field_of_view) / kMeter) / whole.half_width;
+}
 
 const degrees = (halfWidth: number) => (2 * Math.atan(halfWidth) * 180) / Math.PI;
 
 export class EndoscopeView {
   readonly camera = new PerspectiveCamera(90, 1, 0.0005, 2);
-  readonly target: WebGLRenderTarget;
+  readonly target: WebGLRenderTarget; // of the only lens, or the left one
+  readonly right: WebGLRenderTarget;
   private whole: WebGLRenderTarget;
   private middle: WebGLRenderTarget;
   private meter = new WebGLRenderTarget(kMeter, kMeter);
@@ -32,6 +42,7 @@ export class EndoscopeView {
     this.whole = plane(lens.whole);
     this.middle = plane(lens.middle.size > 0 ? lens.middle : lens.whole);
     this.target = new WebGLRenderTarget(lens.size, lens.size, { depthBuffer: false });
+    this.right = this.target.clone();
     this.exposure = new AutoExposure(lens.exposure);
     this.camera.layers.set(kEndoscopeLayer);
     this.quad = new Mesh(new PlaneGeometry(2, 2), this.lensMaterial());
@@ -42,7 +53,7 @@ export class EndoscopeView {
   }
 
   dispose() {
-    for (const target of [this.whole, this.middle, this.meter, this.target]) target.dispose();
+    for (const target of [this.whole, this.middle, this.meter, this.target, this.right]) target.dispose();
     this.quad.material.dispose();
   }
 
@@ -62,31 +73,44 @@ export class EndoscopeView {
     return material;
   }
 
-  /** Draws into `target` what the lens at this frame (z ahead, x right, y down) sees at this time [s]. */
-  draw(scene: Scene, frame: Object3D, capsules: Capsule[], time: number) {
-    const { renderer, camera } = this;
+  /** Draws into `target` what the lens at this frame (z ahead, x right, y down) sees at this time [s], and into `right` what a second one beside it does. */
+  draw(scene: Scene, frame: Object3D, robot: Robot, time: number, stereo: boolean) {
+    const { renderer } = this;
     const wasXr = renderer.xr.enabled;
     renderer.xr.enabled = false;
     frame.updateWorldMatrix(true, false);
-    frame.matrixWorld.decompose(camera.position, camera.quaternion, camera.scale);
-    camera.rotateX(Math.PI);
-    camera.updateMatrixWorld();
     scene.updateMatrixWorld();
-    const { capsules: numbers, capsule_count: count } = this.mucosa.uniforms;
-    count.value = castShadow(capsules, camera, numbers.value);
-    this.drawPlane(scene, this.whole, this.lens.whole.half_width);
-    if (this.lens.middle.size > 0) this.drawPlane(scene, this.middle, this.lens.middle.half_width);
+    this.drawEye(scene, frame, robot, 0);
     do {
       this.bend(this.target, this.lens.size);
       this.exposure.see(this.level(), time);
     } while (this.exposure.isLost);
+    if (stereo) {
+      this.drawEye(scene, frame, robot, kBase);
+      this.bend(this.right, this.lens.size);
+    }
     renderer.setRenderTarget(null);
     renderer.xr.enabled = wasXr;
   }
 
-  private drawPlane(scene: Scene, target: WebGLRenderTarget, halfWidth: number) {
+  /** The plane pictures of a lens that stands `aside` to the right. */
+  private drawEye(scene: Scene, frame: Object3D, robot: Robot, aside: number) {
+    const { camera } = this;
+    frame.matrixWorld.decompose(camera.position, camera.quaternion, camera.scale);
+    camera.rotateX(Math.PI);
+    camera.translateX(aside);
+    camera.updateMatrixWorld();
+    const { capsules: numbers, capsule_count: count } = this.mucosa.uniforms;
+    count.value = castShadow(robot.capsules, camera, numbers.value);
+    this.drawPlane(scene, robot, this.whole, this.lens.whole.half_width, unseenShare(this.lens));
+    if (this.lens.middle.size > 0) this.drawPlane(scene, robot, this.middle, this.lens.middle.half_width, 0);
+  }
+
+  private drawPlane(scene: Scene, robot: Robot, target: WebGLRenderTarget, halfWidth: number, unseen: number) {
     this.camera.fov = degrees(halfWidth);
     this.camera.updateProjectionMatrix();
+    robot.lookFrom(this.camera);
+    this.mucosa.uniforms.unseen.value = unseen;
     this.mucosa.uniforms.window.value.set(target.width, target.height);
     this.renderer.setRenderTarget(target);
     this.renderer.setClearColor(0, 1);

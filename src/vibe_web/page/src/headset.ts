@@ -3,7 +3,7 @@
 
 import {
   BufferAttribute, BufferGeometry, CircleGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial, PlaneGeometry, Quaternion, Vector3,
-  type WebXRManager, type XRTargetRaySpace,
+  type Texture, type WebXRManager, type XRTargetRaySpace,
 } from 'three';
 import type { Drive } from './drive';
 import type { Lens } from './messages';
@@ -40,14 +40,37 @@ function dome(fieldOfView: number): BufferGeometry {
   return geometry;
 }
 
+/** The endoscope's picture of each eye, at one place. */
+class Pair extends Group {
+  private eyes: Mesh<BufferGeometry, MeshBasicMaterial>[];
+
+  constructor(geometry: BufferGeometry) {
+    super();
+    this.eyes = [1, 2].map((layer) => {
+      const mesh = new Mesh(geometry, new MeshBasicMaterial({ side: DoubleSide }));
+      mesh.layers.set(layer); // three.js: what only the left, or the right eye sees
+      this.add(mesh);
+      return mesh;
+    });
+  }
+
+  show(pictures: Texture[]) {
+    this.eyes.forEach(({ material }, eye) => {
+      if (material.map === pictures[eye]) return;
+      material.map = pictures[eye];
+      material.needsUpdate = true;
+    });
+  }
+}
+
 /** A controller, and how it was held in the frame before. */
 interface Grip { space: XRTargetRaySpace; source: XRInputSource | null; held: boolean; place: Vector3; turn: Quaternion; pressed: boolean[] }
 
 export class Headset {
   private room = new Group();
   private model = new Group(); // the organ upright, at the height of a table
-  private monitor: Mesh<PlaneGeometry, MeshBasicMaterial>;
-  private around: Mesh<BufferGeometry, MeshBasicMaterial>;
+  private monitor = new Pair(new PlaneGeometry(kMonitor, kMonitor));
+  private around: Pair;
   private grips: Grip[] = [];
   private last = 0;
   private placed = false;
@@ -57,14 +80,12 @@ export class Headset {
     const { xr } = stage.renderer;
     xr.enabled = true;
     xr.setReferenceSpaceType('local-floor');
-    const picture = new MeshBasicMaterial({ side: DoubleSide });
-    this.monitor = new Mesh(new PlaneGeometry(kMonitor, kMonitor), picture);
-    this.around = new Mesh(dome(lens.field_of_view), picture);
+    this.around = new Pair(dome(lens.field_of_view));
     const floor = new Mesh(new CircleGeometry(3, 48).rotateX(-Math.PI / 2), new MeshBasicMaterial({ color: 0x2c3238 }));
     const rim = new Mesh(new PlaneGeometry(kMonitor + 0.06, kMonitor + 0.06).translate(0, 0, -0.01), new MeshBasicMaterial({ color: 0x0a0c0e }));
+    for (const part of [floor, rim]) part.layers.set(kPlainLayer);
     this.monitor.add(rim);
     this.room.add(floor, this.monitor, this.around, this.model);
-    this.room.traverse((part) => part.layers.set(kPlainLayer));
     this.around.visible = false;
     this.room.visible = false;
     stage.scene.add(this.room);
@@ -145,13 +166,11 @@ export class Headset {
     stage.renderer.info.reset();
     this.model.visible = true; // the endoscope is in it, and its light falls off with true distances
     this.model.scale.setScalar(1);
-    stage.drawEndoscope();
+    stage.drawEndoscope(true);
     this.model.scale.setScalar(kModelScale);
     this.model.visible = !this.around.visible;
-    if (stage.endoscope && this.monitor.material.map !== stage.endoscope.target.texture) {
-      this.monitor.material.map = stage.endoscope.target.texture;
-      this.monitor.material.needsUpdate = true;
-    }
+    const { endoscope } = stage;
+    if (endoscope) for (const pair of [this.monitor, this.around]) pair.show([endoscope.target.texture, endoscope.right.texture]);
     stage.renderer.xr.getCamera().layers.enable(kPlainLayer);
     stage.camera.layers.set(kPlainLayer);
     stage.renderer.setClearColor(0x3a424b, 1);

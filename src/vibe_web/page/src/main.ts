@@ -3,7 +3,7 @@
 import { savePicture, VideoRecorder } from './capture';
 import { Drive } from './drive';
 import { Headset } from './headset';
-import { Kind, readFrame, readShape, readSutures, readText, readTopology, type Frame, type SceneText } from './messages';
+import { Kind, readFrame, readHeat, readShape, readSutures, readText, readTopology, type Frame, type SceneText } from './messages';
 import { element, Panel } from './panel';
 import { Stage } from './stage';
 import { Stream } from './stream';
@@ -11,6 +11,7 @@ import { Stream } from './stream';
 const kRate = 60; // frames asked for [Hz]
 const options = new URLSearchParams(location.hash.slice(1));
 
+const pattern = fetch('pattern').then((answer) => answer.arrayBuffer()); // the largest part: asked for first
 const canvas = element<HTMLCanvasElement>('canvas');
 const stage = new Stage(canvas, Number(options.get('size') ?? 0));
 const stream = new Stream(options.get('token') ?? '', Number(options.get('rate') ?? kRate), (open, text) => {
@@ -21,7 +22,7 @@ const stream = new Stream(options.get('token') ?? '', Number(options.get('rate')
 const drive = new Drive(stream);
 const panel = new Panel(stream, drive);
 const video = new VideoRecorder(canvas);
-let scene: SceneText | null = null, headset: Headset | null = null, frame: Frame | null = null, pattern = false;
+let scene: SceneText | null = null, headset: Headset | null = null, frame: Frame | null = null, complete = false;
 let undrawn = 0; // frames that have come since the last picture
 
 /** For tests and for the curious: what has been received and drawn. */
@@ -36,9 +37,8 @@ async function takeScene(text: SceneText) {
   panel.showKeys(text.keys);
   headset = new Headset(stage, drive, text.lens);
   element('headset').hidden = !((await navigator.xr?.isSessionSupported('immersive-vr').catch(() => false)) ?? false);
-  const bytes = await (await fetch(text.pattern.path.slice(1))).arrayBuffer();
-  stage.organ.setPattern(new Uint8Array(bytes), text.pattern.size);
-  pattern = true;
+  stage.organ.setPattern(new Uint8Array(await pattern), text.pattern.size);
+  complete = true;
   stage.dirty = true;
 }
 
@@ -50,7 +50,7 @@ stream.on(Kind.Frame, (bytes) => {
   undrawn++;
 });
 stream.on(Kind.Folds, (bytes) => stage.organ.setFolds(bytes, scene?.tallest_fold ?? 0));
-stream.on(Kind.Heat, (bytes) => stage.organ.setHeat(bytes));
+stream.on(Kind.Heat, (bytes) => stage.organ.setHeat(readHeat(bytes)));
 stream.on(Kind.Sutures, (bytes) => stage.sutures.set(readSutures(bytes)));
 stream.on(Kind.Threads, (bytes) => stage.sutures.setThreads(readShape(bytes)));
 stream.on(Kind.Blood, (bytes) => stage.sutures.setBlood(readShape(bytes)));
@@ -86,7 +86,7 @@ stage.renderer.setAnimationLoop(() => {
   else stage.draw();
   if (undrawn > 0) stream.send(Uint8Array.of(7, Math.min(255, undrawn))); // then the server sends more
   undrawn = 0;
-  if (!shown || !pattern) return;
+  if (!shown || !complete) return;
   stats.drawn++;
   stats.firstPicture ||= performance.now();
   stats.latencies.push(Date.now() - 1000 * shown.time);

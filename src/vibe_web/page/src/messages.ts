@@ -28,7 +28,17 @@ export interface Frame {
   places: Uint16Array;
 }
 
-export interface Thread { tension: number; points: Float32Array }
+export interface Heat { revision: number; vertices: Uint32Array; effects: Uint8Array; browned: Uint8Array }
+
+export function readHeat(bytes: ArrayBuffer): Heat {
+  const [revision, count] = new Uint32Array(bytes, 4, 2);
+  return {
+    revision, vertices: new Uint32Array(bytes, 12, count),
+    effects: new Uint8Array(bytes, 12 + 4 * count, count), browned: new Uint8Array(bytes, 12 + 5 * count, count),
+  };
+}
+
+export interface Thread { tension: number; points: ArrayLike<number> }
 export interface Suture {
   stage: number;
   tTag: number[] | null;
@@ -87,14 +97,28 @@ export function readSutures(bytes: ArrayBuffer): Sutures {
   };
 }
 
-export interface Shape { places: Float32Array; triangles: Uint32Array; colours: Uint8Array; normals: Int8Array }
+export interface Shape { places: Float32Array; triangles: Uint32Array; colours: Uint8Array; normals: Float32Array }
 
 export function readShape(bytes: ArrayBuffer): Shape {
-  const [vertices, triangles] = new Uint32Array(bytes, 4, 2), colours = 12 + 12 * (vertices + triangles);
-  return {
-    places: new Float32Array(bytes, 12, 3 * vertices), triangles: new Uint32Array(bytes, 12 + 12 * vertices, 3 * triangles),
-    colours: new Uint8Array(bytes, colours, 4 * vertices), normals: new Int8Array(bytes, colours + 4 * vertices, 4 * vertices),
+  const [vertices, corners, runs] = new Uint32Array(bytes, 4, 3), all = new Uint8Array(bytes);
+  const box = new Float32Array(bytes, 16, 6), raw = new Uint16Array(bytes, 40, 3 * vertices), signed = new Int8Array(bytes, 40 + 6 * vertices, 3 * vertices);
+  let at = 40 + 9 * vertices;
+  const whole = () => {
+    for (let number = 0, scale = 1; ; scale *= 128) {
+      number += (all[at] & 0x7f) * scale;
+      if (all[at++] < 0x80) return number;
+    }
   };
+  const colours = new Uint8Array(4 * vertices), triangles = new Uint32Array(corners);
+  for (let run = 0, vertex = 0; run < runs; run++) {
+    const colour = all.subarray(at, (at += 4));
+    for (let left = whole(); left > 0; left--) colours.set(colour, 4 * vertex++);
+  }
+  for (let k = 0, corner = 0; k < corners; k++) {
+    const step = whole();
+    triangles[k] = corner += step % 2 ? -(step + 1) / 2 : step / 2;
+  }
+  return { places: Float32Array.from(raw, (place, k) => box[k % 3] + box[3 + (k % 3)] * place), triangles, colours, normals: Float32Array.from(signed, (n) => n / 127) };
 }
 
 // --- texts
@@ -120,7 +144,7 @@ export interface SceneText {
   name: string; revision: number; joints?: string[];
   base?: { link: string; place: number[]; turn: number[] };
   robot?: { links: Link[]; visuals: Visual[] };
-  lens: Lens; keys: KeyTable; tallest_fold: number; pattern: { path: string; size: number }; silence: number;
+  lens: Lens; keys: KeyTable; tallest_fold: number; pattern: { size: number }; silence: number;
 }
 export interface StateText {
   scene: string; time: number; paused: boolean; phase: string; tool: string; pressure: number; volume: number; marks: number;

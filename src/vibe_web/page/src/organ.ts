@@ -5,10 +5,10 @@ import {
   InterleavedBufferAttribute, LinearFilter, LinearMipmapNearestFilter, Mesh, RepeatWrapping, RGBAFormat, UnsignedByteType,
   Vector2, Vector3, type RawShaderMaterial,
 } from 'three';
-import type { Frame, Topology } from './messages';
+import type { Frame, Heat, Topology } from './messages';
 import { kReach, materialOf, smoke } from './shaders';
 
-export const kPlainLayer = 1, kEndoscopeLayer = 2;
+export const kPlainLayer = 3, kEndoscopeLayer = 4; // 1 and 2 are what only the left and the right eye of a headset see
 
 // What vibe.material and vibe_graphics/src/graphics/tissue_visual.cpp say of the natural look.
 const kInside = [0.86, 0.47, 0.42, 1];
@@ -72,7 +72,7 @@ export class Organ {
   setTopology(topology: Topology) {
     this.topology = topology;
     this.revision = topology.revision;
-    this.geometry.dispose();
+    for (const mesh of this.meshes) mesh.geometry.dispose();
     const count = topology.vertices, geometry = new BufferGeometry();
     const moving = (size: number) => new BufferAttribute(new Float32Array(size * count), size).setUsage(DynamicDrawUsage);
     geometry.setIndex(new BufferAttribute(topology.triangles, 1));
@@ -86,7 +86,10 @@ export class Organ {
     geometry.setAttribute('texcoord3', moving(1));
     geometry.setAttribute('texcoord4', moving(1));
     this.geometry = geometry;
-    for (const mesh of this.meshes) mesh.geometry = geometry;
+    const coarse = new BufferGeometry(); // from outside the particles' own mesh is fine enough: it has a quarter of the triangles
+    coarse.attributes = geometry.attributes;
+    coarse.setIndex(particlesComeFirst(topology) ? new BufferAttribute(topology.particleTriangles, 1) : geometry.index);
+    this.meshes.forEach((mesh, k) => (mesh.geometry = k < 2 ? coarse : geometry));
     this.particles = new Float32Array(3 * topology.particles);
     this.normals = new Float32Array(3 * topology.particles);
   }
@@ -107,13 +110,10 @@ export class Organ {
     fold.needsUpdate = true;
   }
 
-  setHeat(bytes: ArrayBuffer) {
-    const [revision, count] = new Uint32Array(bytes, 4, 2);
+  setHeat({ revision, vertices, effects, browned }: Heat) {
     const colour = this.geometry.getAttribute('vertex_colour') as BufferAttribute;
     const brown = this.geometry.getAttribute('texcoord4') as BufferAttribute;
     if (revision !== this.revision || !colour) return;
-    const vertices = new Uint32Array(bytes, 12, count);
-    const effects = new Uint8Array(bytes, 12 + 4 * count, count), browned = new Uint8Array(bytes, 12 + 5 * count, count);
     colour.array.fill(255);
     brown.array.fill(0);
     vertices.forEach((vertex, k) => {
@@ -154,6 +154,16 @@ export class Organ {
     normalise(n);
     position.needsUpdate = normal.needsUpdate = true;
   }
+}
+
+/** Whether vertex v is that of particle v, as Loop's scheme numbers them. */
+function particlesComeFirst({ particles, offsets, weightParticles, weights }: Topology): boolean {
+  for (let v = 0; v < particles; v++) {
+    let largest = offsets[v];
+    for (let k = offsets[v]; k < offsets[v + 1]; k++) if (weights[k] > weights[largest]) largest = k;
+    if (weightParticles[largest] !== v) return false;
+  }
+  return true;
 }
 
 function normalise(n: Float32Array) {

@@ -1,9 +1,8 @@
 // The endoscope with its suturing device: the tree of its joints, and its parts.
 
 import {
-  BoxGeometry, Color, CylinderGeometry, Float32BufferAttribute, FrontSide, Group, Matrix4, Mesh, MeshPhongMaterial, Quaternion, Skeleton,
-  SkinnedMesh, SphereGeometry, Uint16BufferAttribute, Vector3, type Bone,
-  type BufferGeometry, type Object3D,
+  Box3, BoxGeometry, BufferGeometry, Color, CylinderGeometry, Float32BufferAttribute, FrontSide, Frustum, Group, Matrix4, Mesh, MeshPhongMaterial,
+  Quaternion, Skeleton, SkinnedMesh, SphereGeometry, Vector3, type Bone, type Camera, type Object3D,
 } from 'three';
 import { MTLLoader } from 'three/addons/loaders/MTLLoader.js';
 import { OBJLoader } from 'three/addons/loaders/OBJLoader.js';
@@ -16,6 +15,31 @@ import { kReach, materialOf, smoke } from './shaders';
 const kColour = new Color(0.6, 0.6, 0.62), kShine = 0.5, kSharpness = 40;
 
 interface Part { geometry: BufferGeometry; material: MeshPhongMaterial }
+
+interface Placed extends Part { frame: Object3D }
+interface Range { frame: Object3D; box: Box3; start: number; count: number } // vertices of a part, and the box around them
+
+/** The part with what its vertices have to know: their bone, and how they shine. */
+function boneOf({ geometry, material }: Placed, bone: number): BufferGeometry {
+  const count = geometry.getAttribute('position').count, { r, g, b } = material.color;
+  const repeated = (numbers: number[]) => Array.from({ length: count }, () => numbers).flat();
+  const put = (name: string, numbers: number[]) => geometry.setAttribute(name, new Float32BufferAttribute(repeated(numbers), numbers.length));
+  put('color', [r, g, b]);
+  put('skinIndex', [bone, 0, 0, 0]);
+  put('skinWeight', [1, 0, 0, 0]);
+  put('part_shine', [material.specular.r]);
+  put('part_sharpness', [Math.max(1, material.shininess)]);
+  return geometry;
+}
+
+function rangesOf(parts: Placed[]): Range[] {
+  let start = 0;
+  return parts.map(({ frame, geometry }) => {
+    const count = geometry.getAttribute('position').count;
+    start += count;
+    return { frame, box: geometry.boundingBox!, start: start - count, count };
+  });
+}
 
 function bodyOf(visual: Visual): BufferGeometry | null {
   if (visual.sphere) return new SphereGeometry(visual.sphere[0], 24, 16);
@@ -33,6 +57,8 @@ export class Robot {
   private positions = new Map<string, number>();
   private meshes = new Map<string, Promise<Part[]>>();
   private known = '';
+  private ranges: Range[] = [];
+  private seen = new BufferGeometry(); // of what the endoscope sees
 
   /** Takes over what has changed: the parts are loaded once. */
   setScene(scene: SceneText) {
@@ -43,6 +69,7 @@ export class Robot {
     this.root.clear();
     this.frames.clear();
     this.moving = [];
+    this.ranges = [];
     for (const link of scene.robot.links) this.addLink(link);
     const base = scene.base;
     for (const frame of this.frames.values()) if (!frame.parent) this.root.add(frame);
@@ -90,46 +117,54 @@ export class Robot {
     this.moving.push({ link, frame, place: frame.position.clone(), turn: frame.quaternion.clone(), axis: new Vector3(...link.axis).normalize() });
   }
 
-  /** One mesh for each link and material, so that few are drawn. */
   private async addVisuals(visuals: Visual[]) {
     const { known } = this;
-    const parts = new Map<string, { frame: Object3D; material: MeshPhongMaterial; geometries: BufferGeometry[] }>();
     const loaded = await Promise.all(visuals.map((visual) => this.partsOf(visual)));
-    for (const [k, visual] of visuals.entries())
-      for (const { geometry, material } of loaded[k]) {
-        const placed = new Group();
-        placed.position.fromArray(visual.place);
-        placed.quaternion.fromArray(visual.turn as [number, number, number, number]);
-        placed.scale.fromArray(visual.scale);
-        placed.updateMatrix();
-        const frame = this.rigid(visual.link, placed);
-        const key = frame.uuid + material.color.getHexString() + material.shininess;
-        const part = parts.get(key) ?? { frame, material, geometries: [] };
-        part.geometries.push(geometry.clone().applyMatrix4(placed.matrix));
-        parts.set(key, part);
-      }
     if (known !== this.known) return; // another robot has come meanwhile
-    const whole = [...parts.values()].map(({ frame, material, geometries }) => ({ frame, material, geometry: mergeGeometries(geometries)! }));
-    for (const { frame, material, geometry } of whole) this.addLit(frame, geometry, material);
-    if (whole.length > 0) this.addPlain(whole);
+    const parts = visuals.flatMap((visual, k) => loaded[k].map(({ geometry, material }) => {
+      const placed = new Group();
+      placed.position.fromArray(visual.place);
+      placed.quaternion.fromArray(visual.turn as [number, number, number, number]);
+      placed.scale.fromArray(visual.scale);
+      placed.updateMatrix();
+      const frame = this.rigid(visual.link, placed);
+      return { frame, material, geometry: geometry.clone().applyMatrix4(placed.matrix) };
+    }));
+    if (parts.length > 0) this.addBody(parts);
   }
 
-  /** From outside: all links as the bones of one mesh, which is drawn at once. */
-  private addPlain(parts: { frame: Object3D; material: MeshPhongMaterial; geometry: BufferGeometry }[]) {
-    const frames = [...new Set(parts.map(({ frame }) => frame))];
-    const geometry = mergeGeometries(parts.map(({ frame, material, geometry: part }) => {
-      const bone = part.clone(), count = part.getAttribute('position').count, { r, g, b } = material.color;
-      const repeated = (numbers: number[]) => Array.from({ length: count }, () => numbers).flat();
-      bone.setAttribute('color', new Float32BufferAttribute(repeated([r, g, b]), 3));
-      bone.setAttribute('skinIndex', new Uint16BufferAttribute(repeated([frames.indexOf(frame), 0, 0, 0]), 4));
-      bone.setAttribute('skinWeight', new Float32BufferAttribute(repeated([1, 0, 0, 0]), 4));
-      return bone;
-    }))!;
-    const mesh = new SkinnedMesh(geometry, new MeshPhongMaterial({ vertexColors: true, specular: 0x555555, shininess: kSharpness }));
-    mesh.bind(new Skeleton(frames as Bone[], frames.map(() => new Matrix4())), new Matrix4());
-    mesh.frustumCulled = false;
-    mesh.layers.set(kPlainLayer);
-    this.root.add(mesh);
+  /** All links as the bones of one body, which is drawn at once: from outside, and as the endoscope sees it. */
+  private addBody(parts: Placed[]) {
+    const depth = (frame: Object3D | null): number => (frame ? 1 + depth(frame.parent) : 0);
+    const frames = [...new Set(parts.map(({ frame }) => frame))].sort((a, b) => depth(a) - depth(b));
+    for (const { geometry } of parts) geometry.computeBoundingBox();
+    // from the hand to the tip, which is where x points
+    parts.sort((a, b) => frames.indexOf(a.frame) - frames.indexOf(b.frame) || a.geometry.boundingBox!.max.x - b.geometry.boundingBox!.max.x);
+    const geometry = mergeGeometries(parts.map((part) => boneOf(part, frames.indexOf(part.frame))))!;
+    const seen = new BufferGeometry();
+    seen.attributes = { ...geometry.attributes, part_colour: geometry.getAttribute('color') };
+    this.ranges = rangesOf(parts);
+    this.seen = seen;
+    const skeleton = new Skeleton(frames as Bone[], frames.map(() => new Matrix4()));
+    const plain = new MeshPhongMaterial({ vertexColors: true, specular: 0x555555, shininess: kSharpness });
+    const lit = materialOf({
+      vertex: 'surface.vert', fragment: 'instrument.frag', side: FrontSide, parts: ['colour', 'shine', 'sharpness'],
+      uniforms: { smoke, reach: { value: kReach } },
+    });
+    for (const mesh of [new SkinnedMesh(geometry, plain), new SkinnedMesh(seen, lit)]) {
+      mesh.bind(skeleton, new Matrix4());
+      mesh.frustumCulled = false;
+      mesh.layers.set(mesh.material === plain ? kPlainLayer : kEndoscopeLayer);
+      this.root.add(mesh);
+    }
+  }
+
+  /** Leaves out the links at both ends of the chain that the endoscope's picture does not hold. */
+  lookFrom(camera: Camera) {
+    const view = new Frustum().setFromProjectionMatrix(camera.projectionMatrix), toView = new Matrix4();
+    const inView = this.ranges.filter(({ frame, box }) => view.intersectsBox(box.clone().applyMatrix4(toView.multiplyMatrices(camera.matrixWorldInverse, frame.matrixWorld))));
+    const first = inView[0]?.start ?? 0, last = inView[inView.length - 1];
+    this.seen.setDrawRange(first, last ? last.start + last.count - first : 0);
   }
 
   /** The frame above that moves: links that are fixed to it share its meshes. Moves `placed` into it. */
@@ -143,20 +178,6 @@ export class Robot {
       frame = frame.parent;
     }
     return frame;
-  }
-
-  /** As the endoscope sees it: each material by itself. */
-  private addLit(frame: Object3D, geometry: BufferGeometry, material: MeshPhongMaterial) {
-    const { color, specular, shininess } = material;
-    const lit = new Mesh(geometry, materialOf({
-      vertex: 'surface.vert', fragment: 'instrument.frag', side: FrontSide,
-      uniforms: {
-        colour: { value: color.toArray() }, shine: { value: specular.r }, sharpness: { value: Math.max(1, shininess) },
-        smoke, reach: { value: kReach },
-      },
-    }));
-    lit.layers.set(kEndoscopeLayer);
-    frame.add(lit);
   }
 
   private capsulesOf({ link, place, turn, scale, capsules }: Visual): Capsule[] {
@@ -180,16 +201,25 @@ export class Robot {
   }
 }
 
+const libraries = new Map<string, Promise<MTLLoader.MaterialCreator>>(); // several parts share one
+
+function materialsOf(address: string): Promise<MTLLoader.MaterialCreator> {
+  const read = async () => {
+    const materials = new MTLLoader().parse(await (await fetch(address)).text(), '');
+    materials.preload();
+    return materials;
+  };
+  const known = libraries.get(address) ?? read();
+  libraries.set(address, known);
+  return known;
+}
+
 /** Colours of the files are used as they are, as Ogre does: they are no sRGB. */
 async function load(path: string): Promise<Part[]> {
   const text = await (await fetch(path.slice(1))).text();
   const library = /^mtllib (\S+)/m.exec(text)?.[1];
   const loader = new OBJLoader();
-  if (library) {
-    const materials = new MTLLoader().parse(await (await fetch('mesh/' + library)).text(), '');
-    materials.preload();
-    loader.setMaterials(materials);
-  }
+  if (library) loader.setMaterials(await materialsOf(path.slice(1).replace(/[^/]*$/, library)));
   const parts: Part[] = [];
   loader.parse(text).traverse((object) => {
     if (!(object instanceof Mesh)) return;

@@ -21,9 +21,26 @@ const inputs: [RegExp, string, string][] = [
 
 const head = 'precision highp float;\nprecision highp int;\nprecision highp sampler3D;\n';
 
-function vertexShader(name: string): string {
+// A body of several links moves by its bones, one per vertex, whose matrices three.js keeps in a texture.
+const kBones = `in vec4 skinIndex;
+uniform sampler2D boneTexture;
+uniform mat4 bindMatrixInverse;
+mat4 bone() {
+  int first = 4 * int(skinIndex.x), width = textureSize(boneTexture, 0).x;
+  ivec2 at = ivec2(first % width, first / width);
+  return bindMatrixInverse * mat4(texelFetch(boneTexture, at, 0), texelFetch(boneTexture, at + ivec2(1, 0), 0),
+                                  texelFetch(boneTexture, at + ivec2(2, 0), 0), texelFetch(boneTexture, at + ivec2(3, 0), 0));
+}
+`;
+
+function vertexShader(name: string, parts: string[]): string {
   let text = sourceOf(name).replace(/#version.*/, '').replace(/\bvarying\b/g, 'out');
   let declared = 'uniform mat4 projectionMatrix;\nuniform mat4 modelViewMatrix;\n';
+  if (parts.length > 0) {
+    text = text.replace(/\bgl_Vertex\b/g, '(bone() * gl_Vertex)').replace(/\bgl_Normal\b/g, '(mat3(bone()) * gl_Normal)');
+    declared += kBones + parts.map((name) => `in vec3 part_${name};\nflat out vec3 of_${name};\n`).join('');
+    text = text.replace('void main() {', 'void main() {' + parts.map((name) => `of_${name} = part_${name};`).join(' '));
+  }
   for (const [word, replacement, declaration] of inputs) {
     if (text.search(word) >= 0) declared += declaration + '\n';
     text = text.replace(word, replacement);
@@ -33,8 +50,11 @@ function vertexShader(name: string): string {
   return head + declared + text;
 }
 
-function fragmentShader(name: string): string {
-  const text = sourceOf(name).replace(/#version.*/, '').replace(/\bvarying\b/g, 'in');
+function fragmentShader(name: string, parts: string[]): string {
+  let text = sourceOf(name).replace(/#version.*/, '').replace(/\bvarying\b/g, 'in');
+  for (const part of parts)
+    text = text.replace(new RegExp(`uniform (vec3|float) ${part};`), (_, type) =>
+      `flat in vec3 of_${part};\n#define ${part} of_${part}${type === 'float' ? '.x' : ''}`);
   return head + 'out vec4 fragment;\n' + text.replace(/\btexture[23]D\b/g, 'texture').replace(/\bgl_FragColor\b/g, 'fragment');
 }
 
@@ -45,14 +65,15 @@ export interface Look {
   side: Side;
   transparent?: boolean;
   defines?: Record<string, string>;
+  parts?: string[]; // uniforms of the fragment shader that are attributes here, of a body of several links: part_NAME
 }
 
 /** A material of these two files of vibe_graphics/media; their names end in .vert and .frag. */
 export function materialOf(look: Look): RawShaderMaterial {
   return new RawShaderMaterial({
     glslVersion: GLSL3,
-    vertexShader: vertexShader(look.vertex),
-    fragmentShader: fragmentShader(look.fragment),
+    vertexShader: vertexShader(look.vertex, look.parts ?? []),
+    fragmentShader: fragmentShader(look.fragment, look.parts ?? []),
     uniforms: look.uniforms,
     side: look.side,
     transparent: look.transparent ?? false,

@@ -12,8 +12,10 @@ import { Robot } from './robot';
 import { smoke } from './shaders';
 import { SutureView } from './sutures';
 
-const kSizes = [720, 480, 320, 240]; // of the endoscope's picture: a smaller one where drawing takes too long [px]
-const kTooLong = 60; // [ms]
+const kSizes = [720, 480, 320, 240]; // of the endoscope's picture: a larger one where drawing is quick, a smaller one where it takes too long [px]
+const kFirstSize = 320; // the first picture is soon there
+const kQuick = 15, kTooLong = 60; // [ms]
+const kPatience = 20; // pictures before one of another size
 const kArrow = 0.02; // length of a newton [m]
 const kLensFrame = 'scope_camera_optical', kTipFrame = 'scope_tip';
 
@@ -36,7 +38,8 @@ export class Stage {
   counts = { calls: 0, triangles: 0 }; // of the last picture of each kind, summed
   private lens: Lens | null = null;
   private size = 0;
-  private slow = 0;
+  private meanMs = 0; // to draw the endoscope's picture, of the last ones
+  private ofThisSize = 0;
   private framed = -1;
   private drawnTime = NaN;
   private arrow = new ArrowHelper(new Vector3(1, 0, 0), new Vector3(), 0.01, 0xffd200);
@@ -60,7 +63,7 @@ export class Stage {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => (this.dirty = true));
     this.screen.add(this.picture);
-    this.size = fixedSize || kSizes[0];
+    this.size = fixedSize || kFirstSize;
     new ResizeObserver(() => this.resize()).observe(canvas);
   }
 
@@ -129,16 +132,20 @@ export class Stage {
   }
 
   /** The endoscope's picture of the present frame, unless there is one. */
-  drawEndoscope() {
+  drawEndoscope(stereo = false) {
     if (!this.endoscope || !this.robot.has(kLensFrame) || this.drawnTime === this.time) return;
     const begin = performance.now();
-    this.endoscope.draw(this.scene, this.robot.frame(kLensFrame), this.robot.capsules, this.time);
+    this.endoscope.draw(this.scene, this.robot.frame(kLensFrame), this.robot, this.time, stereo);
     this.drawnTime = this.time;
-    this.slow = 0.8 * this.slow + 0.2 * (performance.now() - begin);
-    const next = kSizes[kSizes.indexOf(this.size) + 1];
-    if (this.fixedSize || this.slow < kTooLong || !next) return;
+    this.meanMs += 0.2 * (performance.now() - begin - this.meanMs);
+    if (!this.fixedSize && ++this.ofThisSize >= kPatience) this.chooseSize();
+  }
+
+  private chooseSize() {
+    const by = this.meanMs > kTooLong ? 1 : this.meanMs < kQuick ? -1 : 0, next = kSizes[kSizes.indexOf(this.size) + by];
+    if (!next || by === 0) return;
     this.size = next;
-    this.slow = 0;
+    this.ofThisSize = 0;
     this.makeEndoscope();
   }
 

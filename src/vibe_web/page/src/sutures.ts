@@ -122,10 +122,9 @@ const at = <T extends BufferGeometry>(body: T, place: number[]): T => body.trans
 const woundRadius = (millilitres: number) => Math.min(0.02, 0.01 * Math.cbrt(0.3 * millilitres + 0.02));
 
 function geometryOf({ places, triangles, colours, normals }: SentShape): BufferGeometry {
-  const geometry = new BufferGeometry(), unit = new Float32Array(places.length);
-  for (let v = 0; 3 * v < unit.length; v++) for (let k = 0; k < 3; k++) unit[3 * v + k] = normals[4 * v + k] / 127;
+  const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(places, 3));
-  geometry.setAttribute('normal', new BufferAttribute(unit, 3));
+  geometry.setAttribute('normal', new BufferAttribute(normals, 3));
   geometry.setAttribute('vertex_colour', new BufferAttribute(colours, 4, true));
   geometry.setAttribute('texcoord0', new BufferAttribute(new Float32Array(places.length), 3));
   geometry.setIndex(new BufferAttribute(triangles, 1));

@@ -19,8 +19,7 @@ struct FrameContent {
 /// Message Kind::Frame:
 ///   u8 kind, u8 joints, u16 0, u32 revision, f64 time, f32 smoke, u32 particles, f32 lowest[3], f32 step[3],
 ///   f32 wrench[6], f32 joint[joints], u16 place[3 particles].
-/// A coordinate is lowest + step * place: in a box around all particles, 65,535 steps wide, so that half a step is the
-/// largest error (2.5 micrometres in an organ of 0.33 m).
+/// Lowest, step and place are those of a PlaceBox around all particles.
 /// @param positions  x y z per particle, finite [m]
 Bytes encodeFrame(const FrameContent& content, const std::vector<float>& positions);
 

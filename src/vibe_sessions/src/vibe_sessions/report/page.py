@@ -8,6 +8,7 @@ from . import tables
 from .curves import curves, solver_curves, trajectory
 from .organ import organ_picture
 from .timeline import timeline
+from .viewer import organ_data, viewer_script
 
 TEMPLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "templates")
 
@@ -47,6 +48,8 @@ def session_page(recording, numbers, name, back=""):
             timeline=timeline(recording),
             organ=organ[0] if organ else None,
             organ_is_rest=organ[1] if organ else False,
+            organ_data=organ_data(recording),
+            viewer=viewer_script(),
             curves=curves(recording),
             force_rate=rate_of(recording.force_curve()),
             trajectory=trajectory(recording),
