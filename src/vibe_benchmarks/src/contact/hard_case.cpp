@@ -61,7 +61,9 @@ class Runner {
  private:
   void take(std::shared_ptr<const Model> model, State state) {
     model_ = std::move(model);
-    simulation_ = std::make_unique<Simulation>(model_, SimulationSettings::study(1));
+    SimulationSettings settings = SimulationSettings::study(1);
+    settings.stages = output_.steps != nullptr;
+    simulation_ = std::make_unique<Simulation>(model_, settings);
     simulation_->replaceState(std::move(state));
     check_ = std::make_unique<ContactCheck>(*model_);
     first_ = true;
@@ -123,11 +125,25 @@ class Runner {
   void writeStep(const HardPhase& phase, double ms, double balance) const {
     const State& state = simulation_->state();
     char text[400];
-    std::snprintf(text, sizeof text, "%s,%s,%.4f,%.3f,%d,%d,%d,%d,%d,%.4g,%.4g,%.4g,%.5g,%.5g\n", hard_.name.c_str(),
+    std::snprintf(text, sizeof text, "%s,%s,%.4f,%.3f,%d,%d,%d,%d,%d,%.4g,%.4g,%.4g,%.5g,%.5g", hard_.name.c_str(),
                   phase.name.c_str(), result_.steps * simulation_->stepPeriod(), ms, simulation_->report().iterations,
                   simulation_->report().fallback ? 1 : 0, state.contact_count, result_.last_crossings, tool_.pierced,
                   1e3 * tool_.depth, state.tool_force.norm(), state.grip_force, balance, maxSpeed(state));
     *output_.steps << text;
+    writeWork();
+  }
+
+  void writeWork() const {
+    const StepReport& report = simulation_->report();
+    char text[200];
+    std::snprintf(text, sizeof text, ",%d,%d,%d,%d,%d,%.4g", report.solves, report.evaluations, report.rows,
+                  report.wall_pairs, report.arrived ? 1 : 0, report.residual);
+    *output_.steps << text;
+    for (const double seconds : report.stage_times) {
+      std::snprintf(text, sizeof text, ",%.3f", 1e3 * seconds);
+      *output_.steps << text;
+    }
+    *output_.steps << "\n";
   }
 
   void finish() {
@@ -220,7 +236,9 @@ void writeHardResults(const std::vector<HardResult>& results, std::ostream& out)
 
 void writeHardStepHeader(std::ostream& out) {
   out << "case,phase,time_s,ms,iterations,fallback,contacts,crossings,pierced,depth_mm,tool_N,grip_N,balance_J,"
-         "speed_m_s\n";
+         "speed_m_s,solves,evaluations,rows,wall_pairs,arrived,residual_m";
+  for (int k = 0; k < kStepStages; ++k) out << "," << toString(static_cast<StepStage>(k)) << "_ms";
+  out << "\n";
 }
 
 }  // namespace vibe::benchmarks

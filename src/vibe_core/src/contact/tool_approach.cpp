@@ -186,10 +186,14 @@ double freeUntil(const SweptTool& tool, int shape, const SurfacePath& path, cons
 
 ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle,
                       double floor) {
+  return approach(tool, shape, path, triangle, floor, tool.gap(shape, 0, triangleAt(path, triangle, 0)));
+}
+
+ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle,
+                      double floor, const TriangleGap& start) {
   ToolApproach result;
   result.fraction = 0;
-  result.gap = tool.gap(shape, 0, triangleAt(path, triangle, 0));
-  result.start = result.gap;
+  result.gap = result.start = start;
   result.nearest = result.gap.distance;
   const double kept = kKeptAtEnd * (result.gap.distance - floor);
   for (int advance = 0; advance < kApproachSteps && result.fraction < 1; ++advance) {

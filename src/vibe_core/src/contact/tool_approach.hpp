@@ -94,6 +94,9 @@ struct ToolApproach {
 /// @param floor  [m]; a pair that is nearer at the start stays there: fraction 0
 ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle,
                       double floor);
+/// @param start  what is known already: the gap at the start of the step
+ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle,
+                      double floor, const TriangleGap& start);
 
 /// Per shape: it sits on the tip of the scope or on what the tip carries, such as the suturing device.
 std::vector<char> shapesOnTip(const ToolModel& tool);

@@ -81,16 +81,27 @@ void ToolGuard::moveJoints(ToolPoses& poses, const ToolMotion& wanted, const Sur
       if (to == from) continue;
       ToolMotion tried = motion;
       tried.moveEnd(j, to);
-      if (freePart(poses, tried, path) < 1) continue;
+      if (!isFree(poses, tried, path)) continue;
       motion = tried;
       break;
     }
 }
 
-double ToolGuard::freePart(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path) {
+void ToolGuard::findPairs(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path) {
   motion.linkPoses(1, poses.end);
   tool_.place(poses.start, poses.end);
   near_.find(tool_, path, kKeptThickness * *std::max_element(thickness_.begin(), thickness_.end()), pairs_);
+}
+
+bool ToolGuard::isFree(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path) {
+  findPairs(poses, motion, path);
+  return std::all_of(pairs_.begin(), pairs_.end(), [&](const NearTriangles::Pair& pair) {
+    return isDrawnIn(pair) || freePart(pair, path) >= 1;
+  });
+}
+
+double ToolGuard::freePart(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path) {
+  findPairs(poses, motion, path);
   double part = 1;
   worst_ = -1;
   for (const NearTriangles::Pair& pair : pairs_) {
@@ -116,7 +127,7 @@ double ToolGuard::freePart(const NearTriangles::Pair& pair, const SurfacePath& p
   const double outside = gap.distance - radius, nearer = outside > kLeastThickness * thinnest ? kNearer : kHardlyNearer;
   const double floor =
       outside > 0 ? radius + std::min(kKeptThickness * thinnest, nearer * outside) : kNearer * gap.distance;
-  return approach(tool_, pair.shape, path, n, floor).fraction;
+  return approach(tool_, pair.shape, path, n, floor, gap).fraction;
 }
 
 }  // namespace vibe

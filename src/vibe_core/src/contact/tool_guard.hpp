@@ -41,6 +41,8 @@ class ToolGuard {
   int blockingVertex() const { return blocking_vertex_; }
 
  private:
+  void findPairs(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path);
+  bool isFree(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path);
   double freePart(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path);
   void moveJoints(ToolPoses& poses, const ToolMotion& wanted, const SurfacePath& path, ToolMotion& motion);
   double freePart(const NearTriangles::Pair& pair, const SurfacePath& path) const;

@@ -168,7 +168,8 @@ bool ImplicitStep::solve() {
                                   ? stepper_.stepAgain(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper)
                                   : stepper_.step(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper);
   report_.iterations = outcome.iterations;
-  report_.evaluations = outcome.evaluations;
+  report_.evaluations += outcome.evaluations;
+  ++report_.solves;
   report_.rows = scratch_.stepper->rows.count();
   report_.wall_pairs = scratch_.terms.pairCount();
   report_.residual = outcome.residual;

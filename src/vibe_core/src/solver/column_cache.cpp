@@ -49,13 +49,20 @@ int ColumnCache::nodeSlot(const Factor& factor, int node) {
   return node_slot_[n];
 }
 
-void ColumnCache::makeRoom(std::size_t more) {
-  if (nodes_.size() + more <= kMaxNodes) return;
-  for (const int node : nodes_) {
+bool ColumnCache::hasSlot(int node) const {
+  return static_cast<std::size_t>(node) < node_slot_.size() && node_slot_[static_cast<std::size_t>(node)] >= 0;
+}
+
+void ColumnCache::makeRoom(const std::vector<int>& nodes) {
+  const auto known = std::count_if(nodes.begin(), nodes.end(), [this](int node) { return hasSlot(node); });
+  if (nodes_.size() + nodes.size() - static_cast<std::size_t>(known) <= kMaxNodes) return;
+  const auto forget = [&](int node) {
+    if (std::binary_search(nodes.begin(), nodes.end(), node)) return false;
     freeSlot(node_slot_[static_cast<std::size_t>(node)]);
     node_slot_[static_cast<std::size_t>(node)] = -1;
-  }
-  nodes_.clear();
+    return true;
+  };
+  nodes_.erase(std::remove_if(nodes_.begin(), nodes_.end(), forget), nodes_.end());
 }
 
 void ColumnCache::setAttachments(const Factor& factor, const RowList<AttachmentPoint>& attachments) {

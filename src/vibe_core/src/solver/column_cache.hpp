@@ -21,9 +21,9 @@ class ColumnCache {
   void prepare(const Factor& factor, const std::vector<int>& nodes, const RowList<AttachmentPoint>& attachments);
   /// The list of attachment points. What is known of those at the head that are the same is kept.
   void setAttachments(const Factor& factor, const RowList<AttachmentPoint>& attachments);
-  /// Forgets nodes where more would come than it keeps.
-  /// @param more  that may come
-  void makeRoom(std::size_t more);
+  /// Forgets other nodes where these would be more than it keeps.
+  /// @param nodes  that are needed next, in ascending order
+  void makeRoom(const std::vector<int>& nodes);
 
   /// Slots are numbers of columns, valid until reset(), makeRoom() or another list of attachment points.
   int nodeSlot(const Factor& factor, int node);
@@ -39,6 +39,7 @@ class ColumnCache {
   static constexpr int kFirstAttachment = 1 << 28;  // keys from here on
   int newSlot(int key);
   void freeSlot(int slot);
+  bool hasSlot(int node) const;
   static std::size_t at(int a, int b) {
     return static_cast<std::size_t>(a) * (static_cast<std::size_t>(a) + 1) / 2 + static_cast<std::size_t>(b);
   }

@@ -50,11 +50,21 @@ void ConstraintSchur::addThreadRows(const ThreadRows& thread) {
     }
 }
 
+// Of equations and of contacts that count.
+void ConstraintSchur::findNodes(const ConstraintRows& rows) {
+  nodes_.clear();
+  for (const EquationRow& row : rows.equations)
+    nodes_.insert(nodes_.end(), row.form.node.begin(), row.form.node.end());
+  for (const ContactRows& contact : rows.contacts)
+    if (contact.counts) nodes_.insert(nodes_.end(), contact.form[0].node.begin(), contact.form[0].node.end());
+  std::sort(nodes_.begin(), nodes_.end());
+  nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+}
+
 void ConstraintSchur::setRows(const ConstraintRows& rows, const Factor& factor, ColumnCache& cache) {
   cache_ = &cache;
-  std::size_t nodes = 9 * rows.contacts.size();
-  for (const EquationRow& row : rows.equations) nodes += row.form.node.size();
-  cache.makeRoom(nodes);
+  findNodes(rows);
+  cache.makeRoom(nodes_);
   rows_.clear();
   for (const EquationRow& equation : rows.equations) addRow(equation.form, equation.compliance, factor);
   for (const ContactRows& contact : rows.contacts)

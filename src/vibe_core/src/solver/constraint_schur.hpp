@@ -64,6 +64,7 @@ class ConstraintSchur {
     Eigen::VectorXd capstan, spare;
     ThreadSlide slide;
   };
+  void findNodes(const ConstraintRows& rows);
   void addRow(const LinearForm& form, double compliance, const Factor& factor);
   void addRun(int attachment, const Eigen::Vector3d& along, double compliance);
   void addThreadRows(const ThreadRows& thread);
@@ -80,6 +81,7 @@ class ConstraintSchur {
   void solveEquations();
 
   ColumnCache* cache_ = nullptr;  // null: there are no rows
+  std::vector<int> nodes_;        // of the rows
   HalfRows rows_;
   bool formed_ = false;  // the compliance is that of the rows and the gas
   Eigen::VectorXd row_value_;

@@ -26,8 +26,9 @@ struct StepReport {
   std::array<int, kJointCount> stopped{};                 ///< joints that tissue has stopped: sign of their motion
   int blocking_particle = -1;  ///< nearest to what has stopped the whole tool; -1: it goes on, or rests by itself
   int contact_count = 0;       ///< see State
-  int iterations = 0;          ///< of an implicit solver
-  int evaluations = 0;         ///< of the elastic energy, by an implicit solver
+  int solves = 0;              ///< of an implicit solver: 1, more where the tool was elsewhere than expected
+  int iterations = 0;          ///< of an implicit solver, in the last of them
+  int evaluations = 0;         ///< of the elastic energy, by an implicit solver, in all of them
   int rows = 0;                ///< of contacts, grip and threads, in an implicit solver
   int wall_pairs = 0;          ///< pairs of points of walls that act on each other
   StageTimes stage_times{};    ///< zero unless they are measured [s]
