@@ -10,10 +10,10 @@ namespace vibe::web {
 
 /// A robot as a page needs it, and the files that it asks for.
 struct RobotText {
-  nlohmann::json json;                        ///< {links: [...], visuals: [...]}, see readRobot()
-  std::map<std::string, std::string> meshes;  ///< path below the server -> file on this machine
+  nlohmann::json json;                         ///< {links: [...], visuals: [...]}, see readRobot()
+  std::map<std::string, std::string> meshes;   ///< path below the server -> file on this machine
   std::map<std::string, std::size_t> folders;  ///< of the files, and their numbers in the paths
-  std::vector<std::string> problems;          ///< one sentence for each part that is missing
+  std::vector<std::string> problems;           ///< one sentence for each part that is missing
 };
 
 /// Reads a URDF.

@@ -121,7 +121,8 @@ void SessionStream::takeParticles(const sensor_msgs::PointCloud2::ConstPtr& mess
   publishFrame();
 }
 
-/// The newest state, which waits until somebody looks: a simulator that pauses, or a recording at its end, sends no other.
+/// The newest state, which waits until somebody looks: a simulator that pauses, or a recording at its end, sends no
+/// other.
 void SessionStream::publishFrame() {
   if (!unseen_ || !organ_ || server_.clients() == 0) return;
   const std::string wrong = graphics::readParticles(*unseen_, organ_->mesh, frame_);
