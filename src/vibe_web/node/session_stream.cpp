@@ -116,9 +116,17 @@ void SessionStream::takeTopology(const vibe_msgs::TissueTopology& message) {
   server_.publish(Kind::Topology, encodeTopology(organ_->mesh, organ_->map));
 }
 
-void SessionStream::takeParticles(const sensor_msgs::PointCloud2& message) {
-  if (!organ_ || server_.clients() == 0) return;
-  const std::string wrong = graphics::readParticles(message, organ_->mesh, frame_);
+void SessionStream::takeParticles(const sensor_msgs::PointCloud2::ConstPtr& message) {
+  unseen_ = message;
+  publishFrame();
+}
+
+/// The newest state, which waits until somebody looks: a simulator that pauses, or a recording at its end, sends no
+/// other.
+void SessionStream::publishFrame() {
+  if (!unseen_ || !organ_ || server_.clients() == 0) return;
+  const std::string wrong = graphics::readParticles(*unseen_, organ_->mesh, frame_);
+  unseen_ = nullptr;
   if (!wrong.empty()) return complain(wrong);
   organ_->look.see(frame_);
   has_frame_ = true;
@@ -152,6 +160,7 @@ void SessionStream::takeSutures(const vibe_msgs::SutureArray::ConstPtr& message)
 
 void SessionStream::tick() {
   ++ticks_;
+  publishFrame();
   if (events_changed_) server_.publish(Kind::Events, textMessage(Kind::Events, events_.text()));
   events_changed_ = false;
   if (ticks_ % kSlowTicks != 0) return;

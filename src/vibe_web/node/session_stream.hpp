@@ -32,12 +32,13 @@ class SessionStream {
 
  private:
   void takeTopology(const vibe_msgs::TissueTopology& message);
-  void takeParticles(const sensor_msgs::PointCloud2& message);
+  void takeParticles(const sensor_msgs::PointCloud2::ConstPtr& message);
   void takeJoints(const sensor_msgs::JointState& message);
   void takeTransforms(const tf2_msgs::TFMessage& message);
   void takeSutures(const vibe_msgs::SutureArray::ConstPtr& message);
   void provideFiles(const RobotText& robot);
   void publishScene();
+  void publishFrame();
   void publishSutures();
   void publishWall();
   void complain(const std::string& sentence);
@@ -50,6 +51,7 @@ class SessionStream {
   graphics::TissueFrame frame_;
   FrameContent content_;
   std::vector<ros::Subscriber> subscribers_;
+  sensor_msgs::PointCloud2::ConstPtr unseen_;  // particles that no page has got
   vibe_msgs::ProcedureState::ConstPtr state_;
   vibe_msgs::SkillMetrics::ConstPtr skill_;
   vibe_msgs::SutureArray::ConstPtr sutures_;

@@ -3,10 +3,10 @@
 import puppeteer from 'puppeteer-core';
 
 /** Chromium without a display and without a graphics card. */
-export const launch = (chromium) =>
+export const launch = (chromium, ...more) =>
   puppeteer.launch({
     executablePath: chromium, headless: true, protocolTimeout: 300000,
-    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-dev-shm-usage', '--window-size=800,600'],
+    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-dev-shm-usage', '--window-size=800,600', ...more],
   });
 
 export const wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));

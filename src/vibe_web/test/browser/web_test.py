@@ -65,7 +65,7 @@ class Web(unittest.TestCase):
         if not NODE or not self.work:
             self.skipTest("the page has not been built: it needs nodejs and npm")
         run = subprocess.run(
-            [NODE, os.path.join(self.work, "test", script), str(self.port), *arguments],
+            [NODE, os.path.join(self.work, "test", script), *map(str, arguments)],
             cwd=self.work,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -81,14 +81,17 @@ class Web(unittest.TestCase):
                 self.assertTrue(check["ok"], check["problem"] + "\n" + self.server.last_words())
         return {check["name"]: check.get("detail") for check in checks}
 
+    def run_in_chromium(self, script, *arguments):
+        if not CHROMIUM:
+            self.skipTest("Chromium is not installed")
+        return self.run_script(script, *arguments)
+
     def test_1_stream(self):
-        self.run_script("stream.mjs")
+        self.run_script("stream.mjs", self.port)
         self.assertTrue(self.server.is_running(), self.server.last_words())
 
     def test_2_browser(self):
-        if not CHROMIUM:
-            self.skipTest("Chromium is not installed")
-        found = self.run_script("browser.mjs", CHROMIUM, self.folder)
+        found = self.run_in_chromium("browser.mjs", self.port, CHROMIUM, self.folder)
         for name in ("a key drives", "a gamepad drives"):
             shown = found[name]["joints"][:4]
             nearest = min(max(abs(a - b) for a, b in zip(m.position, shown)) for m in self.setpoint.messages)
@@ -125,6 +128,7 @@ class Web(unittest.TestCase):
                 status("/stream?token=" + token, http.client.HTTPConnection)
             with self.assertRaises(ssl.SSLError):  # signed by nobody that a machine knows
                 status("/stream?token=" + token, context=ssl.create_default_context())
+            self.run_in_chromium("elsewhere.mjs", "lan", port, CHROMIUM, token)
             self.assertEqual(server.stop(), 0)
 
     def test_4_wrong_options_are_refused(self):
@@ -132,6 +136,38 @@ class Web(unittest.TestCase):
             server = Program("vibe_web", "web_node", *arguments, name="web_node_wrong", **parameters)
             self.assertEqual(server.ends(), 2, server.output())
             self.assertEqual(len([line for line in server.lines if line.startswith("web_node:")]), 1, server.output())
+
+    def test_5_a_recording_has_its_line(self):
+        bag = os.path.join(self.folder, "session.bag")
+        recorder = Program("vibe_sim", "vibe_record", bag, name="vibe_record")
+        self.assertTrue(wait_until(lambda: os.path.exists(bag + ".active")))
+        rospy.rostime.wallsleep(6)
+        self.assertEqual(recorder.stop(), 0)
+        rospy.set_param("/use_sim_time", True)  # of nodes that start from now on
+        self.addCleanup(rospy.delete_param, "/use_sim_time")
+        names = ["__ns:=replayed", "/clock:=/replayed/clock", "robot_description:=/robot_description"]
+        player = Program("vibe_sim", "vibe_player", *names, name="vibe_player", recording=bag)
+        self.addCleanup(player.stop)
+        server = Program("vibe_web", "web_node", *names, name="web_replayed", port=0)
+        self.addCleanup(server.stop)
+        self.run_in_chromium("elsewhere.mjs", "recording", port_of(server), CHROMIUM, self.folder)
+
+    def test_6_parts_of_the_same_name_are_told_apart(self):
+        link = '<link name="{1}"><visual><geometry><mesh filename="file://{0}/{1}/part.obj"/></geometry></visual></link>'
+        joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
+        for name in "ab":
+            os.mkdir(os.path.join(self.folder, name))
+            with open(os.path.join(self.folder, name, "part.obj"), "w", encoding="utf-8") as file:
+                file.write("# {}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".format(name))
+        links = link.format(self.folder, "a") + link.format(self.folder, "b")
+        rospy.set_param("/other/robot_description", '<robot name="r">' + links + joint + "</robot>")
+        server = Program("vibe_web", "web_node", "__ns:=other", name="web_other", port=0)
+        self.addCleanup(server.stop)
+        for number, name in enumerate("ab"):
+            connection = http.client.HTTPConnection("localhost", port_of(server), timeout=20)
+            connection.request("GET", "/mesh/{}/part.obj".format(number))
+            self.assertTrue(connection.getresponse().read().decode().startswith("# " + name))
+            connection.close()
 
 
 if __name__ == "__main__":
