@@ -102,7 +102,9 @@ class ImplicitStep {
   void expectAgain();
   void startAgain();
   bool keepApart();
-  bool keepToolApart();
+  bool isCorrected() const;
+  bool stopsTool();
+  void keepToolApart();
   void noteStopped(const ToolMotion& wanted);
   void stopWall(double part);
   void giveWay();

@@ -186,8 +186,18 @@ bool ImplicitStep::solve() {
 bool ImplicitStep::keepApart() {
   const InStage stage(scratch_.stages, StepStage::Paths);
   for (std::size_t k = 0; k < 6; ++k) scratch_.uncorrected[k] = state_.*kMotionOf[k];
+  const bool may_stop = motion_ != nullptr && !limited_;
+  if (may_stop && stopsTool()) return false;  // before the walls, which the next solve moves elsewhere
   for (const auto& block : scratch_.blocks) block->correct(context_);
-  return motion_ == nullptr || keepToolApart();
+  if (may_stop && isCorrected() && stopsTool()) return false;
+  if (motion_ != nullptr) keepToolApart();
+  return true;
+}
+
+bool ImplicitStep::isCorrected() const {
+  for (std::size_t k = 0; k < 6; ++k)
+    if (scratch_.uncorrected[k] != state_.*kMotionOf[k]) return true;
+  return false;
 }
 
 // The solve had the tool where it does not come to, and the wall out of its way there; where the tool stops, the same
@@ -224,10 +234,8 @@ void ImplicitStep::store() {
 
 // Corrections are motions without forces: their work is the difference of the energies.
 void ImplicitStep::correct() {
+  if (!isCorrected()) return;
   std::array<std::vector<double>, 6>& before = scratch_.uncorrected;
-  bool changed = false;
-  for (std::size_t k = 0; k < 6; ++k) changed = changed || before[k] != state_.*kMotionOf[k];
-  if (!changed) return;
   const Energies after = mechanicalEnergy();
   for (std::size_t k = 0; k < 6; ++k) before[k].swap(state_.*kMotionOf[k]);
   const Energies uncorrected = mechanicalEnergy();

@@ -6,6 +6,7 @@
 #include "dynamics/implicit_solver.hpp"
 #include "model/step_accounts.hpp"
 #include "solver/stepper_workspace.hpp"
+#include "solver/time_scheme.hpp"
 
 namespace vibe {
 
@@ -66,6 +67,7 @@ ToolDisplacement ImplicitStep::expectedDisplacement() const {
 // while a tip is pushed aside ever faster: the pull of the last step lags behind.
 bool ImplicitStep::missesTool() const {
   if (context_.bend == nullptr || !report_.arrived || report_.fallback) return false;
+  if (scratch_.loads.contacts.size() > kMaxContacts) return false;  // no place is certain then
   double miss = 0;
   for (const ContactConstraint& contact : scratch_.loads.contacts)
     if (!contact.force.isZero())
@@ -88,26 +90,27 @@ void ImplicitStep::yieldTool() {
   yielded_->linkPoses(1, scratch_.tool.end);
 }
 
-// @returns false where it stops for the first time in the step
-bool ImplicitStep::keepToolApart() {
-  const SurfacePath path = pathOfStep();
-  ToolMotion motion = yielded_ ? *yielded_ : *motion_;
-  const ToolMotion wanted = motion;
+// @returns whether the tool stops, for the first time in the step
+bool ImplicitStep::stopsTool() {
   scratch_.held.clear();
   const double whole = wholeWeight(state_.grip);
   for (const GripPoint& point : state_.grip)
     if (point.weight >= whole) scratch_.held.push_back(point.particle);
-  if (!limited_ && scratch_.guard->stop(scratch_.tool, motion, path, scratch_.held)) {
-    limited_ = motion;
-    noteStopped(wanted);
-    return false;
-  }
-  const double free = limited_ ? scratch_.guard->keepApart(scratch_.tool, motion, path, scratch_.held) : 1;
+  const ToolMotion wanted = yielded_ ? *yielded_ : *motion_;
+  ToolMotion motion = wanted;
+  if (!scratch_.guard->stop(scratch_.tool, motion, pathOfStep(), scratch_.held)) return false;
+  limited_ = motion;
+  noteStopped(wanted);
+  return true;
+}
+
+void ImplicitStep::keepToolApart() {
+  ToolMotion motion = yielded_ ? *yielded_ : *motion_;
+  const double free = limited_ ? scratch_.guard->keepApart(scratch_.tool, motion, pathOfStep(), scratch_.held) : 1;
   tool_stopped_ = limited_.has_value();
   state_.joints = motion.inputs(1);
   if (model_.scope_springs) report_.tool_displacement = motion.displacement(1);
   if (free < 1) stopWall(free);
-  return true;
 }
 
 // The joints that hardly come on, and whether nothing of the tool does.

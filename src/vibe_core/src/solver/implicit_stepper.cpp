@@ -23,6 +23,9 @@ constexpr double kGuessGrowth = 2;
 // Steps with backward Euler after a step that did not arrive. Design choice: a sixth of a second at 60 Hz, in which
 // backward Euler damps what made the step fail.
 constexpr int kFallbackSteps = 10;
+// Evaluations of the last solve of a step beyond its iterations. Design choice: one for its start and one for a
+// shorter move.
+constexpr int kLeastSpare = 2;
 // Iterations after which the constraints are met exactly, whatever that costs in energy. Design choice: about half of
 // what a step may take, so that as many iterations remain to reduce the energy again.
 constexpr int kSatisfyConstraints = 5;
@@ -166,6 +169,7 @@ StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMe
     plan_->schedule.provide(body_, loads, memory, scratch);
   }
   ++memory.steps;
+  scratch.spent = 0;
   scratch.elastic_energy = memory.elastic_energy;
   scratch.usual_length = memory.usual_length;
   return advance(motion, loads, memory, scratch);
@@ -231,7 +235,7 @@ void ImplicitStepper::iterateStep(const MotionView& motion, BodyLoads& loads, St
   setStepTargets(loads, motion, scheme, memory.couplings, scratch);
   Potential potential(body_, loads, scheme.inertia, scratch, scheme.part());
   QuasiNewton newton(body_, potential, loads, scratch, std::min(plan_->safe_length, kUsualGrowth * memory.usual_length),
-                     settings_.iterations + (outcome.fallback ? kSpareInFallback : kSpareEvaluations));
+                     evaluationsLeft(outcome.fallback, scratch.spent));
   newton.start();
   // a guess with far more energy may be tangled and lead to a tangled minimum: then start from the present positions
   if (extrapolates(outcome.fallback) && !(scratch.last.elastic_value <= kGuessGrowth * memory.elastic_energy)) {
@@ -249,8 +253,15 @@ void ImplicitStepper::iterateStep(const MotionView& motion, BodyLoads& loads, St
   scratch.gas_stiffness = potential.gas().stiffness(scratch.last.volume);
 }
 
+// What the solves of a step may take together leaves each of them enough for its least number of iterations.
+int ImplicitStepper::evaluationsLeft(bool fallback, int spent) const {
+  const int usual = settings_.iterations + kSpareEvaluations;
+  return std::clamp(2 * usual - spent, settings_.iterations + kLeastSpare,
+                    fallback ? settings_.iterations + kSpareInFallback : usual);
+}
+
 // Iterations go on until they contract: otherwise stiff motions would grow from step to step.
-void ImplicitStepper::iterate(QuasiNewton& newton, const StepperWorkspace& scratch, StepperMemory& memory,
+void ImplicitStepper::iterate(QuasiNewton& newton, StepperWorkspace& scratch, StepperMemory& memory,
                               StepOutcome& outcome) const {
   const double longest = outcome.fallback ? kFallbackMaxMove * plan_->size : std::numeric_limits<double>::max();
   double first_length = 0;
@@ -269,8 +280,9 @@ void ImplicitStepper::iterate(QuasiNewton& newton, const StepperWorkspace& scrat
                             ? std::max(kNearlyArrived * first_length, kPositionRoundings * newton.resolution())
                             : kArrived * first_length;
   outcome.arrived = outcome.converged || done || newton.directionLength() < enough;
-  outcome.residual = std::max(newton.residual(), scratch.schur.violation());
+  outcome.residual = std::max({newton.residual(), scratch.schur.violation(), depthLeftOut(scratch)});
   outcome.evaluations = newton.evaluations();
+  scratch.spent += outcome.evaluations;
   outcome.solves = newton.solves();
 }
 

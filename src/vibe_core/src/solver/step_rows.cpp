@@ -10,9 +10,8 @@
 namespace vibe {
 namespace {
 
-// Contacts of a step with friction, and in total. Design choice: three times what a press of 3 N by the scope touches;
-// the time of a solution grows with the third power of the rows that act.
-constexpr std::size_t kMaxWithFriction = 64, kMaxContacts = 128;
+// Those with friction, which have three rows. Design choice: half of them.
+constexpr std::size_t kMaxWithFriction = kMaxContacts / 2;
 
 Eigen::Vector3d positionOf(const AttachmentPoint& attachment, const MotionView& motion) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -194,6 +193,19 @@ void limitContacts(StepperWorkspace& scratch) {
     contact.friction = 0;
     contact.counts = k < kMaxContacts;
   }
+}
+
+double depthLeftOut(const StepperWorkspace& scratch) {
+  const ConstraintRows& rows = scratch.rows;
+  const YieldVector yielded = rows.tool_compliance * scratch.schur.pull();
+  double deepest = 0;
+  for (std::size_t c = 0; c < rows.contacts.size(); ++c) {
+    const ContactRows& contact = rows.contacts[c];
+    if (contact.counts) continue;
+    const double target = scratch.target[rows.contactRow(c)] - fixedDot(contact.yield.row(0).transpose(), yielded);
+    deepest = std::max(deepest, target - contact.form[0].value(scratch.z));
+  }
+  return deepest;
 }
 
 void storeForces(const StepperWorkspace& scratch, double gain, BodyLoads& loads) {

@@ -98,6 +98,7 @@ class StepperWorkspace {
   std::vector<float> half;                       // in elimination order
   std::vector<std::vector<float>> move, change;  // L-BFGS pairs
   std::vector<double> curvature;                 // 1 / (move . change)
+  int spent = 0;                                 // evaluations of the energy in the step so far
   int pairs = 0;
   ConstraintRows rows;
   std::vector<std::pair<double, std::size_t>> contact_order;  // see limitContacts()

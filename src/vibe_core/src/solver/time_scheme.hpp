@@ -55,9 +55,14 @@ void setEquilibriumTargets(const BodyLoads& loads, StepperWorkspace& scratch);
 /// @param in_factor  stiffness that the factor has beside that of the elements
 void setStepTargets(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
                     const std::vector<StiffnessCoupling>& in_factor, StepperWorkspace& scratch);
-/// Bounds the work of a step: the deepest contacts at the scratch's z keep their friction, further ones only their
-/// normal, and the rest has no force. Needs the targets.
+/// Contacts that count in a step at most. Design choice: three times what a press of 3 N by the scope touches; the time
+/// of a solution grows with the third power of the rows that act.
+constexpr std::size_t kMaxContacts = 64;
+/// Bounds the work of a step: the deepest contacts at the scratch's z keep their friction, further ones up to
+/// kMaxContacts only their normal, and the rest has no force. Needs the targets.
 void limitContacts(StepperWorkspace& scratch);
+/// How deep the contacts that do not count end in the tool, at the scratch's z [m].
+double depthLeftOut(const StepperWorkspace& scratch);
 /// The rows' forces back to the loads, and how far the threads slid.
 /// @param gain  of the rows' values over positions, see setStepTargets(); 1 in an equilibrium
 void storeForces(const StepperWorkspace& scratch, double gain, BodyLoads& loads);

@@ -105,7 +105,8 @@ class ImplicitStepper {
   /// backward Euler. Forces of the loads are their means over the step.
   StepOutcome step(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
 
-  /// The last step() once more, with other loads.
+  /// The last step() once more, with other loads. All solves of a step together take as many evaluations as two
+  /// without backward Euler may, but each has some at least.
   /// @param motion  as before that step
   StepOutcome stepAgain(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
 
@@ -125,7 +126,8 @@ class ImplicitStepper {
   static void correctStored(StepperMemory& memory, const StepperWorkspace& scratch, StepOutcome& outcome);
   void iterateStep(const MotionView& motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch,
                    StepOutcome& outcome) const;
-  void iterate(QuasiNewton& newton, const StepperWorkspace& scratch, StepperMemory& memory, StepOutcome& outcome) const;
+  int evaluationsLeft(bool fallback, int spent) const;
+  void iterate(QuasiNewton& newton, StepperWorkspace& scratch, StepperMemory& memory, StepOutcome& outcome) const;
   void startFromHere(const MotionView& motion, StepperWorkspace& scratch) const;
   void refactorHere(const BodyLoads& loads, StepperWorkspace& scratch) const;
   void placeAtRest(const StepperWorkspace& scratch, const MotionView& motion) const;
