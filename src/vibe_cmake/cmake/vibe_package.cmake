@@ -39,6 +39,13 @@ macro(vibe_package)
   endif()
 endmacro()
 
+# vibe_eigen(): finds Eigen. Its version 5 has but a target; catkin and packages in a workspace ask for variables.
+macro(vibe_eigen)
+  find_package(Eigen3 REQUIRED)
+  get_target_property(EIGEN3_INCLUDE_DIRS Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+  set(EIGEN3_FOUND TRUE)
+endmacro()
+
 # vibe_rviz_qt(VARIABLE COMPONENT...): finds the Qt that rviz was built with; a plugin with another one crashes when it is
 # loaded. VARIABLE gets Qt5 or Qt6. A macro, because what find_package() sets has to stay.
 macro(vibe_rviz_qt variable)

@@ -1,5 +1,6 @@
 #include "vibe_core/common/machine.hpp"
 
+#include <array>
 #include <atomic>
 #include <cstdlib>
 #include <fstream>
@@ -126,8 +127,12 @@ std::string valueIn(const char* file, const std::string& key, char separator) {
 }
 
 std::string eigenVersion() {
-  return "Eigen " + std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) + "." +
-         std::to_string(EIGEN_MINOR_VERSION);
+#ifdef EIGEN_PATCH_VERSION  // since version 5, which leaves the first number at 3
+  const std::array version{EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, EIGEN_PATCH_VERSION};
+#else
+  const std::array version{EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION};
+#endif
+  return "Eigen " + std::to_string(version[0]) + "." + std::to_string(version[1]) + "." + std::to_string(version[2]);
 }
 
 std::string compilerName() {
