@@ -10,9 +10,9 @@ SPECIAL = str.maketrans({mark: "\\" + mark for mark in "\\`*_{}[]<>|$#~"})
 # counts may only fall; lower them here when they have.
 LACKING = {
     "vibe_core": (437, 117), "vibe_firmware": (88, 9), "vibe_graphics": (161, 35), "vibe_hardware": (252, 56),
-    "vibe_node": (4, 0), "vibe_rviz_plugins": (60, 14), "vibe_testing": (29, 3), "vibe_vision": (153, 60),
+    "vibe_ros_utils": (4, 0), "vibe_rviz_plugins": (60, 14), "vibe_testing": (29, 3), "vibe_vision": (153, 60),
 }  # fmt: skip
-SHOWN = ("vibe_core", "vibe_hardware", "vibe_vision", "vibe_firmware", "vibe_graphics", "vibe_rviz_plugins", "vibe_node")
+SHOWN = ("vibe_core", "vibe_hardware", "vibe_vision", "vibe_firmware", "vibe_graphics", "vibe_rviz_plugins", "vibe_ros_utils")
 NUMBER = re.compile(r"\b(double|float)\b|Eigen|Vector")
 UNIT = re.compile(r"\[|\bunit\b|\bshare\b|\bpart of\b|\b0 to \d|up to 1\b|quaternion|coefficient", re.IGNORECASE)
 
