@@ -12,7 +12,7 @@
 #include "endoscope_camera.hpp"
 #include "vibe_graphics/graphics/resources.hpp"
 #include "vibe_graphics/graphics/virtual_display.hpp"
-#include "vibe_node/startup.hpp"
+#include "vibe_ros_utils/startup.hpp"
 
 namespace endoscope = vibe::endoscope;
 namespace graphics = vibe::graphics;
@@ -45,8 +45,8 @@ void run(const endoscope::CameraOptions& options) {
 int main(int argc, char** argv) {
   endoscope::CameraOptions options;
   try {
-    vibe::node::init(argc, argv, "endoscope_camera");
-    vibe::node::waitForMaster(kMasterPatience);
+    vibe::ros_utils::init(argc, argv, "endoscope_camera");
+    vibe::ros_utils::waitForMaster(kMasterPatience);
     options = endoscope::readCameraOptions(ros::NodeHandle("~"));
   } catch (const std::exception& error) {
     return fail(error, kUsage);

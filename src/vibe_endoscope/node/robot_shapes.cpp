@@ -9,7 +9,7 @@
 
 #include "vibe_graphics/geometry/coloured_shape.hpp"
 #include "vibe_graphics/geometry/solid_bodies.hpp"
-#include "vibe_node/mesh_address.hpp"
+#include "vibe_ros_utils/mesh_address.hpp"
 
 namespace vibe::endoscope {
 
@@ -91,7 +91,7 @@ void appendNode(const aiScene& scene, const aiNode& node, const aiMatrix4x4& par
 std::string appendMeshFile(const RobotVisual& visual, graphics::ColouredShape& shape) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // as rviz
-  const aiScene* scene = importer.ReadFile(node::fileOf(visual.mesh),
+  const aiScene* scene = importer.ReadFile(ros_utils::fileOf(visual.mesh),
                                            aiProcess_SortByPType | aiProcess_GenNormals | aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr)
     return "The mesh '" + visual.mesh + "' of the robot description cannot be read (" + importer.GetErrorString() +

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "vibe_hardware/emulator/emulated_arm.hpp"
-#include "vibe_node/parameter_reader.hpp"
-#include "vibe_node/startup.hpp"
+#include "vibe_ros_utils/parameter_reader.hpp"
+#include "vibe_ros_utils/startup.hpp"
 
 namespace {
 
@@ -40,7 +40,7 @@ struct Parameters {
 };
 
 Parameters readParameters(const ros::NodeHandle& handle) {
-  vibe::node::ParameterReader reader(handle);
+  vibe::ros_utils::ParameterReader reader(handle);
   Parameters p;
   reader.read("sway", p.sway, -0.5, 0.5, "m");
   reader.read("frequency", p.frequency, 0, 20, "Hz");
@@ -169,8 +169,8 @@ class Arm {
 
 int main(int argc, char** argv) {
   try {
-    vibe::node::init(argc, argv, "arm");
-    vibe::node::waitForMaster(kMasterPatience);
+    vibe::ros_utils::init(argc, argv, "arm");
+    vibe::ros_utils::waitForMaster(kMasterPatience);
     ros::NodeHandle handle("arm");
     Arm arm(handle, readParameters(ros::NodeHandle("~")));
     ros::spin();

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "crtk_teleop_node.hpp"
-#include "vibe_node/startup.hpp"
+#include "vibe_ros_utils/startup.hpp"
 
 namespace {
 
@@ -19,7 +19,7 @@ void run() {
   vibe::hardware::CrtkTeleopNode node(handle, parameters);
   ros::AsyncSpinner spinner(1);
   spinner.start();
-  vibe::node::waitForStop();
+  vibe::ros_utils::waitForStop();
   spinner.stop();
   node.release();
   ros::WallDuration(kDelivery).sleep();
@@ -29,8 +29,8 @@ void run() {
 
 int main(int argc, char** argv) {
   try {
-    vibe::node::initWithGoodbye(argc, argv, "crtk_teleop");
-    if (!vibe::node::waitForMaster(kMasterPatience)) return 0;
+    vibe::ros_utils::initWithGoodbye(argc, argv, "crtk_teleop");
+    if (!vibe::ros_utils::waitForMaster(kMasterPatience)) return 0;
     run();
     ros::shutdown();
     return 0;

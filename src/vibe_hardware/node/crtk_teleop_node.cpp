@@ -10,7 +10,7 @@
 #include "gamepad_node.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/files.hpp"
-#include "vibe_node/parameter_reader.hpp"
+#include "vibe_ros_utils/parameter_reader.hpp"
 
 namespace vibe::hardware {
 namespace {
@@ -45,7 +45,7 @@ bool isFinite(const geometry_msgs::Pose& pose) {
 }  // namespace
 
 CrtkParameters readCrtkParameters(const ros::NodeHandle& private_handle) {
-  node::ParameterReader reader(private_handle);
+  ros_utils::ParameterReader reader(private_handle);
   CrtkParameters parameters;
   reader.read("mapping", parameters.mapping);
   reader.read("arm", parameters.arm);

@@ -12,12 +12,12 @@
 #include "vibe_core/common/step_timer.hpp"
 #include "vibe_hardware/gamepad/pad_recording.hpp"
 #include "vibe_hardware/gamepad/pad_source.hpp"
-#include "vibe_node/parameter_reader.hpp"
+#include "vibe_ros_utils/parameter_reader.hpp"
 
 namespace vibe::hardware {
 
 GamepadParameters readGamepadParameters(const ros::NodeHandle& private_handle) {
-  node::ParameterReader reader(private_handle);
+  ros_utils::ParameterReader reader(private_handle);
   GamepadParameters parameters;
   reader.read("mapping", parameters.mapping);
   reader.read("pad", parameters.pad);

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "gamepad_node.hpp"
-#include "vibe_node/startup.hpp"
+#include "vibe_ros_utils/startup.hpp"
 
 namespace {
 
@@ -17,8 +17,8 @@ constexpr double kMasterPatience = 10;  // [s]
 int main(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // the player reads what to press first, also through a pipe
   try {
-    vibe::node::init(argc, argv, "gamepad_node");
-    vibe::node::waitForMaster(kMasterPatience);
+    vibe::ros_utils::init(argc, argv, "gamepad_node");
+    vibe::ros_utils::waitForMaster(kMasterPatience);
     ros::NodeHandle handle;
     const vibe::hardware::GamepadParameters parameters = vibe::hardware::readGamepadParameters(ros::NodeHandle("~"));
     const vibe::hardware::GamepadNode node(handle, parameters);

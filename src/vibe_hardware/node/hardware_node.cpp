@@ -6,8 +6,8 @@
 #include "vibe_core/common/step_timer.hpp"
 #include "vibe_hardware/hid/hidraw_bus.hpp"
 #include "vibe_hardware/hid/socket_bus.hpp"
-#include "vibe_node/former_names.hpp"
-#include "vibe_node/parameter_reader.hpp"
+#include "vibe_ros_utils/former_names.hpp"
+#include "vibe_ros_utils/parameter_reader.hpp"
 
 namespace vibe::hardware {
 
@@ -18,7 +18,7 @@ constexpr const char* kHidraw = "hidraw";
 }  // namespace
 
 HardwareParameters readHardwareParameters(const ros::NodeHandle& private_handle) {
-  node::ParameterReader reader(private_handle);
+  ros_utils::ParameterReader reader(private_handle);
   HardwareParameters parameters;
   reader.read("config", parameters.config);
   reader.read("bus", parameters.bus);
@@ -125,7 +125,7 @@ void HardwareNode::advertise(ros::NodeHandle& handle) {
   if (suturing_device_) {
     suturing_device_publisher_ = handle.advertise<JointState>(kTracked, kDeviceQueue);
     suturing_device_subscriber_ = handle.subscribe(kTracked, 1, &HardwareNode::onSuturingDevice, this);
-    former_subscriber_ = handle.subscribe(node::formerInput(kTracked), 1, &HardwareNode::onFormerName, this);
+    former_subscriber_ = handle.subscribe(ros_utils::formerInput(kTracked), 1, &HardwareNode::onFormerName, this);
   }
   updater_.setHardwareID("none");
   for (const DeviceKind kind : {DeviceKind::Haptic, DeviceKind::Input}) {
@@ -253,7 +253,7 @@ void HardwareNode::onParameters(const vibe_msgs::HapticParameters& message) {
 }
 
 void HardwareNode::onFormerName(const ros::MessageEvent<const sensor_msgs::JointState>& event) {
-  node::warnOfFormerInput(event.getPublisherName(), node::formerInput(kTracked));
+  ros_utils::warnOfFormerInput(event.getPublisherName(), ros_utils::formerInput(kTracked));
   onSuturingDevice(event);
 }
 

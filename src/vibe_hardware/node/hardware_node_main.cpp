@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "hardware_node.hpp"
-#include "vibe_node/startup.hpp"
+#include "vibe_ros_utils/startup.hpp"
 
 namespace {
 
@@ -17,12 +17,12 @@ void run() {
   ros::NodeHandle handle;
   const vibe::hardware::HardwareParameters parameters = vibe::hardware::readHardwareParameters(ros::NodeHandle("~"));
   if (parameters.realtime_priority > 0)
-    for (const std::string& sentence : vibe::node::runInRealTime(parameters.realtime_priority))
+    for (const std::string& sentence : vibe::ros_utils::runInRealTime(parameters.realtime_priority))
       ROS_WARN_STREAM(sentence);
   vibe::hardware::HardwareNode node(handle, parameters);
   ros::AsyncSpinner spinner(1);
   spinner.start();
-  vibe::node::waitForStop();
+  vibe::ros_utils::waitForStop();
   spinner.stop();
   if (node.stop()) ros::WallDuration(kDelivery).sleep();
 }
@@ -31,8 +31,8 @@ void run() {
 
 int main(int argc, char** argv) {
   try {
-    vibe::node::initWithGoodbye(argc, argv, "hardware_node");
-    if (!vibe::node::waitForMaster(kMasterPatience)) return 0;
+    vibe::ros_utils::initWithGoodbye(argc, argv, "hardware_node");
+    if (!vibe::ros_utils::waitForMaster(kMasterPatience)) return 0;
     run();
     ros::shutdown();
     return 0;

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_node/wall_clock.hpp"
+#include "vibe_ros_utils/wall_clock.hpp"
 
 namespace vibe::latency {
 namespace {
@@ -72,7 +72,7 @@ void LampWatch::run() {
       continue;
     }
     const std::optional<bool> state = readLamp();
-    if (state && state != last) changed_(node::wallTime(), *state);
+    if (state && state != last) changed_(ros_utils::wallTime(), *state);
     if (state) last = state;
     next = std::max(next + kReadPeriod, std::chrono::steady_clock::now() - kReadPeriod);
     std::this_thread::sleep_until(next);

@@ -5,9 +5,9 @@
 
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/input/step_input.hpp"
-#include "vibe_node/former_names.hpp"
-#include "vibe_node/parameter_reader.hpp"
-#include "vibe_node/wall_clock.hpp"
+#include "vibe_ros_utils/former_names.hpp"
+#include "vibe_ros_utils/parameter_reader.hpp"
+#include "vibe_ros_utils/wall_clock.hpp"
 
 namespace vibe::latency {
 namespace {
@@ -68,14 +68,14 @@ void EventTable::check() {
 }
 
 ProbeParameters readProbeParameters(const ros::NodeHandle& private_handle) {
-  node::ParameterReader reader(private_handle);
+  ros_utils::ParameterReader reader(private_handle);
   ProbeParameters parameters;
   parameters.folder = reader.required("folder", "a folder for the tables");
   reader.read("joint", parameters.joint);
   reader.read("device", parameters.device);
   reader.read("state", parameters.state);
-  usePresentName("device", node::presentInput(parameters.device), parameters.device);
-  usePresentName("state", node::presentOutput(parameters.state), parameters.state);
+  usePresentName("device", ros_utils::presentInput(parameters.device), parameters.device);
+  usePresentName("state", ros_utils::presentOutput(parameters.state), parameters.state);
   reader.read("screen", parameters.screen);
   reader.finish();
   indexOf(parameters.joint);
@@ -107,15 +107,15 @@ void LatencyProbe::listenToSteps(ros::NodeHandle& handle, const ros::TransportHi
   subscribers_.push_back(handle.subscribe<vibe_msgs::StepInput>(
       "applied_input", kQueue,
       [this](const vibe_msgs::StepInput::ConstPtr& m) {
-        input_.add({node::wallTime(), ns(m->header.stamp), static_cast<std::int64_t>(m->step)},
+        input_.add({ros_utils::wallTime(), ns(m->header.stamp), static_cast<std::int64_t>(m->step)},
                    {m->joints[input_joint_]});
       },
       {}, hints));
   subscribers_.push_back(handle.subscribe<vibe_msgs::StepTiming>(
       "step_timing", kQueue,
       [this](const vibe_msgs::StepTiming::ConstPtr& m) {
-        step_.add({node::wallTime(), ns(m->header.stamp), static_cast<std::int64_t>(m->step), ns(m->due), ns(m->begin),
-                   ns(m->solved), ns(m->published)});
+        step_.add({ros_utils::wallTime(), ns(m->header.stamp), static_cast<std::int64_t>(m->step), ns(m->due),
+                   ns(m->begin), ns(m->solved), ns(m->published)});
       },
       {}, hints));
 }
@@ -124,7 +124,7 @@ void LatencyProbe::listenToDisplay(ros::NodeHandle& handle, const ros::Transport
   subscribers_.push_back(handle.subscribe<vibe_msgs::DisplayTiming>(
       "latency_lamp", kQueue,
       [this](const vibe_msgs::DisplayTiming::ConstPtr& m) {
-        display_.add({node::wallTime(), ns(m->header.stamp), m->lit, ns(m->received), ns(m->rendered)});
+        display_.add({ros_utils::wallTime(), ns(m->header.stamp), m->lit, ns(m->received), ns(m->rendered)});
       },
       {}, hints));
 }
@@ -133,7 +133,7 @@ void LatencyProbe::addJoint(EventTable& table, const sensor_msgs::JointState& me
   const auto found = std::find(message.name.begin(), message.name.end(), joint_);
   const auto index = static_cast<std::size_t>(found - message.name.begin());
   if (index < message.name.size() && index < message.position.size())
-    table.add({node::wallTime(), ns(message.header.stamp)}, {message.position[index]});
+    table.add({ros_utils::wallTime(), ns(message.header.stamp)}, {message.position[index]});
 }
 
 void LatencyProbe::flush() {

@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "latency_probe.hpp"
-#include "vibe_node/parameter_reader.hpp"
-#include "vibe_node/startup.hpp"
+#include "vibe_ros_utils/parameter_reader.hpp"
+#include "vibe_ros_utils/startup.hpp"
 
 namespace {
 
@@ -24,7 +24,7 @@ void run() {
   ros::AsyncSpinner spinner(1);
   spinner.start();
   bool told = false;
-  while (ros::ok() && vibe::node::stopSignal() == 0) {
+  while (ros::ok() && vibe::ros_utils::stopSignal() == 0) {
     ros::WallDuration(kFlushPeriod).sleep();
     probe.flush();
     if (!told && probe.seesLamp()) std::puts("latency_probe: ready");
@@ -39,12 +39,12 @@ void run() {
 
 int main(int argc, char** argv) {
   try {
-    vibe::node::initWithGoodbye(argc, argv, "latency_probe");
-    if (vibe::node::asksForHelp(argc, argv)) {
+    vibe::ros_utils::initWithGoodbye(argc, argv, "latency_probe");
+    if (vibe::ros_utils::asksForHelp(argc, argv)) {
       std::fputs(kHelp, stdout);
       return 0;
     }
-    if (!vibe::node::waitForMaster(kMasterPatience)) return 1;
+    if (!vibe::ros_utils::waitForMaster(kMasterPatience)) return 1;
     run();
     ros::shutdown();
     return 0;

@@ -24,7 +24,7 @@
 #include "vibe_graphics/graphics/dynamic_mesh.hpp"
 #include "vibe_graphics/graphics/resources.hpp"
 #include "vibe_graphics/messages/tissue_messages.hpp"
-#include "vibe_node/startup.hpp"
+#include "vibe_ros_utils/startup.hpp"
 
 namespace {
 
@@ -212,8 +212,8 @@ int run() {
 
 int main(int argc, char** argv) {
   try {
-    vibe::node::init(argc, argv, "vibe_view_bench", ros::init_options::AnonymousName);
-    vibe::node::waitForMaster(kMasterPatience);
+    vibe::ros_utils::init(argc, argv, "vibe_view_bench", ros::init_options::AnonymousName);
+    vibe::ros_utils::waitForMaster(kMasterPatience);
     const QApplication application(argc, argv);
     return run();
   } catch (const std::exception& error) {

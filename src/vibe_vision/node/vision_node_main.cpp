@@ -5,7 +5,7 @@
 #include <csignal>
 #include <cstdio>
 
-#include "vibe_node/startup.hpp"
+#include "vibe_ros_utils/startup.hpp"
 #include "vision_node.hpp"
 
 namespace {
@@ -22,8 +22,8 @@ void onSignal(int) {
 
 int main(int argc, char** argv) {
   try {
-    vibe::node::init(argc, argv, "vision_node");
-    vibe::node::waitForMaster(kMasterPatience);
+    vibe::ros_utils::init(argc, argv, "vision_node");
+    vibe::ros_utils::waitForMaster(kMasterPatience);
     ros::NodeHandle handle, private_handle("~");
     const vibe::vision::VisionParameters parameters = vibe::vision::readVisionParameters(private_handle);
     signal(SIGTERM, onSignal);

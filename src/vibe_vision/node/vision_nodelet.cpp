@@ -5,7 +5,7 @@
 #include <memory>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "vibe_node/former_names.hpp"
+#include "vibe_ros_utils/former_names.hpp"
 #include "vision_node.hpp"
 
 namespace vibe::vision {
@@ -16,7 +16,7 @@ class VisionNodelet : public nodelet::Nodelet {
 
   void onInit() override {
     try {
-      node::refuseFormerRemappings(getNodeHandle());
+      ros_utils::refuseFormerRemappings(getNodeHandle());
       const VisionParameters parameters = readVisionParameters(getPrivateNodeHandle());
       node_ = std::make_unique<VisionNode>(getNodeHandle(), getPrivateNodeHandle(), getName(), parameters);
     } catch (const std::exception& error) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_node/parameter_reader.hpp"
+#include "vibe_ros_utils/parameter_reader.hpp"
 
 namespace vibe::vision {
 namespace {
@@ -15,7 +15,8 @@ constexpr StampPoint kPoints[] = {StampPoint::ExposureStart, StampPoint::Exposur
 constexpr CameraClock kClocks[] = {CameraClock::Auto, CameraClock::Free, CameraClock::Host};
 
 /// One of some words. @return its index; the first is the default
-std::size_t readChoice(node::ParameterReader& reader, const std::string& name, const std::vector<std::string>& words) {
+std::size_t readChoice(ros_utils::ParameterReader& reader, const std::string& name,
+                       const std::vector<std::string>& words) {
   std::string word = words.front();
   reader.read(name, word);
   std::string all;
@@ -26,7 +27,7 @@ std::size_t readChoice(node::ParameterReader& reader, const std::string& name, c
   throw Error("Parameter ~" + name + " is '" + word + "'; set it to " + all + ".");
 }
 
-void readCamera(node::ParameterReader& reader, SourceOptions& options) {
+void readCamera(ros_utils::ParameterReader& reader, SourceOptions& options) {
   reader.read("exposure", options.exposure, 1e-6, 1, "s");
   reader.read("rate", options.rate, 0.1, 10000, "Hz");
   reader.read("gain", options.gain, -1, 100, "dB");
@@ -60,7 +61,7 @@ bool VisionParameters::recorded() const {
 }
 
 VisionParameters readVisionParameters(const ros::NodeHandle& private_handle) {
-  node::ParameterReader reader(private_handle);
+  ros_utils::ParameterReader reader(private_handle);
   VisionParameters parameters;
   parameters.config = reader.required("config", "the configuration of the rig, a file or package:// address");
   parameters.source =

@@ -7,8 +7,9 @@
 #include <sensor_msgs/image_encodings.h>
 
 #include "vibe_core/common/step_timer.hpp"
-#include "vibe_node/former_names.hpp"
+#include "vibe_ros_utils/former_names.hpp"
 #include "vibe_vision/record/annotation.hpp"
+#include "vision_messages.hpp"
 
 namespace vibe::vision {
 
@@ -51,10 +52,10 @@ VisionPublisher::VisionPublisher(ros::NodeHandle handle, const VisionConfig& con
   measured_ = handle.advertise<sensor_msgs::JointState>("suturing_device/input/joint_states", kQueue);
   if (parameters.lead > 0) {
     predicted_ = handle.advertise<sensor_msgs::JointState>(kPredicted, kQueue);
-    former_predicted_ = node::advertiseFormer<sensor_msgs::JointState>(handle, kPredicted, kQueue);
+    former_predicted_ = ros_utils::advertiseFormer<sensor_msgs::JointState>(handle, kPredicted, kQueue);
   }
   tracking_ = handle.advertise<vibe_msgs::InstrumentTrackArray>(kTracking, kQueue);
-  former_tracking_ = node::advertiseFormer<vibe_msgs::InstrumentTrackArray>(handle, kTracking, kQueue);
+  former_tracking_ = ros_utils::advertiseFormer<vibe_msgs::InstrumentTrackArray>(handle, kTracking, kQueue);
   if (parameters.publish_images) debug_ = transport_.advertise("debug_image", 1);
   if (parameters.fromTopic()) return;  // the camera's node publishes the other two
   camera_info_ = handle.advertise<sensor_msgs::CameraInfo>("camera_info", kQueue);

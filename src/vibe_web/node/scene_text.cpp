@@ -10,7 +10,7 @@
 #include "vibe_graphics/geometry/endoscope_optics.hpp"
 #include "vibe_graphics/geometry/mucosa_map.hpp"
 #include "vibe_graphics/geometry/mucosa_pattern.hpp"
-#include "vibe_node/mesh_address.hpp"
+#include "vibe_ros_utils/mesh_address.hpp"
 #include "vibe_rviz_plugins/drive/scope_drive.hpp"
 
 namespace vibe::web {
@@ -75,7 +75,7 @@ json capsuleText(const std::string& file) {
 }
 
 void addMesh(const std::string& address, json& visual, RobotText& robot) {
-  const std::string file = node::fileOf(address);
+  const std::string file = ros_utils::fileOf(address);
   const bool known = file.size() > 4 && file.substr(file.size() - 4) == ".obj" && std::ifstream(file).good();
   if (!known) {
     robot.problems.push_back("The mesh '" + address +

@@ -8,7 +8,7 @@
 
 #include "operator_drive.hpp"
 #include "session_stream.hpp"
-#include "vibe_node/startup.hpp"
+#include "vibe_ros_utils/startup.hpp"
 #include "web_options.hpp"
 
 namespace web = vibe::web;
@@ -46,7 +46,7 @@ void run(const web::ServerOptions& options) {
     drive.tick(server);
     if (++ticks % 10 == 0) stream.tick();
   });
-  while (ros::ok() && vibe::node::stopSignal() == 0)
+  while (ros::ok() && vibe::ros_utils::stopSignal() == 0)
     ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.1));
   drive.goodbye();
 }
@@ -54,11 +54,11 @@ void run(const web::ServerOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (vibe::node::asksForHelp(argc, argv)) return std::fputs(kHelp, stdout), 0;
+  if (vibe::ros_utils::asksForHelp(argc, argv)) return std::fputs(kHelp, stdout), 0;
   web::ServerOptions options;
   try {
-    vibe::node::initWithGoodbye(argc, argv, "web_node");
-    if (!vibe::node::waitForMaster(kMasterPatience)) return 0;
+    vibe::ros_utils::initWithGoodbye(argc, argv, "web_node");
+    if (!vibe::ros_utils::waitForMaster(kMasterPatience)) return 0;
     options = web::serverOptions(web::readOptions(ros::NodeHandle("~"), argc, argv));
   } catch (const std::exception& error) {
     return fail(error, kUsage);

@@ -5,7 +5,7 @@
 
 #include "server/certificate.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_node/parameter_reader.hpp"
+#include "vibe_ros_utils/parameter_reader.hpp"
 
 namespace vibe::web {
 
@@ -30,7 +30,7 @@ NodeOptions readOptions(const ros::NodeHandle& handle, int argc, const char* con
   NodeOptions options;
   options.page = builtPage();
   options.certificates = homeOfRos() + "/vibe_web";
-  node::ParameterReader parameters(handle);
+  ros_utils::ParameterReader parameters(handle);
   parameters.read("lan", options.lan);
   parameters.read("port", options.port, 0, 65535);
   parameters.read("page", options.page);

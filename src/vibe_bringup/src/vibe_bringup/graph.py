@@ -48,7 +48,7 @@ def write_all(descriptor, data):
 
 def loopback_library():
     """What, preloaded, keeps the TCP servers of a program on the loopback interface; None if it is not built."""
-    return find_in_package("vibe_node", "libvibe_loopback.so")
+    return find_in_package("vibe_ros_utils", "libvibe_loopback.so")
 
 
 class Process:

@@ -10,9 +10,9 @@
 #include "simulator/parameters.hpp"
 #include "simulator/services.hpp"
 #include "simulator/simulation_thread.hpp"
-#include "vibe_node/parameter_reader.hpp"
-#include "vibe_node/startup.hpp"
-#include "vibe_node/wall_clock.hpp"
+#include "vibe_ros_utils/parameter_reader.hpp"
+#include "vibe_ros_utils/startup.hpp"
+#include "vibe_ros_utils/wall_clock.hpp"
 
 // sim_node: the simulator as a ROS node. Messages in (inputs), steps (stepping), messages out (publishers).
 
@@ -34,13 +34,13 @@ constexpr char kHelp[] =
     "docs/interfaces.md.\n";
 
 void waitForEnd(const sim::SimulationThread& thread, const sim::MasterWatch& watch) {
-  while (ros::ok() && vibe::node::stopSignal() == 0 && thread.isRunning() && !watch.isHopeless())
+  while (ros::ok() && vibe::ros_utils::stopSignal() == 0 && thread.isRunning() && !watch.isHopeless())
     ros::WallDuration(0.02).sleep();
 }
 
 /// The sentence that says why the node ends, unless the stepping has said so itself.
 void explainEnd(const sim::MasterWatch& watch) {
-  if (vibe::node::stopSignal() != 0) {
+  if (vibe::ros_utils::stopSignal() != 0) {
     std::puts("Stopped by a signal.");
   } else if (!ros::ok() && !watch.isHopeless()) {
     std::puts(
@@ -52,7 +52,8 @@ void explainEnd(const sim::MasterWatch& watch) {
 /// The threads of ROS too: with a lower priority they would be interrupted while they hold a lock that the stepping
 /// thread needs to send its messages. That one is a little above them.
 void runInRealTime(int priority) {
-  for (const std::string& sentence : vibe::node::runInRealTime(std::max(1, priority - 1))) ROS_WARN_STREAM(sentence);
+  for (const std::string& sentence : vibe::ros_utils::runInRealTime(std::max(1, priority - 1)))
+    ROS_WARN_STREAM(sentence);
 }
 
 int run() {
@@ -64,7 +65,7 @@ int run() {
   // Not only for people: the first log message makes roscpp register a parameter at the master, and if that were the
   // message about our own shutdown, the master would take us for the newest node of this name and stop the real one.
   ROS_INFO_STREAM("Simulating '" << model->scene.name << "' with " << model->particle_count << " particles.");
-  vibe::node::ParameterReader(ros::NodeHandle("~")).tell();
+  vibe::ros_utils::ParameterReader(ros::NodeHandle("~")).tell();
   sim::InputQueue queue;
   sim::Publishers publishers(handle, parameters.time_source == sim::TimeSource::Sim);
   sim::SimulationThread thread(parameters, made, queue, publishers);
@@ -73,7 +74,7 @@ int run() {
   {
     sim::Inputs inputs(
         handle, queue, publishers, parameters.input_window,
-        [&] { return parameters.time_source == sim::TimeSource::Wall ? vibe::node::wallTime() : queue.now(); },
+        [&] { return parameters.time_source == sim::TimeSource::Wall ? vibe::ros_utils::wallTime() : queue.now(); },
         [&thread](sim::InputChannel channel) { thread.wake(channel); });
     sim::Services services(handle, thread);
     thread.start();
@@ -94,12 +95,12 @@ int run() {
 
 int main(int argc, char** argv) {
   try {
-    vibe::node::initWithGoodbye(argc, argv, "sim_node");
-    if (vibe::node::asksForHelp(argc, argv)) {
+    vibe::ros_utils::initWithGoodbye(argc, argv, "sim_node");
+    if (vibe::ros_utils::asksForHelp(argc, argv)) {
       std::fputs(kHelp, stdout);
       return 0;
     }
-    if (!vibe::node::waitForMaster(kMasterPatience)) return kFailure;
+    if (!vibe::ros_utils::waitForMaster(kMasterPatience)) return kFailure;
     const int result = run();
     ros::shutdown();
     return result;

@@ -4,8 +4,8 @@
 
 #include "replay/player.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_node/parameter_reader.hpp"
-#include "vibe_node/startup.hpp"
+#include "vibe_ros_utils/parameter_reader.hpp"
+#include "vibe_ros_utils/startup.hpp"
 
 // vibe_player: plays a recording into the graph, where rviz shows it; goes to any time on command.
 
@@ -23,7 +23,7 @@ constexpr char kHelp[] =
     "It needs /use_sim_time true, takes replay/command and says where it is on replay/status.\n";
 
 void play() {
-  vibe::node::ParameterReader reader(ros::NodeHandle("~"));
+  vibe::ros_utils::ParameterReader reader(ros::NodeHandle("~"));
   const std::string file = reader.required("recording", "the bag to play");
   bool plays = true;
   double rate = 1;
@@ -39,7 +39,7 @@ void play() {
   const vibe::sim::Recording recording(file, choice);
   if (!recording.remarkOnChoice().empty()) ROS_INFO_STREAM(recording.remarkOnChoice());
   vibe::sim::Player player(recording, ros::NodeHandle(), plays, rate);
-  while (ros::ok() && vibe::node::stopSignal() == 0) {
+  while (ros::ok() && vibe::ros_utils::stopSignal() == 0) {
     player.spinOnce();
     ros::WallDuration(kIdle).sleep();
   }
@@ -49,12 +49,12 @@ void play() {
 
 int main(int argc, char** argv) {
   try {
-    vibe::node::initWithGoodbye(argc, argv, "vibe_player");
-    if (vibe::node::asksForHelp(argc, argv)) {
+    vibe::ros_utils::initWithGoodbye(argc, argv, "vibe_player");
+    if (vibe::ros_utils::asksForHelp(argc, argv)) {
       std::fputs(kHelp, stdout);
       return 0;
     }
-    if (!vibe::node::waitForMaster(kMasterPatience)) return kFailure;
+    if (!vibe::ros_utils::waitForMaster(kMasterPatience)) return kFailure;
     play();
     ros::shutdown();
     return 0;

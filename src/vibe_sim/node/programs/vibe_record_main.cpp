@@ -7,7 +7,7 @@
 #include "recording/bag_name.hpp"
 #include "recording/recorder.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_node/startup.hpp"
+#include "vibe_ros_utils/startup.hpp"
 
 // vibe_record: records the topics of the graph to a bag, without losing a message, until SIGINT.
 
@@ -51,7 +51,7 @@ Options readOptions(const std::vector<std::string>& words) {
 /// @throws Error
 void recordUntilStopped(vibe::sim::Recorder& recorder) {
   double silence = 0;
-  while (vibe::node::stopSignal() == 0 && ros::ok()) {
+  while (vibe::ros_utils::stopSignal() == 0 && ros::ok()) {
     const bool answers = recorder.findTopics();
     if (answers && silence > 0) {
       std::fprintf(stderr,
@@ -73,8 +73,8 @@ void recordUntilStopped(vibe::sim::Recorder& recorder) {
 int main(int argc, char** argv) {
   bool running = false;
   try {
-    vibe::node::initWithGoodbye(argc, argv, "vibe_record", ros::init_options::AnonymousName);
-    if (vibe::node::asksForHelp(argc, argv)) {
+    vibe::ros_utils::initWithGoodbye(argc, argv, "vibe_record", ros::init_options::AnonymousName);
+    if (vibe::ros_utils::asksForHelp(argc, argv)) {
       std::puts(
           "vibe_record: records the graph to a bag until Ctrl-C: inputs, events and all that a replay cannot compute\n"
           "again; of the rest enough to look at it.\n"
@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
       return 0;
     }
     const Options options = readOptions({argv, argv + argc});
-    if (!vibe::node::waitForMaster(kMasterPatience)) return kFailure;
+    if (!vibe::ros_utils::waitForMaster(kMasterPatience)) return kFailure;
     std::string file = options.file;
     if (options.free_name) {
       file = vibe::sim::claimFreeBag(file);

@@ -7,8 +7,8 @@
 #include "trainee/trainee_player.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/files.hpp"
-#include "vibe_node/parameter_reader.hpp"
-#include "vibe_node/startup.hpp"
+#include "vibe_ros_utils/parameter_reader.hpp"
+#include "vibe_ros_utils/startup.hpp"
 
 // vibe_trainee: plays a trainee's script, or performs the goals of a protocol and of other nodes, on the simulator's
 // input topics.
@@ -31,7 +31,7 @@ struct Parameters {
 
 Parameters readParameters() {
   Parameters parameters;
-  vibe::node::ParameterReader reader(ros::NodeHandle("~"));
+  vibe::ros_utils::ParameterReader reader(ros::NodeHandle("~"));
   reader.read("script", parameters.script);
   reader.read("skill", parameters.skill);
   reader.read("seed", parameters.seed, 0, std::numeric_limits<int>::max());
@@ -70,12 +70,12 @@ void performGoals(const vibe::Protocol& protocol, const Parameters& parameters) 
 
 int main(int argc, char** argv) {
   try {
-    vibe::node::init(argc, argv, "vibe_trainee");
-    if (vibe::node::asksForHelp(argc, argv)) {
+    vibe::ros_utils::init(argc, argv, "vibe_trainee");
+    if (vibe::ros_utils::asksForHelp(argc, argv)) {
       std::puts(kHelp);
       return 0;
     }
-    vibe::node::waitForMaster(kMasterPatience);
+    vibe::ros_utils::waitForMaster(kMasterPatience);
     const Parameters parameters = readParameters();
     if (parameters.script.empty()) {
       performGoals(noProtocol(parameters), parameters);

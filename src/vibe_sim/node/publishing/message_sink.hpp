@@ -11,7 +11,7 @@
 #include <ros/publisher.h>
 #include <rosbag/bag.h>
 
-#include "vibe_node/former_names.hpp"
+#include "vibe_ros_utils/former_names.hpp"
 
 namespace vibe::sim {
 
@@ -78,7 +78,7 @@ class SinkSource {
     if (on_connect) connected = [on_connect](const ros::SingleSubscriberPublisher&) { on_connect(); };
     return MessageSink(
         handle_->advertise<M>(topic, queue, connected, ros::SubscriberStatusCallback(), ros::VoidConstPtr(), latch),
-        node::advertiseFormer<M>(*handle_, topic, queue, latch));
+        ros_utils::advertiseFormer<M>(*handle_, topic, queue, latch));
   }
 
  private:

@@ -12,7 +12,7 @@
 
 #include "conversions/tissue_message.hpp"
 #include "input/input_sample.hpp"
-#include "publishing/sink.hpp"
+#include "publishing/message_sink.hpp"
 #include "simulation/timed_simulation.hpp"
 
 namespace vibe::sim {

@@ -10,7 +10,7 @@
 #include "recording/bag_name.hpp"
 #include "recording/recording.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_node/former_names.hpp"
+#include "vibe_ros_utils/former_names.hpp"
 
 namespace vibe::sim {
 
@@ -25,10 +25,10 @@ bool isReplayed(const std::string& topic, const std::string& prefix) {
 std::string presentName(const rosbag::MessageInstance& message, const std::string& prefix) {
   const std::string topic = message.getTopic();
   if (topic.compare(0, prefix.size(), prefix) != 0) return topic;
-  const std::string name = topic.substr(prefix.size()), input = node::presentInput(name);
-  if (input == name) return prefix + node::presentOutput(name);
+  const std::string name = topic.substr(prefix.size()), input = ros_utils::presentInput(name);
+  if (input == name) return prefix + ros_utils::presentOutput(name);
   const auto joints = message.instantiate<sensor_msgs::JointState>();
-  const bool is_feedback = joints && name == "scope/measured_js" && !node::isFormerInput(*joints);
+  const bool is_feedback = joints && name == "scope/measured_js" && !ros_utils::isFormerInput(*joints);
   return prefix + (is_feedback ? name : input);
 }
 

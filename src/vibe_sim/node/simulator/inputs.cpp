@@ -9,7 +9,7 @@
 #include "conversions/input_message.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/step_timer.hpp"
-#include "vibe_node/former_names.hpp"
+#include "vibe_ros_utils/former_names.hpp"
 
 namespace vibe::sim {
 
@@ -27,7 +27,7 @@ bool isInput(const std::string& former, const ros::MessageEvent<const Message>& 
   if constexpr (std::is_same_v<Message, sensor_msgs::JointState>) {
     if (former != kFeedback) return true;
     if (event.getPublisherName() == ros::this_node::getName()) return false;
-    if (node::isFormerInput(*event.getMessage())) return true;
+    if (ros_utils::isFormerInput(*event.getMessage())) return true;
     ROS_WARN_STREAM_ONCE("A message on " << former << " from " << event.getPublisherName()
                                          << " is ignored: it has efforts, as the joints of a simulated scope have; "
                                             "a device publishes scope/input/joint_states.");
@@ -97,11 +97,11 @@ ros::Subscriber Inputs::subscribe(const std::string& name,
 
 template <typename Message>
 void Inputs::listenToFormer(const std::string& name, std::function<InputSample(const Message&)> read) {
-  const std::string former = node::formerInput(name);
+  const std::string former = ros_utils::formerInput(name);
   if (former.empty()) return;
   const auto take = [this, name, former, read](const ros::MessageEvent<const Message>& event) {
     if (!isInput(former, event)) return;
-    node::warnOfFormerInput(event.getPublisherName(), former);
+    ros_utils::warnOfFormerInput(event.getPublisherName(), former);
     receive(name, event.getPublisherName(), [&] { return read(*event.getMessage()); });
   };
   topics_[name].former = subscribe<Message>(former, take);

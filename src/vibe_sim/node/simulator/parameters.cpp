@@ -5,14 +5,14 @@
 #include <ros/console.h>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_node/former_names.hpp"
-#include "vibe_node/parameter_reader.hpp"
+#include "vibe_ros_utils/former_names.hpp"
+#include "vibe_ros_utils/parameter_reader.hpp"
 
 namespace vibe::sim {
 
 namespace {
 
-TimeSource readTimeSource(node::ParameterReader& reader) {
+TimeSource readTimeSource(ros_utils::ParameterReader& reader) {
   std::string word = "wall";
   reader.read("time_source", word);
   if (word == "wall") return TimeSource::Wall;
@@ -20,11 +20,11 @@ TimeSource readTimeSource(node::ParameterReader& reader) {
   throw Error("Parameter ~time_source is '" + word + "'; set it to wall or sim.");
 }
 
-std::optional<InputChannel> readFollow(node::ParameterReader& reader) {
+std::optional<InputChannel> readFollow(ros_utils::ParameterReader& reader) {
   std::string topic;
   reader.read("follow", topic);
   if (topic.empty()) return std::nullopt;
-  if (const std::string present = node::presentInput(topic); present != topic) {
+  if (const std::string present = ros_utils::presentInput(topic); present != topic) {
     ROS_WARN_STREAM("Parameter ~follow is '" << topic << "', the former name of " << present << "; set it to that.");
     topic = present;
   }
@@ -34,14 +34,14 @@ std::optional<InputChannel> readFollow(node::ParameterReader& reader) {
               "'; set it to scope/input/joint_states or suturing_device/input/joint_states.");
 }
 
-std::optional<std::uint64_t> readSeed(node::ParameterReader& reader) {
+std::optional<std::uint64_t> readSeed(ros_utils::ParameterReader& reader) {
   int seed = -1;
   reader.read("seed", seed, 0, 2147483647);
   if (seed < 0) return std::nullopt;
   return static_cast<std::uint64_t>(seed);
 }
 
-InputWindow readInputWindow(node::ParameterReader& reader, TimeSource source) {
+InputWindow readInputWindow(ros_utils::ParameterReader& reader, TimeSource source) {
   InputWindow window = source == TimeSource::Sim ? InputWindow::ofSimulatedTime() : InputWindow::ofWallClock();
   double look_ahead = -1, staleness = -1;
   reader.read("input_look_ahead", look_ahead, 0, 1e6, "s");
@@ -80,7 +80,7 @@ void checkCombination(const Parameters& parameters) {
 }  // namespace
 
 Parameters readParameters(const ros::NodeHandle& private_handle) {
-  node::ParameterReader reader(private_handle);
+  ros_utils::ParameterReader reader(private_handle);
   Parameters parameters;
   parameters.scene = reader.required("scene", "a scene file or package:// address");
   reader.read("mesh", parameters.mesh);

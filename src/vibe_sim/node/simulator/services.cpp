@@ -8,7 +8,7 @@
 #include <vibe_msgs/StateCommand.h>
 #include <vibe_msgs/Step.h>
 
-#include "vibe_node/former_names.hpp"
+#include "vibe_ros_utils/former_names.hpp"
 
 namespace vibe::sim {
 
@@ -46,11 +46,11 @@ void Services::offer(const std::string& name, Work work) {
 
 Services::Services(const ros::NodeHandle& handle, SimulationThread& thread) : handle_(handle) {
   handle_.setCallbackQueue(&queue_);
-  const std::string device = "suturing_device/state_command", former = node::formerInput(device);
+  const std::string device = "suturing_device/state_command", former = ros_utils::formerInput(device);
   for (const std::string& topic : {std::string("scope/state_command"), device, former})
     commands_.push_back(handle_.subscribe<vibe_msgs::StateCommand>(
         topic, kCommandQueue, boost::function<void(const Event&)>([&thread, topic, former](const Event& event) {
-          if (topic == former) node::warnOfFormerInput(event.getPublisherName(), former);
+          if (topic == former) ros_utils::warnOfFormerInput(event.getPublisherName(), former);
           obeyStateCommand(thread, topic, event.getMessage()->string);
         })));
   offer<std_srvs::SetBool>("pause",

@@ -11,8 +11,8 @@
 #include "conversions/conversions.hpp"
 #include "conversions/timing_message.hpp"
 #include "vibe_core/common/files.hpp"
-#include "vibe_node/startup.hpp"
-#include "vibe_node/wall_clock.hpp"
+#include "vibe_ros_utils/startup.hpp"
+#include "vibe_ros_utils/wall_clock.hpp"
 
 namespace vibe::sim {
 
@@ -31,12 +31,12 @@ constexpr std::chrono::microseconds kSamplePoll(200);
 // instant.
 std::uint64_t drawSession() {
   constexpr int kRandomBits = 20;
-  const auto milliseconds = static_cast<std::uint64_t>(node::wallTime() / 1'000'000);
+  const auto milliseconds = static_cast<std::uint64_t>(ros_utils::wallTime() / 1'000'000);
   return (milliseconds << kRandomBits) | (std::random_device()() & ((1U << kRandomBits) - 1));
 }
 
 std::int64_t startOrigin(const Parameters& parameters) {
-  return parameters.time_source == TimeSource::Sim ? kEpoch : node::wallTime();
+  return parameters.time_source == TimeSource::Sim ? kEpoch : ros_utils::wallTime();
 }
 
 }  // namespace
@@ -72,7 +72,7 @@ void SimulationThread::stop() {
 }
 
 void SimulationThread::wake(InputChannel channel) {
-  if (channel == parameters_.follow) pace_.arrive(node::wallTime());
+  if (channel == parameters_.follow) pace_.arrive(ros_utils::wallTime());
   {
     std::lock_guard<std::mutex> lock(mutex_);  // the thread is not just about to wait
     woken_ = true;
@@ -82,7 +82,7 @@ void SimulationThread::wake(InputChannel channel) {
 
 void SimulationThread::run() {
   const std::string refusal =
-      parameters_.realtime_priority > 0 ? node::takeRealtimePriority(parameters_.realtime_priority) : "";
+      parameters_.realtime_priority > 0 ? ros_utils::takeRealtimePriority(parameters_.realtime_priority) : "";
   if (!refusal.empty()) ROS_WARN_STREAM_ONCE(refusal);
   try {
     loop();
@@ -97,7 +97,7 @@ void SimulationThread::loop() {
   publishers_.announceModel(simulation_);
   publishers_.wholeState(simulation_, status_);
   statistics_.begin(simulation_);
-  pace_.restart(node::wallTime());
+  pace_.restart(ros_utils::wallTime());
   while (!stopping_) {
     pace_.collect();
     serveCommands();
@@ -127,7 +127,7 @@ SimulationThread::Hold SimulationThread::findHold() {
 }
 
 SimulationThread::Hold SimulationThread::findDeadline() {
-  const std::int64_t now = node::wallTime();
+  const std::int64_t now = ros_utils::wallTime();
   const std::int64_t late = now - pace_.deadline();
   if (late < -Pace::kClockJump) pace_.restart(now);
   if (late < 0 || now < pace_.earliestBegin()) return Hold::Pace;
@@ -165,14 +165,14 @@ void SimulationThread::wait(Hold hold) {
   std::unique_lock<std::mutex> lock(mutex_);
   std::chrono::nanoseconds duration = kIdle;
   if (hold == Hold::Pace)
-    duration = std::min(duration, std::chrono::nanoseconds(pace_.earliestBegin() - node::wallTime()));
+    duration = std::min(duration, std::chrono::nanoseconds(pace_.earliestBegin() - ros_utils::wallTime()));
   if (hold == Hold::Sample) duration = kSamplePoll;
   // inputs matter to a step only when it is due, so that their arrival ends no other wait
   const bool inputs_matter = hold == Hold::Inputs || hold == Hold::Sample;
   changed_.wait_for(lock, duration, [&] { return stopping_ || asked_ || (inputs_matter && woken_); });
   woken_ = false;
   // time spent waiting for others is not lag of the simulation
-  if (hold == Hold::Inputs || hold == Hold::Recorder) pace_.restart(node::wallTime());
+  if (hold == Hold::Inputs || hold == Hold::Recorder) pace_.restart(ros_utils::wallTime());
 }
 
 void SimulationThread::checkPatience(Hold hold) {
@@ -200,7 +200,7 @@ void SimulationThread::takeStep() {
   if (statistics_.steps == 0) statistics_.begin(simulation_);
   statistics_.total.start();
   const bool real_time = !parameters_.fast && !parameters_.lockstep && steps_left_ == 0;
-  const std::int64_t now = node::wallTime();
+  const std::int64_t now = ros_utils::wallTime();
   beginTiming(now, real_time);
   pace_.begin(now);
   StepInput input = simulation_.input();
@@ -213,7 +213,7 @@ void SimulationThread::takeStep() {
   simulation_.setInput(input);
   publishers_.appliedInput(simulation_);
   simulation_.step();
-  timing_.solved = toRosTime(node::wallTime());
+  timing_.solved = toRosTime(ros_utils::wallTime());
   statistics_.publish.start();
   publishers_.stepResult(simulation_, status_);
   statistics_.publish.stop();
@@ -237,7 +237,7 @@ void SimulationThread::beginTiming(std::int64_t now, bool real_time) {
 void SimulationThread::endTiming() {
   if (!publishers_.hasTimingListener()) return;
   timing_.header.stamp = toRosTime(simulation_.now());
-  timing_.published = toRosTime(node::wallTime());
+  timing_.published = toRosTime(ros_utils::wallTime());
   setWork(simulation_.simulation().report(), timing_);
   publishers_.stepTiming(timing_);
 }

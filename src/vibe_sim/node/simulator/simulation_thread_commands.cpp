@@ -5,7 +5,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
-#include "vibe_node/wall_clock.hpp"
+#include "vibe_ros_utils/wall_clock.hpp"
 
 // The commands of SimulationThread: what other threads ask for, and how the stepping thread does it between two steps.
 
@@ -81,7 +81,7 @@ Reply SimulationThread::changePause(bool paused) {
   if (status_.paused == paused) return {true, paused ? "It is paused already." : "It is running already."};
   status_.paused = paused;
   hold_ = Hold::None;  // whoever resumes gives the inputs the full time to come
-  if (!paused) pace_.restart(node::wallTime());
+  if (!paused) pace_.restart(ros_utils::wallTime());
   publishers_.procedureState(simulation_, status_);
   return {true, (paused ? "Paused at " : "Running from ") + seconds(simulation_.state().time) + "."};
 }
@@ -98,7 +98,7 @@ Reply SimulationThread::takeSteps(std::uint32_t n) {
       steps_asked_ = steps_left_ = n;
       steps_answer_ = answer;
       hold_ = Hold::None;
-      pace_.restart(node::wallTime());
+      pace_.restart(ros_utils::wallTime());
     }
   });
 }
@@ -122,7 +122,7 @@ Reply SimulationThread::reset(std::uint64_t seed, bool keep_time) {
 void SimulationThread::afterReplacement() {
   interpreter_.endMoves();
   status_.scope_moves = status_.suturing_device_moves = false;
-  pace_.restart(node::wallTime());
+  pace_.restart(ros_utils::wallTime());
   publishers_.announceRun(simulation_);
   publishers_.wholeState(simulation_, status_);
 }
@@ -168,7 +168,7 @@ Reply SimulationThread::loadScene(const std::string& address) {
     publishers_.announceModel(simulation_);
     afterReplacement();
     simulation_.warmUp();
-    pace_.restart(node::wallTime());
+    pace_.restart(ros_utils::wallTime());
     return {true, "Simulating '" + made.model->scene.name + "' with " + std::to_string(made.model->particle_count) +
                       " particles."};
   });

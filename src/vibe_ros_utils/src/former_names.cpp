@@ -1,4 +1,4 @@
-#include "vibe_node/former_names.hpp"
+#include "vibe_ros_utils/former_names.hpp"
 
 #include <ros/console.h>
 
@@ -11,7 +11,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::node {
+namespace vibe::ros_utils {
 namespace {
 
 struct Renamed {
@@ -139,4 +139,4 @@ void refuseFormerRemappings(const ros::NodeHandle& handle) {
         throw Error("The remapping of " + former + " has a former name; remap " + present + ".");
 }
 
-}  // namespace vibe::node
+}  // namespace vibe::ros_utils

@@ -1,4 +1,4 @@
-#include "vibe_node/parameter_reader.hpp"
+#include "vibe_ros_utils/parameter_reader.hpp"
 
 #include <ros/console.h>
 
@@ -10,7 +10,7 @@
 #include "vibe_core/scene/words.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
-namespace vibe::node {
+namespace vibe::ros_utils {
 
 using XmlRpc::XmlRpcValue;
 
@@ -85,4 +85,4 @@ void ParameterReader::tell() const {
   ROS_INFO_STREAM("Parameters in " << handle_.getNamespace() << ": " << given.str() << ".");
 }
 
-}  // namespace vibe::node
+}  // namespace vibe::ros_utils

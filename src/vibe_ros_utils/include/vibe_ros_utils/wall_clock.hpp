@@ -3,11 +3,11 @@
 
 #include <cstdint>
 
-namespace vibe::node {
+namespace vibe::ros_utils {
 
 /// The wall clock [ns].
 inline std::int64_t wallTime() {
   return static_cast<std::int64_t>(ros::WallTime::now().toNSec());
 }
 
-}  // namespace vibe::node
+}  // namespace vibe::ros_utils

@@ -1,8 +1,8 @@
-#include "vibe_node/mesh_address.hpp"
+#include "vibe_ros_utils/mesh_address.hpp"
 
 #include <ros/package.h>
 
-namespace vibe::node {
+namespace vibe::ros_utils {
 
 std::string fileOf(const std::string& address) {
   const std::string package = "package://", file = "file://";
@@ -13,4 +13,4 @@ std::string fileOf(const std::string& address) {
   return ros::package::getPath(rest.substr(0, slash)) + (slash == std::string::npos ? "" : rest.substr(slash));
 }
 
-}  // namespace vibe::node
+}  // namespace vibe::ros_utils

@@ -10,7 +10,7 @@
 // Names that topics had in the release before. They keep working in this one, and whoever uses one is told the present
 // name once. With the next release this file and its uses go.
 
-namespace vibe::node {
+namespace vibe::ros_utils {
 
 /// The former name of a topic that a simulator or tracker publishes; empty: it had no other.
 std::string formerOutput(const std::string& present);
@@ -54,4 +54,4 @@ ros::Publisher advertiseFormer(ros::NodeHandle& handle, const std::string& prese
   return handle.advertise<M>(former, queue, warn, ros::SubscriberStatusCallback(), ros::VoidConstPtr(), latch);
 }
 
-}  // namespace vibe::node
+}  // namespace vibe::ros_utils

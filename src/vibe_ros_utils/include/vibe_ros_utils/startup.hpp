@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe::node {
+namespace vibe::ros_utils {
 
 /// What is wrong with the folder for logs that ros::init() makes, and the remedy, as one sentence; empty: nothing.
 [[nodiscard]] std::string logFolderFault();
@@ -52,4 +52,4 @@ bool asksForHelp(int argc, const char* const* argv);
 /// @return one sentence for each that is not permitted
 [[nodiscard]] std::vector<std::string> runInRealTime(int priority);
 
-}  // namespace vibe::node
+}  // namespace vibe::ros_utils

@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-namespace vibe::node {
+namespace vibe::ros_utils {
 
 /// Reads the private parameters of a node one by one, and then rejects the ones that were not read: a
 /// misspelt parameter must not silently leave a default in force.
@@ -40,4 +40,4 @@ class ParameterReader {
   [[noreturn]] void failType(const std::string& name, const std::string& expected) const;
 };
 
-}  // namespace vibe::node
+}  // namespace vibe::ros_utils

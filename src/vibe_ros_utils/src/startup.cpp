@@ -1,4 +1,4 @@
-#include "vibe_node/startup.hpp"
+#include "vibe_ros_utils/startup.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -19,9 +19,9 @@
 #include <sys/resource.h>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_node/former_names.hpp"
+#include "vibe_ros_utils/former_names.hpp"
 
-namespace vibe::node {
+namespace vibe::ros_utils {
 namespace {
 
 volatile std::sig_atomic_t noted_signal = 0;
@@ -136,4 +136,4 @@ std::vector<std::string> runInRealTime(int priority) {
   return refusals;
 }
 
-}  // namespace vibe::node
+}  // namespace vibe::ros_utils
