@@ -5,6 +5,7 @@
 #include <exception>
 #include <functional>
 #include <optional>
+#include <set>
 #include <thread>
 
 #include "arrays.hpp"
@@ -38,6 +39,8 @@ void inThreads(int count, int threads, const std::function<void(int)>& body) {
 
 /// The right to use all of them.
 std::vector<std::unique_ptr<Use>> useAll(const Handles& handles) {
+  if (std::set<std::shared_ptr<SimulationHandle>>(handles.begin(), handles.end()).size() < handles.size())
+    throw Error("'simulations' holds one simulation twice; give each once.");
   std::vector<std::unique_ptr<Use>> uses;
   for (const auto& handle : handles) uses.push_back(std::make_unique<Use>(*handle));
   return uses;

@@ -3,6 +3,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "ray_caster.hpp"
+#include "shading.hpp"
 #include "tool.hpp"
 
 namespace vibe::python {
@@ -11,52 +12,76 @@ namespace {
 
 constexpr int kMaxPixels = 4096;  // per side
 
-py::dict camera(SimulationHandle& handle, int width, int height, double field_of_view, bool normals) {
+void checkLens(int width, int height, double field_of_view) {
   if (width < 1 || height < 1 || width > kMaxPixels || height > kMaxPixels)
     throw Error("'width' or 'height' is not from 1 to 4096; give the pixels of the image.");
   if (!(field_of_view > 0.01 && field_of_view < 3.1))
     throw Error("'field_of_view' is not from 0.01 to 3.1; give the angle from the left to the right edge [rad].");
+}
+
+/// A new array (height, width, 3) if it is wanted, else nothing.
+template <class T>
+py::array_t<T> inColour(int width, int height, bool wanted) {
+  return py::array_t<T>(wanted ? std::vector<py::ssize_t>{height, width, 3} : std::vector<py::ssize_t>{0});
+}
+
+void findLabels(const Organ& organ, const CastImage& image, std::uint8_t* labels) {
+  for (int i = 0; i < image.width * image.height; ++i) {
+    const int seen = image.triangle[i];
+    const auto corner = seen < 0 ? 0 : static_cast<std::size_t>(organ.surface.triangles[seen][0]);
+    labels[i] = seen < 0 ? std::uint8_t{0} : static_cast<std::uint8_t>(1 + static_cast<int>(organ.region[corner]));
+  }
+}
+
+/// @param colour  null: not wanted
+void look(const Use& use, double field_of_view, CastImage& image, std::uint8_t* labels, std::uint8_t* colour) {
+  const Model& model = use.model();
+  const State& state = use.state();
+  const SurfaceView surface{model.organ.surface.triangles, state.x, state.y, state.z};
+  const Eigen::Isometry3d pose = linkPose(model, state, model.tool->linkIndex("scope_camera_optical"));
+  castRays(surface, pose, field_of_view, image);
+  findLabels(model.organ, image, labels);
+  if (colour != nullptr) shade(surface, wallAlbedo(model, state), pose, field_of_view, image, colour);
+}
+
+py::dict camera(SimulationHandle& handle, int width, int height, double field_of_view, bool normals, bool colour) {
+  checkLens(width, height, field_of_view);
   const Use use(handle);
   needTool(use.model());
-  const std::vector<py::ssize_t> shape{height, width};
-  py::array_t<float> depth(shape),
-      normal(normals ? std::vector<py::ssize_t>{height, width, 3} : std::vector<py::ssize_t>{0, 0, 3});
-  py::array_t<std::int32_t> triangle(shape);
-  py::array_t<std::uint8_t> label(shape);
-  const Organ& organ = use.model().organ;
-  const State& state = use.state();
+  py::array_t<float> depth({height, width}), normal = inColour<float>(width, height, normals);
+  py::array_t<std::int32_t> triangle({height, width});
+  py::array_t<std::uint8_t> label({height, width}), shaded = inColour<std::uint8_t>(width, height, colour);
   CastImage image{width, height, depth.mutable_data(), triangle.mutable_data(),
                   normals ? normal.mutable_data() : nullptr};
   std::uint8_t* const labels = label.mutable_data();
+  std::uint8_t* const colours = colour ? shaded.mutable_data() : nullptr;
   {
     const py::gil_scoped_release released;
-    const int link = use.model().tool->linkIndex("scope_camera_optical");
-    castRays({organ.surface.triangles, state.x, state.y, state.z}, linkPose(use.model(), state, link), field_of_view,
-             image);
-    for (int i = 0; i < width * height; ++i) {
-      const int seen = image.triangle[i];
-      const auto corner = seen < 0 ? 0 : static_cast<std::size_t>(organ.surface.triangles[seen][0]);
-      labels[i] = seen < 0 ? std::uint8_t{0} : static_cast<std::uint8_t>(1 + static_cast<int>(organ.region[corner]));
-    }
+    look(use, field_of_view, image, labels, colours);
   }
   py::dict found;
   found["depth"] = depth;
   found["label"] = label;
   found["triangle"] = triangle;
   if (normals) found["normal"] = normal;
+  if (colour) found["colour"] = shaded;
   return found;
 }
 
 }  // namespace
 
 void bindCamera(SimulationClass& simulation) {
-  simulation.def("camera", &camera, py::arg("width") = 128, py::arg("height") = 128, py::arg("field_of_view") = 1.7,
-                 py::arg("normals") = false,
-                 "What a pinhole camera at the endoscope's lens sees of the wall, by exact rays and without a display; "
-                 "the tool itself is not in the picture. field_of_view: from the left to the right edge [rad]. A "
-                 "dictionary of arrays (height, width): depth float32 along the optical axis [m], NaN: nothing; label "
-                 "uint8: 0 nothing, else 1 + region (1 cardia, 2 fundus, 3 body, 4 antrum, 5 pylorus); triangle int32, "
-                 "-1: nothing; on request normal (height, width, 3) float32 in the camera, towards it.");
+  simulation.def(
+      "camera", &camera, py::arg("width") = 128, py::arg("height") = 128, py::arg("field_of_view") = 1.7,
+      py::arg("normals") = false, py::arg("colour") = false,
+      "What a pinhole camera at the endoscope's lens sees of the wall, by exact rays and without a display; "
+      "the tool itself is not in the picture. field_of_view: from the left to the right edge [rad]. A "
+      "dictionary of arrays (height, width): depth float32 along the optical axis [m], NaN: nothing; label "
+      "uint8: 0 nothing, else 1 + region (1 cardia, 2 fundus, 3 body, 4 antrum, 5 pylorus); triangle int32, "
+      "-1: nothing; on request normal (height, width, 3) float32 in the camera, towards it; and colour "
+      "(height, width, 3) uint8: red, green, blue of a matt wall that a lamp at the lens lights, 0: nothing. "
+      "The colour is 255 sqrt(r / (1 + r)), r = albedo cos(angle of incidence) (0.03 m / distance)^2; it is "
+      "not the look of rviz.");
 }
 
 }  // namespace vibe::python

@@ -93,6 +93,10 @@ void bindModel(py::module_& module) {
   py::class_<ModelHandle> model(
       module, "Model", "Everything that is constant during a simulation. Shared between simulations and threads.");
   model
+      .def("__reduce__",
+           [](const py::object&) -> py::object {
+             throw py::type_error("A Model cannot be pickled or copied; call vibe.load() again in the other process.");
+           })
       .def(py::init([](const py::args&, const py::kwargs&) -> ModelHandle {
              throw Error("A Model is not made directly; call vibe.load().");
            }),

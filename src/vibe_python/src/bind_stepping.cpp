@@ -45,7 +45,7 @@ void repeat(const Step& step) {
 
 std::vector<Event> step(SimulationHandle& handle, const py::kwargs& keywords) {
   const Use use(handle);
-  const StepInput input = changedInput(use->simulation.input(), keywords);
+  const StepInput input = changedInput(use->simulation.input(), keywords, use.model().particle_count);
   use->events.clear();
   {
     const py::gil_scoped_release released;
@@ -57,7 +57,7 @@ std::vector<Event> step(SimulationHandle& handle, const py::kwargs& keywords) {
 std::vector<Event> run(SimulationHandle& handle, std::int64_t steps, const py::kwargs& keywords) {
   if (steps < 0) throw Error("'steps' is negative; give how many steps are to be taken.");
   const Use use(handle);
-  const StepInput input = changedInput(use->simulation.input(), keywords);
+  const StepInput input = changedInput(use->simulation.input(), keywords, use.model().particle_count);
   use->events.clear();
   repeat([&] {
     if (steps-- <= 0) return false;
@@ -110,6 +110,12 @@ void bindLife(SimulationClass& simulation) {
           "Begins at the initial state. seed: instead of the scene's; threads: inside a step, results do not depend on "
           "them; metrics=False: measures() stays empty; impedance=False: impedance() stays None, which saves time and "
           "memory, and hash(), which covers its past, differs once the tool has touched something.")
+      .def("__reduce__",
+           [](const py::object&) -> py::object {
+             throw py::type_error(
+                 "A Simulation cannot be pickled or copied; pickle its snapshot(), and restore() that in "
+                 "another Simulation of the same scene.");
+           })
       .def("close", &SimulationHandle::close, "Ends it; views stay valid. Whatever uses it later raises vibe.Error.")
       .def("__enter__", [](const py::object& self) { return self; })
       .def("__exit__", [](SimulationHandle& s, const py::args&) { s.close(); })
@@ -162,7 +168,9 @@ void bindSnapshots(SimulationClass& simulation) {
            "first step after restore() takes long to make, too (a megabyte with 1,000 particles), with the same "
            "results.")
       .def("restore", &restore, py::arg("snapshot"),
-           "Back to a state; views show it. Raises vibe.Error if it is of another model.")
+           "Back to a state; views show it. The input then holds the joints where they are, and no button but "
+           "helix_grab and "
+           "cinch, if they were pressed. Raises vibe.Error if it is of another model.")
       .def("reset", &reset, py::arg("seed") = py::none(), "Back to the initial state.")
       .def(
           "save", [](SimulationHandle& s, const std::string& file) { Use(s)->simulation.saveSnapshot(file); },

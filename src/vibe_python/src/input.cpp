@@ -45,15 +45,16 @@ void setButtons(const py::handle& value, StepInput& input) {
   }
 }
 
-void setPull(const py::handle& value, StepInput& input) {
+void setPull(const py::handle& value, int particles, StepInput& input) {
   input.pull_particle = -1;
   if (value.is_none()) return;
   if (!py::isinstance<py::sequence>(value) || py::len(value) != 2)
     throw Error("'pull' is not a pair; give (particle, target) with the target in metres, or None.");
   const auto pair = py::reinterpret_borrow<py::sequence>(value);
   const double particle = number(pair[0], "pull[0]");
-  if (particle < 0 || particle > 1e9 || particle != static_cast<int>(particle))
-    throw Error("'pull[0]' is not the number of a particle; give a whole number from 0.");
+  if (particle < 0 || particle >= particles || particle != static_cast<int>(particle))
+    throw Error("'pull[0]' is not the number of a particle; give a whole number from 0 to " +
+                std::to_string(particles - 1) + ".");
   input.pull_particle = static_cast<int>(particle);
   input.pull_target = vector3(pair[1], "pull[1]");
 }
@@ -67,7 +68,7 @@ std::string allWords() {
 
 }  // namespace
 
-StepInput changedInput(StepInput input, const py::kwargs& keywords) {
+StepInput changedInput(StepInput input, const py::kwargs& keywords, int particles) {
   for (const auto& [key, value] : keywords) {
     const std::string word = py::cast<std::string>(key);
     const int joint = indexOf(kJointNames, word), button = indexOf(kButtonNames, word);
@@ -80,7 +81,7 @@ StepInput changedInput(StepInput input, const py::kwargs& keywords) {
     else if (word == "buttons")
       setButtons(value, input);
     else if (word == "pull")
-      setPull(value, input);
+      setPull(value, particles, input);
     else
       throw Error("There is no input '" + word + "'; use one of " + allWords() + ".");
   }

@@ -6,8 +6,9 @@
 namespace vibe::python {
 
 /// The input that keywords make of another one: joints and buttons by their names, or `joints`, `buttons` and `pull`.
+/// @param particles  how many the model has, of which one can be pulled
 /// @throws Error for a word that is none of them, and for a value of a wrong shape or that is not finite
-StepInput changedInput(StepInput input, const pybind11::kwargs& keywords);
+StepInput changedInput(StepInput input, const pybind11::kwargs& keywords, int particles);
 
 /// As a dictionary that step() takes as keywords.
 pybind11::dict asKeywords(const StepInput& input);

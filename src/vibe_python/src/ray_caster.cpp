@@ -12,11 +12,6 @@ namespace {
 constexpr double kNear = 1e-6;      // what is nearer along the optical axis is not seen [m]
 constexpr double kRounding = 1e-6;  // of the edge of a triangle in the picture [pixels]
 
-struct Lens {
-  double focal;  // [pixels]
-  double centre_x, centre_y;
-};
-
 /// The pixels that a triangle may cover.
 struct Window {
   int left = 0, right = 0, top = 0, bottom = 0;  // the last ones do not belong to it
@@ -48,7 +43,6 @@ Corner cornerAt(const Eigen::Vector3d& place, const Lens& lens) {
 Window windowOf(const Corner& a, const Corner& b, const Corner& c, const CastImage& image) {
   if (((a.beyond | b.beyond | c.beyond) & kBehind) != 0) return {0, image.width, 0, image.height};
   const Eigen::Array2d low = a.pixel.min(b.pixel).min(c.pixel), high = a.pixel.max(b.pixel).max(c.pixel);
-  // pixel k is seen through its middle, k + 0.5
   const auto first = [](double edge, int size) {
     return static_cast<int>(std::clamp(std::ceil(edge - 0.5 - kRounding), 0.0, static_cast<double>(size)));
   };
@@ -112,8 +106,14 @@ void findNormals(const SurfaceView& surface, const std::vector<Corner>& corner, 
 
 }  // namespace
 
+// Rounded to 40 binary places, because the last bit of the tangent depends on the version of the C library.
+Lens::Lens(int width, int height, double field_of_view)
+    : focal(width / (2 * std::nearbyint(std::tan(field_of_view / 2) * 0x1p40) * 0x1p-40)),
+      centre_x(width / 2.0),
+      centre_y(height / 2.0) {}
+
 void castRays(const SurfaceView& surface, const Eigen::Isometry3d& camera, double field_of_view, CastImage& image) {
-  const Lens lens{image.width / (2 * std::tan(field_of_view / 2)), image.width / 2.0, image.height / 2.0};
+  const Lens lens(image.width, image.height, field_of_view);
   const Eigen::Isometry3d to_camera = camera.inverse();
   std::vector<Corner> corner(surface.x.size());
   for (std::size_t i = 0; i < corner.size(); ++i)

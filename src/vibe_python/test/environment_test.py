@@ -12,6 +12,10 @@ import numpy as np
 import vibe
 from vibe.env import BREATHING, TASKS, Environment, Expert, VectorEnvironment, api, demonstrations, organs
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../scripts"))
+import random_actions  # noqa: E402
+import rough_use  # noqa: E402
+
 CHECK = """
 import warnings
 import numpy as np
@@ -120,6 +124,20 @@ class EnvironmentTest(unittest.TestCase):
                       for seed in range(20)}
             self.assertGreater(len(phases), 4)
 
+    def test_longer_steps_are_fewer_and_move_the_wall_alike(self):
+        goals = {}
+        for period, steps in ((None, 3), (1 / 60, 3), (1 / 20, 1)):
+            environment = Environment("Reach", step_period=period, **SMALL)
+            environment.reset(seed=4)
+            begin = environment.simulation.steps
+            goals[period] = np.array([environment.step(action)[0]["goal"] for action in self.actions(environment, 1, 10)])
+            self.assertEqual(environment.simulation.steps - begin, 10 * steps)
+        np.testing.assert_array_equal(goals[None], goals[1 / 60])
+        np.testing.assert_allclose(goals[None], goals[1 / 20], atol=1e-3)
+        for wrong in (0.03, 0.1, 0, -0.05, float("nan"), "fast"):
+            with self.assertRaisesRegex(vibe.Error, "'step_period' is .*whole part of an action of 1/20 s"):
+                Environment("Reach", step_period=wrong)
+
     def test_autoreset(self):
         class Short(TASKS["Reach"]):
             seconds = 0.1
@@ -143,12 +161,21 @@ class EnvironmentTest(unittest.TestCase):
             environment.close()
 
     def test_random_actions_give_finite_numbers(self):
-        sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../scripts"))
-        import random_actions
-
         with mock.patch.object(random_actions, "ORGANS", SMALL["organs"]):
-            self.assertEqual(random_actions.one_round(0, 300, 40), (5 * 2 * 40, []))
+            self.assertEqual(random_actions.one_round(0, 300, 40), (4 * 40 + 4 * 2 * 40, []))
         self.assertEqual(random_actions.faults("seen", {"a": np.ones(3), "b": np.array([1, np.nan])}), ["seen.b"])  # control
+        self.assertAlmostEqual(random_actions.growth([3, 4, 5], [7, 8, 9]), 2)
+
+    def test_rough_use(self):
+        class Forgetful:  # control
+            restore = staticmethod(lambda snapshot: None)
+            __getattr__ = staticmethod(lambda name: getattr(environment.simulation, name))
+
+        environment, random = Environment("Reach", **SMALL), np.random.default_rng(1)
+        environment.reset(seed=1)
+        for use in (rough_use.snapshots, rough_use.views, rough_use.two_threads, rough_use.threads, rough_use.fork):
+            self.assertEqual(use(environment.simulation, random), [], use.__name__)
+        self.assertEqual(rough_use.snapshots(Forgetful(), random), ["snapshots have different futures"])
 
     def test_experts_reach(self):
         for mode in ("joints", "tip"):
@@ -189,13 +216,17 @@ class EnvironmentTest(unittest.TestCase):
             with self.assertRaisesRegex(vibe.Error, sentence):
                 call()
         environment.reset(seed=1)
-        for sentence, action in ((r"shape \(1, 3\)", np.zeros(3)), ("not finite", still + np.nan)):
+        for sentence, action in ((r"shape \(1, 3\)", np.zeros(3)), ("not finite", still + np.nan),
+                                 ("The action is .*numbers from -1 to 1", still + 1j), ("The action is", ["0"] * 4)):
             with self.assertRaisesRegex(vibe.Error, sentence):
                 environment.step(action)
-        environment.close()
-        for call in (lambda: environment.step(still), environment.reset):
-            with self.assertRaisesRegex(vibe.Error, "is closed"):
-                call()
+        together = VectorEnvironment("Reach", 2, threads=1, **SMALL)
+        together.reset(seed=1)
+        for one, action in ((environment, still), (together, np.zeros((2, 4)))):
+            one.close()
+            for call in (lambda one=one, action=action: one.step(action), one.reset):
+                with self.assertRaisesRegex(vibe.Error, "is closed"):
+                    call()
 
     def test_the_checker_of_gymnasium(self):
         """With the package that is installed, or that of Debian where apt has it, unpacked for the test only."""

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The module vibe: the bits of the programs in C++, arrays, snapshots, forces, pictures, and what is refused."""
+import copy
 import gc
 import os
 import pickle
@@ -174,28 +175,6 @@ class ToolTest(Worlds):
         found = self.model.inverse_kinematics(pose[:3, 3], pose[:3, 0], np.array([0.08, 0, 0, 0, 0, 0, 0]))
         np.testing.assert_allclose(self.model.forward_kinematics(found)[:3, 3], pose[:3, 3], atol=1e-4)
 
-    def test_pictures_are_those_of_every_ray_against_every_triangle(self):
-        simulation = self.simulation()
-        simulation.run(60, insertion=0.08)
-        size, angle = 24, 1.7
-        picture = simulation.camera(size, size, angle, normals=True)
-        pose = simulation.link_pose("scope_camera_optical")
-        corner = (simulation.positions - pose[:3, 3]) @ pose[:3, :3]
-        a, b, c = np.swapaxes(corner[self.model.triangles], 0, 1)
-        focal = size / (2 * np.tan(angle / 2))
-        for v, u in [(0, 0), (3, 17), (12, 12), (23, 5), (20, 20)]:
-            ray = np.array([(u + 0.5 - size / 2) / focal, (v + 0.5 - size / 2) / focal, 1])
-            h = np.cross(ray, c - a)
-            det = np.einsum("ij,ij->i", b - a, h)
-            q = np.cross(-a, b - a)
-            s, t = np.einsum("ij,ij->i", -a, h) / det, q @ ray / det
-            depth = np.einsum("ij,ij->i", c - a, q) / det
-            depth[(s < 0) | (t < 0) | (s + t > 1) | (depth <= 0)] = np.inf
-            self.assertAlmostEqual(picture["depth"][v, u], depth.min(), delta=1e-7)
-            self.assertEqual(picture["triangle"][v, u], depth.argmin())
-            self.assertLess(picture["normal"][v, u] @ (ray * depth.min()), 0)
-        self.assertTrue(set(np.unique(picture["label"])) <= set(range(6)))
-
 
 class ProcedureTest(Worlds):
     def test_measures_have_units(self):
@@ -233,6 +212,8 @@ class RefusalTest(Worlds):
         self.refused("'insertion' is not a number", simulation.step, insertion="deep")
         self.refused("is a button", simulation.step, insufflate=2)
         self.refused("'pull' is not a pair", simulation.step, pull=(1, 2, 3))
+        self.refused("whole number from 0 to 299", simulation.step, pull=(300, (0, 0, 0)))
+        self.refused("holds one simulation twice", vibe.observe_all, [simulation, simulation])
         self.refused("'steps' is negative", simulation.run, -1)
         self.assertEqual(simulation.hash(), hashed)
 
@@ -263,6 +244,12 @@ class RefusalTest(Worlds):
         runner.join()
         self.assertIn("in use by another thread", sentences.pop())
         self.assertEqual(simulation.steps, 1000)
+
+    def test_what_cannot_be_pickled_says_what_can(self):
+        for thing, remedy in ((self.simulation(), "pickle its snapshot"), (self.model, "call vibe.load")):
+            for copied in (pickle.dumps, copy.copy):
+                with self.assertRaisesRegex(TypeError, remedy):
+                    copied(thing)
 
     def test_a_trainee_of_another_model(self):
         trainee = vibe.Trainee(self.model, "name: short\ngoals:\n  - insufflate\n")

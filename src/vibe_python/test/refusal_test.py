@@ -136,7 +136,8 @@ class SweepTest(unittest.TestCase):
 
     def test_environments(self):
         settings = {"task": "Reach", "particles": 300, "organs": SMALL["organs"], "action": "tip", "threads": 1,
-                    "camera": None, "render_mode": None, "count": 1, "autoreset": "disabled", "breathing": None}
+                    "camera": None, "render_mode": None, "count": 1, "autoreset": "disabled", "breathing": None,
+                    "pictures": ["depth"], "step_period": 0.05}
         for name in settings:
             for value in WRONG:
                 for kind in (Environment, VectorEnvironment):

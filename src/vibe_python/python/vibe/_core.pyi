@@ -141,8 +141,8 @@ class Simulation:
     @property
     def burn_grade(self) -> ndarray:
         """View (particles,) uint8: 0 none, then mark, burn, deep burn; (0,) without marking."""
-    def camera(self, width: int = 128, height: int = 128, field_of_view: float = 1.7, normals: bool = False) -> dict:
-        """What a pinhole camera at the endoscope's lens sees of the wall, by exact rays and without a display; the tool itself is not in the picture. field_of_view: from the left to the right edge [rad]. A dictionary of arrays (height, width): depth float32 along the optical axis [m], NaN: nothing; label uint8: 0 nothing, else 1 + region (1 cardia, 2 fundus, 3 body, 4 antrum, 5 pylorus); triangle int32, -1: nothing; on request normal (height, width, 3) float32 in the camera, towards it."""
+    def camera(self, width: int = 128, height: int = 128, field_of_view: float = 1.7, normals: bool = False, colour: bool = False) -> dict:
+        """What a pinhole camera at the endoscope's lens sees of the wall, by exact rays and without a display; the tool itself is not in the picture. field_of_view: from the left to the right edge [rad]. A dictionary of arrays (height, width): depth float32 along the optical axis [m], NaN: nothing; label uint8: 0 nothing, else 1 + region (1 cardia, 2 fundus, 3 body, 4 antrum, 5 pylorus); triangle int32, -1: nothing; on request normal (height, width, 3) float32 in the camera, towards it; and colour (height, width, 3) uint8: red, green, blue of a matt wall that a lamp at the lens lights, 0: nothing. The colour is 255 sqrt(r / (1 + r)), r = albedo cos(angle of incidence) (0.03 m / distance)^2; it is not the look of rviz."""
     def close(self) -> None:
         """Ends it; views stay valid. Whatever uses it later raises vibe.Error."""
     @property
@@ -199,7 +199,7 @@ class Simulation:
     def reset(self, seed: Optional[int] = None) -> None:
         """Back to the initial state."""
     def restore(self, snapshot: Snapshot) -> None:
-        """Back to a state; views show it. Raises vibe.Error if it is of another model."""
+        """Back to a state; views show it. The input then holds the joints where they are, and no button but helix_grab and cinch, if they were pressed. Raises vibe.Error if it is of another model."""
     def run(self, steps: int, **kwargs: Any) -> list[Event]:
         """Some steps with one input.
 

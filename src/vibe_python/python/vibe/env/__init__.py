@@ -8,8 +8,8 @@
 
 Tasks: Reach, Inspect, Mark, Bite, SutureSet. Observation, a dictionary of float32: joints (7,) [m], [rad]; tip (3,) [m]
 and direction (3,) of the view, in world; wrench (6,) on the tool in its own axes [N], [N m]; goal (3,) in world and
-to_goal (3,) in the axes of the tip [m]; wall (48, 3), places of the wall [m]; on request depth and label. Action: shares
-from -1 to 1 of the joint speeds, and buttons. What is rewarded: the docstring of each task.
+to_goal (3,) in the axes of the tip [m]; wall (48, 3), places of the wall [m]; on request depth, label, normal and colour
+of a camera. Action: shares from -1 to 1 of the joint speeds, and buttons. What is rewarded: the docstring of each task.
 """
 
 from . import api

@@ -25,7 +25,12 @@ class Environment(api.Env):
     organs     (shape, scale) of the stomachs that reset() draws from, uniformly; vibe.env.TRAINING, vibe.env.HELD_OUT
     action     'joints': shares of the greatest joint speeds, then the buttons; 'tip': of the tip's velocity (Reach,
                Inspect)
-    camera     (width, height, field of view [rad]): adds depth and label to the observation
+    camera     (width, height, field of view [rad]): adds pictures to the observation, (height, width) each, 0 where
+               nothing is seen
+    pictures   which: of 'depth' float32 [m], 'label' uint8, 'normal' (.., 3) float32 and 'colour' (.., 3) uint8, as
+               vibe.Simulation.camera() has them; depth and label by default
+    step_period  simulated time per step [s], a whole part of that of an action; None: 1/60. Longer steps are faster and
+               less accurate (docs/python.md)
     breathing  None (still), 'slight', 'moderate' or 'strong': the diaphragm moves the stomach (vibe.env.BREATHING)
 
     reset(seed) draws stomach, start and goal; the same seed gives the same episode, to the bit. Steps after an episode

@@ -14,6 +14,9 @@ SUCCESS = 10.0  # reward of an episode that succeeds
 FORCE_FREE = 2.0  # force on the tool that costs nothing [N]; twice the mean of the first session of the README
 GOALS = 64  # per start, drawn once
 WALL_POINTS = 48  # places of the wall that an observation holds
+#: pictures that an observation may hold: channels, type, least and greatest value
+PICTURES = {"depth": ((), np.float32, 0, np.inf), "label": ((), np.uint8, 0, 5), "normal": ((3,), np.float32, -1, 1),
+            "colour": ((3,), np.uint8, 0, 255)}
 
 
 def whole(name, value, least, most):
@@ -26,9 +29,12 @@ def whole(name, value, least, most):
 def numbers(action):
     """An action as an array of float, or vibe.Error."""
     try:
-        return np.asarray(action, float)
+        given = np.asarray(action)
+        if given.dtype.kind in "biuf":
+            return given.astype(float)
     except (TypeError, ValueError, OverflowError):
-        raise vibe.Error(f"The action is {vibe._shown(action)}; give an array of numbers from -1 to 1.") from None
+        pass
+    raise vibe.Error(f"The action is {vibe._shown(action)}; give an array of numbers from -1 to 1.")
 
 
 def _number(value):
@@ -54,6 +60,14 @@ def _camera(camera):
     return whole("camera[0]", camera[0], 1, 4096), whole("camera[1]", camera[1], 1, 4096), float(camera[2])
 
 
+def _pictures(pictures):
+    """Which pictures the camera gives, as a tuple of names."""
+    names = tuple(pictures) if isinstance(pictures, (list, tuple)) else ()
+    if not names or not all(isinstance(name, str) and name in PICTURES for name in names) or len(set(names)) < len(names):
+        raise vibe.Error(f"'pictures' is {vibe._shown(pictures)}; give a list of some of {', '.join(PICTURES)}, each once.")
+    return names
+
+
 class Task:
     """What an environment asks for. Subclasses say which actions there are, what is observed besides, what is rewarded
     and when an episode ends; an instance holds the episodes of `count` slots as arrays with a row per slot."""
@@ -65,7 +79,7 @@ class Task:
     along, around = (0.3, 0.72), (-1.2, 1.2)  #: uniform distribution of the goal: axis [1], angle around it [rad]
 
     def __init__(self, count=1, *, particles=1000, organs=_organs.TRAINING, action="joints", threads=1, camera=None,
-                 breathing=None):
+                 pictures=("depth", "label"), breathing=None, step_period=None):
         if not isinstance(action, str) or action not in ("joints", "tip"):
             raise vibe.Error(f"'action' is {vibe._shown(action)}; use 'joints' or 'tip'.")
         if breathing is not None and (not isinstance(breathing, str) or breathing not in _organs.BREATHING):
@@ -75,18 +89,27 @@ class Task:
         self.count, self.particles = whole("count", count, 1, 65536), whole("particles", particles, 100, 1000000)
         self.organs, self.breathing = _pairs(organs), breathing
         self.mode, self.threads, self.camera = action, whole("threads", threads, 1, 1024), _camera(camera)
+        self.pictures, self.step_period = _pictures(pictures), self._period(step_period)
         self.simulation = [None] * count
         self.organ = [None] * count
         self.random = [np.random.default_rng(k) for k in range(count)]
-        self.goal_triangle = np.zeros((count, 1), int)
-        self.goal_weight = np.full((count, 1, 3), 1 / 3)
-        self.wall_triangle = np.zeros((count, WALL_POINTS), int)
-        self.wall_weight = np.full((count, WALL_POINTS, 3), 1 / 3)
+        self.triangle = np.zeros((count, 1 + WALL_POINTS))  # of the goal, then of other places of the wall
+        self.weight = np.full((count, 1 + WALL_POINTS, 3), 1 / 3)
         self.seen = None
         self.time = np.zeros(count)
         self.events = [[] for _ in range(count)]
         self.best_force = np.zeros(count)
         self.closed = False
+
+    def _period(self, period):
+        """Simulated time per step [s], of which a whole number makes up an action; None: the scene's."""
+        if period is None:
+            return None
+        steps = 1 / (self.rate * period) if _number(period) and 1e-4 <= period <= 0.1 else 0
+        if round(steps) < 1 or abs(steps - round(steps)) > 1e-6:
+            raise vibe.Error(f"'step_period' is {vibe._shown(period)}; give a whole part of an action of 1/{self.rate} s, such as "
+                             f"{1 / self.rate:.5g}, or None.")
+        return float(period)
 
     # --- spaces
 
@@ -107,9 +130,9 @@ class Task:
             "to_goal": box(3), "wall": box(WALL_POINTS, 3),
         }
         if self.camera:
-            height, width = self.camera[1], self.camera[0]
-            parts["depth"] = box(height, width, low=0.0)
-            parts["label"] = box(height, width, low=0, high=5, dtype=np.uint8)
+            for name in self.pictures:
+                channels, dtype, low, high = PICTURES[name]
+                parts[name] = box(self.camera[1], self.camera[0], *channels, low=low, high=high, dtype=dtype)
         parts.update({name: box(*shape) for name, shape in self.further.items()})
         return spaces.Dict(parts)
 
@@ -122,7 +145,7 @@ class Task:
         self._check_open()
         self.random[slot] = random
         drawn = self.organs[random.integers(len(self.organs))]
-        organ = _organs.organ(*drawn, self.particles, self.breathing)
+        organ = _organs.organ(*drawn, self.particles, self.breathing, self.step_period)
         if self.organ[slot] is not organ:
             if self.simulation[slot] is not None:
                 self.organ[slot].give(self.simulation[slot])
@@ -132,7 +155,7 @@ class Task:
         self.simulation[slot].restore(phases[random.integers(len(phases)) if self.breathing else 0])
         self._set_goal(slot, organ, start, int(random.integers(GOALS)))
         triangles = len(organ.model.triangles)
-        self.wall_triangle[slot] = (np.arange(WALL_POINTS) * triangles) // WALL_POINTS
+        self.triangle[slot, 1:] = (np.arange(WALL_POINTS) * triangles) // WALL_POINTS
         self.time[slot] = 0
         self.best_force[slot] = 0
         self.events[slot] = []
@@ -144,7 +167,7 @@ class Task:
         key = (type(self), self.along, self.around, start, number)
         if key not in organ.goals:
             organ.goals[key] = self._draw_goal(organ, self.simulation[slot].joints, [21, start, number])
-        place, self.goal_triangle[slot, 0], self.goal_weight[slot, 0] = organ.goals[key]
+        place, self.triangle[slot, 0], self.weight[slot, 0] = organ.goals[key]
         self.place = getattr(self, "place", [None] * self.count)
         self.place[slot] = place
 
@@ -178,7 +201,7 @@ class Task:
             raise vibe.Error("The action holds a value that is not finite; give numbers from -1 to 1.")
         if any(simulation is None for simulation in self.simulation):
             raise vibe.Error("The environment has not begun; call reset() first.")
-        actions = np.clip(actions, -1, 1)
+        actions = np.minimum(np.maximum(actions, -1), 1)
         before = self.current()
         joints = before["joints"].copy()
         joints[:, : len(self.speeds)] += self._speed(actions) * (self.speeds / self.rate)
@@ -215,12 +238,13 @@ class Task:
     # --- what is seen
 
     def look(self):
-        """Of every slot: joints, tip, direction, turn, wrench, goal; world, SI."""
+        """Of every slot: joints, tip, direction, turn, wrench, goal, wall; world, SI."""
         found = vibe.observe_all(self.simulation)
         pose = found["tip_pose"]
-        goal = vibe.wall_points(self.simulation, self.goal_triangle, self.goal_weight)[:, 0]
+        place = vibe.wall_points(self.simulation, self.triangle, self.weight)
         return {"joints": found["joints"], "tip": pose[:, :3, 3], "turn": pose[:, :3, :3],
-                "direction": pose[:, :3, 0], "wrench": found["wrench"], "goal": goal, "grips": found["grips"]}
+                "direction": pose[:, :3, 0], "wrench": found["wrench"], "goal": place[:, 0], "wall": place[:, 1:],
+                "grips": found["grips"]}
 
     def current(self):
         """What look() says of the present; looked up once."""
@@ -230,15 +254,14 @@ class Task:
     def observe(self):
         """The observation of every slot, as float32."""
         seen = self.current()
-        parts = {name: seen[name] for name in ("joints", "tip", "direction", "wrench", "goal")}
+        parts = {name: seen[name] for name in ("joints", "tip", "direction", "wrench", "goal", "wall")}
         parts["to_goal"] = np.einsum("nij,ni->nj", seen["turn"], seen["goal"] - seen["tip"])
-        parts["wall"] = vibe.wall_points(self.simulation, self.wall_triangle, self.wall_weight)
         parts.update(self.observe_further(seen))
         parts = {name: np.asarray(value, np.float32) for name, value in parts.items()}
         if self.camera:
-            pictures = [simulation.camera(*self.camera) for simulation in self.simulation]
-            parts["depth"] = np.nan_to_num(np.stack([p["depth"] for p in pictures]), nan=0.0)
-            parts["label"] = np.stack([p["label"] for p in pictures])
+            seen = [simulation.camera(*self.camera, normals="normal" in self.pictures, colour="colour" in self.pictures)
+                    for simulation in self.simulation]
+            parts.update({name: np.nan_to_num(np.stack([one[name] for one in seen]), nan=0.0) for name in self.pictures})
         return parts
 
     def observe_further(self, seen):

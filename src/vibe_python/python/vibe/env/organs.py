@@ -28,10 +28,10 @@ class Organ:
     """One stomach: its model, the states that episodes begin with (by place of the scope and phase of the breath), and
     simulations that are free at present."""
 
-    def __init__(self, shape, scale, particles, breathing):
+    def __init__(self, shape, scale, particles, breathing, step_period):
         self.name = f"{shape} {scale:g}" + (f", {breathing} breathing" if breathing else "")
         self._breath = None
-        sections = {}
+        sections = {} if step_period is None else {"step_period": step_period}
         if breathing:
             rate, amplitude = BREATHING[breathing]
             self._breath = 1 / rate  # [s]
@@ -97,5 +97,5 @@ class Organ:
 
 
 @functools.lru_cache(maxsize=None)
-def organ(shape, scale, particles, breathing=None):
-    return Organ(shape, scale, particles, breathing)
+def organ(shape, scale, particles, breathing=None, step_period=None):
+    return Organ(shape, scale, particles, breathing, step_period)

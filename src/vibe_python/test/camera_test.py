@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+"""What the endoscope's lens sees: rays, colours by the stated formula, and the pictures of environments."""
+import threading
+import unittest
+
+import numpy as np
+
+import vibe
+from vibe.env import Environment, VectorEnvironment
+
+SMALL = {"particles": 300, "organs": [("sthenic", 1.0)]}
+ANGLE = 1.7
+
+
+def rays(size):
+    """Through the middle of every pixel, in the camera, of depth 1: (size, size, 3)."""
+    focal = size / (2 * np.tan(ANGLE / 2))
+    row, column = np.mgrid[0:size, 0:size] + 0.5
+    return np.stack([(column - size / 2) / focal, (row - size / 2) / focal, np.ones_like(row)], -1)
+
+
+def albedo(simulation, size, power=2):
+    """By triangle with at least ten pixels: distance [m], and albedo of red that follows from the picture if light falls
+    with a power of the distance."""
+    picture, pose = simulation.camera(size, size, ANGLE, colour=True), simulation.link_pose("scope_camera_optical")
+    place = picture["depth"][..., None].astype(float) * rays(size) @ pose[:3, :3].T
+    corner = simulation.model.triangles[picture["triangle"]]
+    weight = np.linalg.solve((simulation.positions[corner] - pose[:3, 3]).swapaxes(2, 3), place[..., None])[..., 0]
+    normal = np.einsum("ijk,ijkl->ijl", weight, simulation.normals[corner])
+    distance = np.linalg.norm(place, axis=-1)
+    cosine = np.abs(np.einsum("ijk,ijk->ij", normal, place)) / distance / np.linalg.norm(normal, axis=-1)
+    share = (picture["colour"][..., 0] / 255.0) ** 2
+    found = share / (1 - share) / cosine * (distance / 0.03) ** power
+    seen, count = np.unique(picture["triangle"], return_counts=True)
+    masks = {t: picture["triangle"] == t for t in seen[count >= 10]}
+    return {t: (distance[mask].mean(), found[mask].mean()) for t, mask in masks.items()}
+
+
+class CameraTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        model = vibe.load(geometry={"particles": 300}, render_surface=False)
+        cls.simulation = vibe.Simulation(model)
+        cls.simulation.run(240, insertion=0.05, insufflate=True)
+
+    def test_pictures_are_those_of_every_ray_against_every_triangle(self):
+        simulation = self.simulation
+        size = 24
+        picture = simulation.camera(size, size, ANGLE, normals=True)
+        pose = simulation.link_pose("scope_camera_optical")
+        corner = (simulation.positions - pose[:3, 3]) @ pose[:3, :3]
+        a, b, c = np.swapaxes(corner[simulation.model.triangles], 0, 1)
+        for v, u in [(0, 0), (3, 17), (12, 12), (23, 5), (20, 20)]:
+            ray = rays(size)[v, u]
+            h = np.cross(ray, c - a)
+            det = np.einsum("ij,ij->i", b - a, h)
+            q = np.cross(-a, b - a)
+            s, t = np.einsum("ij,ij->i", -a, h) / det, q @ ray / det
+            depth = np.einsum("ij,ij->i", c - a, q) / det
+            depth[(s < 0) | (t < 0) | (s + t > 1) | (depth <= 0)] = np.inf
+            self.assertAlmostEqual(picture["depth"][v, u], depth.min(), delta=1e-7)
+            self.assertEqual(picture["triangle"][v, u], depth.argmin())
+            self.assertLess(picture["normal"][v, u] @ (ray * depth.min()), 0)
+        self.assertTrue(set(np.unique(picture["label"])) <= set(range(6)))
+
+    def test_light_falls_with_the_square_of_the_distance(self):
+        """The lens comes nearer, and the albedo of every triangle stays; not so with another law."""
+        near = vibe.Simulation(self.simulation.model)
+        near.restore(self.simulation.snapshot())
+        near.run(60, insertion=0.09)
+        for power in (2, 1):
+            before, after = albedo(self.simulation, 96, power), albedo(near, 96, power)
+            common = [t for t in before if t in after and after[t][0] < 0.8 * before[t][0]]
+            self.assertGreater(len(common), 20)
+            change = np.array([after[t][1] / before[t][1] for t in common])
+            if power == 2:
+                self.assertLess(np.quantile(abs(change - 1), 0.9), 0.04)  # of some a part is hidden
+                self.assertLess(np.median(abs(change - 1)), 0.01)
+                self.assertTrue(all(0.4 < found < 1 for _, found in before.values()))
+            else:
+                self.assertGreater(np.median(change), 1.2)
+
+    def test_colours_are_the_same_on_any_thread_and_marks_are_pale(self):
+        colour = self.simulation.camera(40, 30, colour=True)["colour"]
+        self.assertEqual((colour.shape, colour.dtype), ((30, 40, 3), np.uint8))
+        self.assertTrue(np.all(colour[..., 0] > colour[..., 2]))
+        others, simulations = [], [vibe.Simulation(self.simulation.model, threads=2) for _ in range(3)]
+        for simulation in simulations:
+            simulation.restore(self.simulation.snapshot())
+        workers = [threading.Thread(target=lambda s=s: others.append(s.camera(40, 30, colour=True)["colour"]))
+                   for s in simulations]
+        for worker in workers:
+            worker.start()
+        for worker in workers:
+            worker.join()
+        for other in others:
+            np.testing.assert_array_equal(other, colour)
+        self.assertEqual(len(others), 3)
+        simulation = simulations[0]
+        simulation.follow(vibe.Trainee(simulation.model, "name: m\nskill: {like: expert}\ngoals:\n  - mark: {along: 0.45, around: 0 rad}\n"))
+        picture, marked = simulation.camera(64, 64, colour=True), simulation.burn_grade > 0
+        pale = marked[simulation.model.triangles].all(1)[picture["triangle"]]
+        self.assertGreater(pale.sum(), 0)
+        share = picture["colour"][..., 2] / picture["colour"][..., 0]
+        self.assertGreater(share[pale].min(), share[~marked[simulation.model.triangles].any(1)[picture["triangle"]]].max())
+
+    def test_environments_give_the_pictures_that_are_asked_for(self):
+        pictures = ["colour", "normal", "label", "depth"]
+        seen = {}
+        for environment in (Environment("Reach", camera=(12, 8, ANGLE), pictures=pictures, **SMALL),
+                            VectorEnvironment("Reach", 2, camera=(12, 8, ANGLE), pictures=pictures, **SMALL)):
+            found, _ = environment.reset(seed=1)
+            self.assertTrue(environment.observation_space.contains(found))
+            seen[type(environment)] = found
+        for name in pictures:
+            np.testing.assert_array_equal(seen[Environment][name], seen[VectorEnvironment][name][0])
+        self.assertEqual((seen[Environment]["colour"].shape, seen[Environment]["colour"].dtype), ((8, 12, 3), np.uint8))
+        only = Environment("Reach", camera=(12, 8, ANGLE), pictures=["colour"], **SMALL)
+        self.assertNotIn("depth", only.reset(seed=1)[0])
+        with self.assertRaisesRegex(vibe.Error, "'pictures' is .'smell'.*depth, label, normal, colour"):
+            Environment("Reach", camera=(12, 8, ANGLE), pictures=["smell"])
+
+
+if __name__ == "__main__":
+    unittest.main()
