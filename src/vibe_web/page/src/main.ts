@@ -11,7 +11,8 @@ import { Stream } from './stream';
 const kRate = 60; // frames asked for [Hz]
 const options = new URLSearchParams(location.hash.slice(1));
 
-const pattern = fetch('pattern').then((answer) => answer.arrayBuffer()); // the largest part: asked for first
+const askPattern = () => fetch('pattern').then((answer) => (answer.ok ? answer.arrayBuffer() : null), () => null);
+const pattern = askPattern(); // the largest part is asked for first; a server that has just begun may not have it yet
 const canvas = element<HTMLCanvasElement>('canvas');
 const stage = new Stage(canvas, Number(options.get('size') ?? 0));
 const stream = new Stream(options.get('token') ?? '', Number(options.get('rate') ?? kRate), (open, text) => {
@@ -37,7 +38,9 @@ async function takeScene(text: SceneText) {
   panel.showKeys(text.keys);
   headset = new Headset(stage, drive, text.lens);
   element('headset').hidden = !((await navigator.xr?.isSessionSupported('immersive-vr').catch(() => false)) ?? false);
-  stage.organ.setPattern(new Uint8Array(await pattern), text.pattern.size);
+  const bytes = (await pattern) ?? (await askPattern());
+  if (!bytes) return panel.status('The server does not give the look of the mucosa; load this page again.');
+  stage.organ.setPattern(new Uint8Array(bytes), text.pattern.size);
   complete = true;
   stage.dirty = true;
 }

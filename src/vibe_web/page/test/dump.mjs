@@ -9,7 +9,7 @@ const [port, chromium, size] = process.argv.slice(2);
 const browser = await launch(chromium);
 const page = await browser.newPage();
 await page.setViewport({ width: 300, height: 300 });
-await page.goto(`http://localhost:${port}/#size=${size}&view=endoscope`);
+await page.goto(`http://localhost:${port}/#size=${size}&view=endoscope&rate=2`);
 console.log('ready');
 for await (const file of createInterface({ input: process.stdin })) {
   await until(() => page.evaluate(() => window.vibe.stage.organ.mucosa.uniforms.pattern.value !== null), 'the pattern');
