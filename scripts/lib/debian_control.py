@@ -3,7 +3,7 @@
 needed at run time, and vibe-dev with what compilers read of all of them.
 
 Dependencies are those of the package.xml files, translated by scripts/apt_packages.txt. Debian packages whose name ends in
--dev are dependencies of vibe-dev alone: the libraries in them are found by dpkg-shlibdeps.
+-dev are dependencies of vibe-dev alone: the libraries in them are found by dpkg-shlibdeps. So are those of COMPILERS_ONLY.
 
 Usage: debian_control.py WORKSPACE SYSTEM VERSION DATE MAINTAINER FOLDER BUILD_DEPENDENCY...
   SYSTEM is the code name of the Debian, DATE in seconds since 1970, FOLDER the debian/ to be made.
@@ -20,6 +20,9 @@ from catkin_pkg.package import parse_package
 DEVELOPMENT = "vibe-dev"
 DEVELOPMENT_ONLY = {"vibe_cmake", "vibe_testing"}
 UNPACKAGED = {"vibe_system_tests"}  # they test the workspace
+# Python modules beside a library that is used in C++, and macros of CMake: they bring headers of all of ROS and Boost
+COMPILERS_ONLY = {"python3-cv-bridge", "python3-tf2-ros", "ros-message-runtime"}
+SHOWN_BY = {"vibe_description"}  # what shows it is recommended: the simulator without ROS reads it, too
 EXPORTED = ("build_export_depends", "buildtool_export_depends", "exec_depends")  # <depend> is all three
 
 
@@ -51,23 +54,30 @@ class Dependencies:
         return own | {name for key in keys - self.own for name in self.table[key]}
 
 
-def paragraph(name, depends, title, text):
-    return "Package: {}\nArchitecture: any\nDepends: {}\nDescription: {}\n{}\n".format(
-        name, ",\n ".join(sorted(depends)), title, textwrap.fill(text, 78, initial_indent=" ", subsequent_indent=" "))
+def paragraph(name, depends, title, text, recommends=()):
+    fields = "".join("{}: {}\n".format(field, ",\n ".join(sorted(names)))
+                     for field, names in (("Depends", depends), ("Recommends", recommends)) if names)
+    return "Package: {}\nArchitecture: any\n{}Description: {}\n{}\n".format(
+        name, fields, title, textwrap.fill(text, 78, initial_indent=" ", subsequent_indent=" "))
+
+
+def is_for_compilers(name):
+    return name.endswith("-dev") or name in COMPILERS_ONLY
 
 
 def runtime_paragraph(package, dependencies):
-    depends = {name for name in dependencies.of(package, ["exec_depends"]) if not name.endswith("-dev")}
-    depends |= {"${{{}:Depends}}".format(kind) for kind in ("misc", "python3", "scripts", "shlibs")}
+    needed = {name for name in dependencies.of(package, ["exec_depends"]) if not is_for_compilers(name)}
+    generated = {"${{{}:Depends}}".format(kind) for kind in ("misc", "python3", "scripts", "shlibs")}
+    depends, recommends = (generated, needed) if package.name in SHOWN_BY else (generated | needed, ())
     return paragraph(debian_name(package.name), depends, "endoscopic suturing simulated: " + package.name,
-                     package.description)
+                     package.description, recommends)
 
 
 def development_paragraph(packages, dependencies):
     needed = set()
     for package in packages:
         alone = package.name in DEVELOPMENT_ONLY
-        needed |= {name for name in dependencies.of(package, EXPORTED) if alone or name.endswith("-dev")}
+        needed |= {name for name in dependencies.of(package, EXPORTED) if alone or is_for_compilers(name)}
         if not alone:
             needed.add("{} (= ${{binary:Version}})".format(debian_name(package.name)))
     needed = {name for name in needed if not name.startswith(DEVELOPMENT)}
