@@ -26,7 +26,8 @@ namespace {
 
 constexpr std::uint32_t kQueue = 2;  // a state that is not the newest is of no use
 constexpr std::uint32_t kEventQueue = 1000;
-constexpr int kSlowTicks = 2;  // of tick(): folds, heat and thread five times a second
+constexpr int kSlowTicks = 2;  // of tick(): heat and thread five times a second
+constexpr int kFoldTicks = 4;  // the stretch of the wall, on which folds depend, changes slowly
 const char* const kBase = "scope_base";
 
 PageFile pageFile(const std::string& type, std::string content) {
@@ -189,7 +190,8 @@ void SessionStream::publishSutures() {
 
 void SessionStream::publishWall() {
   if (!organ_ || !has_frame_ || server_.clients() == 0) return;
-  if (auto folds = organ_->look.folds(frame_)) server_.publish(Kind::Folds, std::move(*folds));
+  if (ticks_ % kFoldTicks == 0)
+    if (auto folds = organ_->look.folds(frame_)) server_.publish(Kind::Folds, std::move(*folds));
   if (auto heat = organ_->look.heat(frame_)) server_.publish(Kind::Heat, std::move(*heat));
   if (!sutures_ || (sutures_->bleedings.empty() && organ_->bleeding.shape().triangles.empty())) return;
   organ_->surface.update(frame_.positions);

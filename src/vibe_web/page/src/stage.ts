@@ -13,7 +13,7 @@ import { smoke } from './shaders';
 import { SutureView } from './sutures';
 
 const kSizes = [720, 480, 320, 240]; // of the endoscope's picture: a larger one where drawing is quick, a smaller one where it takes too long [px]
-const kFirstSize = 320; // the first picture is soon there
+const kFirstSize = 240; // the first picture is soon there
 const kQuick = 15, kTooLong = 60; // [ms]
 const kPatience = 20; // pictures before one of another size
 const kArrow = 0.02; // length of a newton [m]
