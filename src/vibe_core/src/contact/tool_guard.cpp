@@ -95,9 +95,8 @@ void ToolGuard::findPairs(ToolPoses& poses, const ToolMotion& motion, const Surf
 
 bool ToolGuard::isFree(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path) {
   findPairs(poses, motion, path);
-  return std::all_of(pairs_.begin(), pairs_.end(), [&](const NearTriangles::Pair& pair) {
-    return isDrawnIn(pair) || freePart(pair, path) >= 1;
-  });
+  return std::all_of(pairs_.begin(), pairs_.end(),
+                     [&](const NearTriangles::Pair& pair) { return isDrawnIn(pair) || freePart(pair, path) >= 1; });
 }
 
 double ToolGuard::freePart(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path) {

@@ -53,8 +53,7 @@ void ConstraintSchur::addThreadRows(const ThreadRows& thread) {
 // Of equations and of contacts that count.
 void ConstraintSchur::findNodes(const ConstraintRows& rows) {
   nodes_.clear();
-  for (const EquationRow& row : rows.equations)
-    nodes_.insert(nodes_.end(), row.form.node.begin(), row.form.node.end());
+  for (const EquationRow& row : rows.equations) nodes_.insert(nodes_.end(), row.form.node.begin(), row.form.node.end());
   for (const ContactRows& contact : rows.contacts)
     if (contact.counts) nodes_.insert(nodes_.end(), contact.form[0].node.begin(), contact.form[0].node.end());
   std::sort(nodes_.begin(), nodes_.end());
