@@ -29,8 +29,9 @@ class Environment(api.Env):
                nothing is seen
     pictures   which: of 'depth' float32 [m], 'label' uint8, 'normal' (.., 3) float32 and 'colour' (.., 3) uint8, as
                vibe.Simulation.camera() has them; depth and label by default
-    step_period  simulated time per step [s], a whole part of that of an action; None: 1/60. Longer steps are faster and
-               less accurate (docs/python.md)
+    step_period
+               simulated time per step [s], a whole part of that of an action; None: 1/60. Longer steps are faster and less
+               accurate (docs/python.md)
     breathing  None (still), 'slight', 'moderate' or 'strong': the diaphragm moves the stomach (vibe.env.BREATHING)
 
     reset(seed) draws stomach, start and goal; the same seed gives the same episode, to the bit. Steps after an episode
@@ -41,7 +42,8 @@ class Environment(api.Env):
 
     def __init__(self, task="Reach", *, render_mode=None, **settings):
         if render_mode is not None:
-            raise vibe.Error("The environment draws no pictures; leave render_mode out, or observe camera=(64, 64, 1.7).")
+            raise vibe.Error("The environment draws no pictures; leave render_mode out, or observe "
+                             "camera=(64, 64, 1.7), pictures=['colour'].")
         self.render_mode = None
         self.task = task_of(task)(1, **settings)
         self.observation_space, self.action_space = self.task.observation_space, self.task.action_space
