@@ -71,7 +71,7 @@ TEST(ColumnCache, TheOrderDoesNotChangeTheBits) {
 
 TEST(ColumnCache, ForgetsWhatHasChangedAndKeepsTheRest) {
   System system;
-  system.cache.prepare(*system.factor, {9}, kPoints);
+  system.cache.prepare(*system.factor, {5, 9}, kPoints);
   const int kept = system.cache.attachmentSlot(0);
   RowList<AttachmentPoint> changed = kPoints;
   changed[1] = {{31}, {1}};
@@ -81,9 +81,12 @@ TEST(ColumnCache, ForgetsWhatHasChangedAndKeepsTheRest) {
   const int slot = system.cache.nodeSlot(*system.factor, 9);
   EXPECT_LT((system.gram(system.cache.attachmentSlot(1), slot) - expected).norm(), kTolerance * expected.norm());
   std::vector<int> many(1000);
-  std::iota(many.begin(), many.end(), 50);
+  std::iota(many.begin(), many.end(), 9);
+  const int unneeded = system.cache.nodeSlot(*system.factor, 5);
   system.cache.makeRoom(many);
+  EXPECT_EQ(system.cache.nodeSlot(*system.factor, 9), slot) << "what is needed next stays";
   const int again = system.cache.nodeSlot(*system.factor, 50);
+  EXPECT_EQ(again, unneeded) << "its slot is free";
   const Eigen::Matrix3f fresh = system.compliance(changed[1], {{50}, {1}});
   EXPECT_LT((system.gram(system.cache.attachmentSlot(1), again) - fresh).norm(), kTolerance * fresh.norm());
   EXPECT_LT(system.cache.key(again), system.cache.key(kept)) << "nodes come before attachment points";
