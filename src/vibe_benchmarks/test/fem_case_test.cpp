@@ -74,8 +74,8 @@ TEST(FemCase, refusesWhatCannotBeRun) {
 
 TEST(FemCase, refusesBrokenMeshFiles) {
   const std::string folder = ::testing::TempDir();
-  std::ofstream(folder + "vibe_ros_utilss.txt") << "0 0 0\n1 0 0\n0 1 0\n0 0 x\n";
-  EXPECT_ERROR(readNodes(folder + "vibe_ros_utilss.txt"), "vibe_ros_utilss.txt:4:");
+  std::ofstream(folder + "vibe_nodes.txt") << "0 0 0\n1 0 0\n0 1 0\n0 0 x\n";
+  EXPECT_ERROR(readNodes(folder + "vibe_nodes.txt"), "vibe_nodes.txt:4:");
   std::ofstream(folder + "vibe_tets.txt") << "0 1 2 3\n0 1 2 4\n";
   EXPECT_ERROR(readElements(folder + "vibe_tets.txt", 4, 4), "vibe_tets.txt:2: '4' is no node");
   std::ofstream(folder + "vibe_sets.txt") << "clamped: 0 1\nclamped: 2\n";
