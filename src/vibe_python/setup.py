@@ -55,7 +55,7 @@ class BuildWithCMake(build_ext):
 
 setup(
     name="vibe-esg",
-    version="0.1.0",
+    version="1.0.0",
     description="A simulator of endoscopic sleeve gastroplasty as a Python module",
     license="BSD-3-Clause",
     python_requires=">=3.9",

@@ -42,7 +42,7 @@ from ._core import (
     wall_points,
 )
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 __all__ = [
     "BUTTONS", "JOINTS", "Anatomy", "Error", "Event", "InputSource", "Model", "Script", "Simulation", "Snapshot",
     "Trainee", "load", "measure_units", "observe_all", "recognise_technique", "step_all", "wall_points",
