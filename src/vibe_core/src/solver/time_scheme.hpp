@@ -57,7 +57,7 @@ void setStepTargets(const BodyLoads& loads, const MotionView& motion, const Time
                     const std::vector<StiffnessCoupling>& in_factor, StepperWorkspace& scratch);
 /// Contacts that count in a step at most. Design choice: three times what a press of 3 N by the scope touches; the time
 /// of a solution grows with the third power of the rows that act.
-constexpr std::size_t kMaxContacts = 64;
+constexpr std::size_t kMaxContacts = 128;
 /// Bounds the work of a step: the deepest contacts at the scratch's z keep their friction, further ones up to
 /// kMaxContacts only their normal, and the rest has no force. Needs the targets.
 void limitContacts(StepperWorkspace& scratch);

@@ -94,8 +94,8 @@ TEST(StepRows, TheDeepestContactsCountWhereThereAreTooMany) {
   setEquilibriumTargets(fixture.loads, scratch);
   for (int i = 0; i < kCount; ++i) {
     const int deeper = kCount - 1 - (7 * i) % kCount;
-    EXPECT_EQ(scratch.rows.contacts[i].friction, deeper < 32 ? first.friction : 0) << deeper;
-    EXPECT_EQ(scratch.rows.contacts[i].counts, deeper < 64) << deeper;
+    EXPECT_EQ(scratch.rows.contacts[i].friction, deeper < 64 ? first.friction : 0) << deeper;
+    EXPECT_EQ(scratch.rows.contacts[i].counts, deeper < 128) << deeper;
   }
   ASSERT_TRUE(factorAt(fixture.body, {}, 3600, 1, scratch.matrix, *scratch.factor));
   scratch.schur.reset(*scratch.factor);
