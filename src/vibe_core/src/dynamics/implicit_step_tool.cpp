@@ -67,7 +67,7 @@ ToolDisplacement ImplicitStep::expectedDisplacement() const {
 // while a tip is pushed aside ever faster: the pull of the last step lags behind.
 bool ImplicitStep::missesTool() const {
   if (context_.bend == nullptr || !report_.arrived || report_.fallback) return false;
-  if (scratch_.loads.contacts.size() > kMaxContacts) return false;  // no place is certain then
+  if (scratch_.loads.contacts.size() > kMaxContacts) return false;  // some have no force, so the miss is not known
   double miss = 0;
   for (const ContactConstraint& contact : scratch_.loads.contacts)
     if (!contact.force.isZero())
