@@ -81,37 +81,26 @@ Eigen::Vector3d rotationBetween(const Eigen::Vector3d& from, const Eigen::Vector
 
 }  // namespace
 
-InverseKinematics::InverseKinematics(const ToolModel& tool, const Eigen::Isometry3d& target)
-    : tool_(tool),
-      target_position_(target.translation()),
-      target_direction_(target.linear().col(0)),
-      tip_(tool.linkIndex("scope_tip")) {
-  for (int link = tip_; link != 0;) {
-    const int index = link - 1;  // joint k has child link k + 1
-    const ToolJoint& joint = tool.joints()[index];
-    if (joint.type != ToolJoint::Type::Fixed && joint.input < kFree) path_.push_back(index);
-    link = joint.parent_link;
-  }
-}
+InverseKinematics::InverseKinematics(const ToolModel& tool) : tool_(tool), chain_(tool) {}
 
 InverseKinematics::Residual InverseKinematics::residual(const Inputs& inputs) {
-  tool_.forwardKinematics(inputs, poses_);
-  const Eigen::Isometry3d& tip = poses_[tip_];
+  const Eigen::Isometry3d& tip = chain_.place(inputs);
   Residual r;
   r.head<3>() = target_position_ - tip.translation();
   r.tail<3>() = kDirectionWeight * rotationBetween(tip.linear().col(0), target_direction_);
   return r;
 }
 
-// derivative of the tip position and the (weighted) direction with respect to each input, at poses_; rotation about the
-// direction itself does not change it and is projected out
+// derivative of the tip position and the (weighted) direction with respect to each input, where the chain is; rotation
+// about the direction itself does not change it and is projected out
 InverseKinematics::Jacobian InverseKinematics::jacobian() const {
   Jacobian j = Jacobian::Zero();
-  const Eigen::Vector3d position = poses_[tip_].translation();
-  const Eigen::Vector3d direction = poses_[tip_].linear().col(0);
-  for (const int index : path_) {
-    const ToolJoint& joint = tool_.joints()[index];
-    const Eigen::Isometry3d& child = poses_[joint.child_link];
+  const Eigen::Vector3d position = chain_.tip().translation();
+  const Eigen::Vector3d direction = chain_.tip().linear().col(0);
+  for (int link = chain_.count() - 1; link >= 0; --link) {
+    const ToolJoint& joint = chain_.joint(link);
+    if (joint.type == ToolJoint::Type::Fixed || joint.station >= 0 || joint.input >= kFree) continue;
+    const Eigen::Isometry3d& child = chain_.pose(link);
     const Eigen::Vector3d axis =
         joint.multiplier * (child.linear() * joint.axis);  // the motion of a joint does not change its axis
     if (joint.type == ToolJoint::Type::Prismatic) {
@@ -162,7 +151,7 @@ InverseKinematics::Inputs InverseKinematics::descend(Inputs inputs, double& cost
       Step right = gradient;
       holdAtLimits(inputs, gradient, matrix, right);
       const Inputs trial = moved(inputs, matrix.ldlt().solve(right));
-      const Residual trial_residual = residual(trial);
+      const Residual trial_residual = trial == inputs ? r : residual(trial);
       better = trial_residual.squaredNorm() < cost;
       damping = better ? std::max(damping / 5, 1e-12) : damping * 4;
       if (!better) continue;
@@ -174,7 +163,9 @@ InverseKinematics::Inputs InverseKinematics::descend(Inputs inputs, double& cost
   return inputs;
 }
 
-InverseKinematics::Inputs InverseKinematics::solve(const Inputs& start) {
+InverseKinematics::Inputs InverseKinematics::solve(const Eigen::Isometry3d& target, const Inputs& start) {
+  target_position_ = target.translation();
+  target_direction_ = target.linear().col(0);
   double best_cost = 0;
   Inputs best = descend(start, best_cost);
   constexpr double kQuarter = 1.5707963267948966;

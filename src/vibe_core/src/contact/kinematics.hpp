@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "contact/tip_chain.hpp"
 #include "vibe_core/contact/tool_model.hpp"
 
 namespace vibe {
@@ -27,17 +28,19 @@ struct LinkageTurns {
 /// @return empty if the URDF has no such bars, or if arm and needle are not carried by the same link
 std::optional<LinkageTurns> needleLinkage(const ToolModel& tool, double driver);
 
-/// Damped least squares (Levenberg-Marquardt) for one target of the tip; see ToolModel::inverseKinematics.
+/// Damped least squares (Levenberg-Marquardt) for targets of the tip; see ToolModel::inverseKinematics.
 class InverseKinematics {
  public:
-  using Inputs = std::array<double, kJointCount>;
+  using Inputs = TipChain::Inputs;
 
-  InverseKinematics(const ToolModel& tool, const Eigen::Isometry3d& target);
+  /// @param tool  outlives this
+  explicit InverseKinematics(const ToolModel& tool);
 
   /// The solution found by descent from `start`. Only if it misses the target by more than a millimetre (or the
   /// equivalent in direction) are other turns and bends tried. One of these is chosen only if it at least halves the
   /// error, so that a tool that follows a moving target does not jump for a small gain.
-  Inputs solve(const Inputs& start);
+  /// @param target  pose of scope_tip in the root frame
+  Inputs solve(const Eigen::Isometry3d& target, const Inputs& start);
 
  private:
   static constexpr int kFree = kScopeJointCount;
@@ -53,11 +56,9 @@ class InverseKinematics {
                     Step& right) const;
 
   const ToolModel& tool_;
-  Eigen::Vector3d target_position_;
-  Eigen::Vector3d target_direction_;
-  int tip_;
-  std::vector<int> path_;                 // joints from the root to the tip that the first four inputs move
-  std::vector<Eigen::Isometry3d> poses_;  // of the inputs last given to residual()
+  TipChain chain_;  // at the inputs last given to residual()
+  Eigen::Vector3d target_position_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d target_direction_ = Eigen::Vector3d::UnitX();
 };
 
 }  // namespace vibe

@@ -112,7 +112,7 @@ void ToolModel::forwardKinematics(const std::array<double, kJointCount>& inputs,
 
 std::array<double, kJointCount> ToolModel::inverseKinematics(const Eigen::Isometry3d& target,
                                                              const std::array<double, kJointCount>& start) const {
-  return InverseKinematics(*this, target).solve(start);
+  return InverseKinematics(*this).solve(target, start);
 }
 
 }  // namespace vibe

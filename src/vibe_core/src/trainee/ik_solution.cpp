@@ -3,17 +3,20 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "common/elementary.hpp"
+#include "contact/kinematics.hpp"
+#include "contact/tip_chain.hpp"
 #include "vibe_core/common/rotation.hpp"
 
 namespace vibe {
 
 namespace {
 
-constexpr int kIkRounds = 10;  // of iteration: the tip turns with the joints, and the target point with it
-constexpr int kDirectedRounds =
-    5;  // of these, aiming the direction too; then the direction is kept, so that the point is reached
+// Of iteration, as the tip turns with the joints, and the target point with it: at first aiming the direction too; then
+// as often keeping the direction, so that the point is reached.
+constexpr int kIkRounds = 5;
 constexpr double kMissWeight = 1 / 2e-3;  // a miss of 2 mm costs as much as half a radian of turn
 constexpr double kTurnWeight = 2;
 constexpr double kMoveWeight = 0.15;  // per radian of joint motion: prefers solutions near the current position
@@ -26,30 +29,36 @@ constexpr double kSmall = 1e-5;    // of a difference quotient
 constexpr double kDamping = 1e-6;  // (1 mm per radian)^2
 constexpr double kMaxStep = 0.3;   // [rad]
 
-Eigen::Vector3d pointAt(const Model& model, const std::array<double, kJointCount>& joints,
-                        const Eigen::Vector3d& offset) {
-  std::vector<Eigen::Isometry3d> poses;
-  model.tool->forwardKinematics(joints, poses);
-  return model.tool_base * (poses[model.tip_link] * offset);
-}
+/// The scope of a model without loads, in the frame of its base.
+struct Scope {
+  explicit Scope(const Model& of) : model(of), to_base(of.tool_base.inverse()), chain(*of.tool), kinematics(*of.tool) {}
 
-IkSolution aimFrom(const Model& model, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
-                   const Eigen::Vector3d& offset, const std::array<double, kJointCount>& start) {
-  const ToolModel& tool = *model.tool;
-  const Eigen::Isometry3d to_base = model.tool_base.inverse();
-  std::vector<Eigen::Isometry3d> poses;
-  IkSolution aim{start};
-  for (int round = 0; round < kIkRounds; ++round) {
-    tool.forwardKinematics(aim.joints, poses);
-    Eigen::Isometry3d target = poses[model.tip_link];
-    const Eigen::Vector3d ahead = to_base.linear() * direction;
-    if (round < kDirectedRounds)
-      target.linear() = rotationBetween(target.linear().col(0), ahead).toRotationMatrix() * target.linear();
-    target.translation() = to_base * point - poses[model.tip_link].linear() * offset;
-    aim.joints = tool.inverseKinematics(target, aim.joints);
+  Eigen::Vector3d pointAt(const std::array<double, kJointCount>& joints, const Eigen::Vector3d& offset) {
+    return model.tool_base * (chain.place(joints) * offset);
   }
-  tool.forwardKinematics(aim.joints, poses);
-  const Eigen::Isometry3d tip = model.tool_base * poses[model.tip_link];
+
+  const Model& model;
+  const Eigen::Isometry3d to_base;
+  TipChain chain;
+  InverseKinematics kinematics;
+};
+
+// A round that moves no joint would be repeated by those that aim as it does.
+IkSolution aimFrom(Scope& scope, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
+                   const Eigen::Vector3d& offset, const std::array<double, kJointCount>& start) {
+  const Eigen::Vector3d ahead = scope.to_base.linear() * direction;
+  IkSolution aim{start};
+  for (const bool directed : {true, false})
+    for (int round = 0; round < kIkRounds; ++round) {
+      Eigen::Isometry3d target = scope.chain.place(aim.joints);
+      target.translation() = scope.to_base * point - target.linear() * offset;
+      if (directed)
+        target.linear() = rotationBetween(target.linear().col(0), ahead).toRotationMatrix() * target.linear();
+      const std::array<double, kJointCount> before =
+          std::exchange(aim.joints, scope.kinematics.solve(target, aim.joints));
+      if (aim.joints == before) break;
+    }
+  const Eigen::Isometry3d tip = scope.model.tool_base * scope.chain.place(aim.joints);
   aim.miss = (tip * offset - point).norm();
   aim.turn = math::acos(std::clamp(tip.linear().col(0).dot(direction), -1.0, 1.0));
   return aim;
@@ -65,6 +74,7 @@ double costOf(const IkSolution& aim, const std::array<double, kJointCount>& star
 
 IkSolution aimAt(const Model& model, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
                  const Eigen::Vector3d& offset, const std::array<double, kJointCount>& start) {
+  Scope scope(model);
   IkSolution best;
   double min = std::numeric_limits<double>::infinity();
   for (const double turn : {0.0, 0.7, -0.7, 1.5, -1.5})
@@ -72,7 +82,7 @@ IkSolution aimAt(const Model& model, const Eigen::Vector3d& point, const Eigen::
       std::array<double, kJointCount> from = start;
       from[Rotation] = std::clamp(from[Rotation] + turn, -3.1, 3.1);
       if (bend > 0) from[TipUpDown] = bend;
-      const IkSolution aim = aimFrom(model, point, direction, offset, from);
+      const IkSolution aim = aimFrom(scope, point, direction, offset, from);
       const double cost = costOf(aim, start);
       if (cost < min) min = cost, best = aim;
     }
@@ -81,14 +91,15 @@ IkSolution aimAt(const Model& model, const Eigen::Vector3d& point, const Eigen::
 
 IkSolution reachFor(const Model& model, const Eigen::Vector3d& point, const Eigen::Vector3d& offset,
                     const std::array<double, kJointCount>& start) {
+  Scope scope(model);
   IkSolution aim{start};
   for (int round = 0; round < kReachRounds; ++round) {
-    const Eigen::Vector3d now = pointAt(model, aim.joints, offset);
+    const Eigen::Vector3d now = scope.pointAt(aim.joints, offset);
     Eigen::Matrix<double, 3, kReaching> slope;  // of the point, per unit of comparable motion
     for (int j = 0; j < kReaching; ++j) {
       std::array<double, kJointCount> moved = aim.joints;
       moved[j] += kSmall * kComparable[j];
-      slope.col(j) = (pointAt(model, moved, offset) - now) / kSmall;
+      slope.col(j) = (scope.pointAt(moved, offset) - now) / kSmall;
     }
     const Eigen::Matrix3d square = slope * slope.transpose() + kDamping * Eigen::Matrix3d::Identity();
     const Eigen::Matrix<double, kReaching, 1> step = slope.transpose() * square.ldlt().solve(point - now);
@@ -98,7 +109,7 @@ IkSolution reachFor(const Model& model, const Eigen::Vector3d& point, const Eige
                                  limit.upper);
     }
   }
-  aim.miss = (pointAt(model, aim.joints, offset) - point).norm();
+  aim.miss = (scope.pointAt(aim.joints, offset) - point).norm();
   return aim;
 }
 

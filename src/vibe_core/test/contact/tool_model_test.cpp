@@ -7,6 +7,7 @@
 #include <new>
 #include <random>
 
+#include "contact/tip_chain.hpp"
 #include "contact/tool_motion.hpp"
 #include "vibe_testing/expect_error.hpp"
 #include "vibe_testing/scope_fixture.hpp"
@@ -50,6 +51,21 @@ Inputs randomInputs(const ToolModel& tool, std::mt19937& random) {
   for (int i = 0; i < kJointCount; ++i)
     inputs[i] = std::uniform_real_distribution<double>(tool.limits()[i].lower, tool.limits()[i].upper)(random);
   return inputs;
+}
+
+TEST(ToolModel, ChainToTheTipHasTheSameBits) {
+  const ToolModel tool = loadScope();
+  TipChain chain(tool);
+  std::mt19937 random(1);
+  for (int k = 0; k < 100; ++k) {
+    const Inputs inputs = randomInputs(tool, random);
+    std::vector<Isometry3d> poses;
+    tool.forwardKinematics(inputs, poses);
+    chain.place(inputs);
+    for (int link = 0; link < chain.count(); ++link)
+      EXPECT_EQ(chain.pose(link).matrix(), poses[chain.joint(link).child_link].matrix());
+  }
+  EXPECT_EQ(chain.joint(chain.count() - 1).child_link, tool.linkIndex("scope_tip"));
 }
 
 TEST(ToolModel, StraightScopeHasItsTipAtTheInsertion) {
