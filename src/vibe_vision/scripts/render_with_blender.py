@@ -14,6 +14,7 @@ Into the folder go frame_NNNNNN.png, frames.csv, truth.csv and config.yaml, in t
 Debian packages blender and poppler-utils; nothing else of the workspace does.
 """
 import argparse
+import ast
 import csv
 import math
 import os
@@ -32,7 +33,7 @@ DISTANCE = FOCAL / SCALE  # of the camera from both axes [mm]
 ANGLE = math.radians(0.5)  # of both axes in the image
 ROWS = {"helix": 180.3, "needle_driver": 300.6}  # where the axes pass the middle of the image [px]
 RADIUS, LENGTH, PAPER = 1.5, 10.0, 0.1  # of the sleeve, thickness of the paper [mm]
-SIDE = 7.0  # of the ring's square [mm]
+SIDE, OUTER = 7.0, 4.0  # of the ring's square, diameter of the ring [mm]
 TEXELS, FINER = 100, 8  # of a marker's texture per mm; pdftoppm moves edges to whole pixels, so it draws finer ones
 BLACK, WHITE = 0.05, 0.85  # reflectance of ink and paper
 GAIN, READ, OPTICS = 0.096, 0.6, 0.6  # [DN], [DN], [px]
@@ -43,11 +44,13 @@ FINE = 3  # parts of a pixel's side that are drawn one by one, so that the optic
 
 # Keys: speed [m/s] at the middle of the motion, turn [rad/s], exposure [s]; lambert: share of the light that comes from
 # the lamp and shades as matt paper does, the rest is even; light: angle of the lamp from the camera [deg], and around;
-# defocus: radius of the disc [px]; gamma of the response; white: of the brightest paper [DN].
+# defocus: radius of the disc [px]; gamma of the response; white: of the brightest paper [DN]; step: from one frame, at
+# rest, to the next [mm].
 STANDARD = dict(speed=0.5, turn=30.0, exposure=1e-3, lambert=0.0, light=(0, 0), defocus=0.0, gamma=1.0, white=200.0,
-                gloss=0.0, lamps=1, extra="", jpeg=0, bayer=False, row_time=0.0)
+                gloss=0.0, lamps=1, extra="", jpeg=0, bayer=False, row_time=0.0, step=0.0)
 SITUATIONS = {
     "rest": dict(speed=0.0, turn=0.0),
+    "stops": dict(speed=0.0, turn=0.0, lambert=1.0, step=3.0),
     "moving": {},
     "lambert35": dict(lambert=0.35),
     "lambert": dict(lambert=1.0),
@@ -78,9 +81,11 @@ def motion(settings, t):
     """Slides of helix and needle driver [mm], and rotation of the helix [rad], at a time [s]."""
     w = 2 * math.pi * 5.3
     speed, turn = settings["speed"] * 1e3 / w, settings["turn"] / w
-    rest = settings["speed"] == 0
-    return (speed * math.sin(w * t) + (3.137 if rest else 0.31), speed * math.sin(w * t + 1.1) + (-5.413 if rest else 0.2),
-            turn * math.sin(w * t + 0.6) + 0.4)
+    if settings["speed"] == 0:
+        k = round(t * RATE)
+        way = settings["step"] * (k - 6)
+        return 3.137 + way, -5.413 + way, 0.4 + (0.7 * k if settings["step"] else 0)
+    return (speed * math.sin(w * t) + 0.31, speed * math.sin(w * t + 1.1) + 0.2, turn * math.sin(w * t + 0.6) + 0.4)
 
 
 def place(name, slide):
@@ -149,7 +154,8 @@ def start_blender(options):
         result = subprocess.run(["blender", "-b", "--factory-startup", "-noaudio", "--python-exit-code", "1",
                                  "--python", os.path.abspath(__file__), "--", "--situation", options.situation,
                                  "--frames", str(options.frames), "--samples", str(options.samples), "--first",
-                                 str(options.first), "--out", os.path.abspath(options.out), "--work", work],
+                                 str(options.first), "--out", os.path.abspath(options.out), "--work", work,
+                                 *("--set=%s=%s" % pair for pair in options.set)],
                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     if result.returncode:
         sys.exit("Blender did not draw the situation; its last words: " + result.stdout[-2000:])
@@ -167,7 +173,8 @@ def score(folder):
         found = [k for k in keys if k in seen and seen[k]["tracked"] == "1"]
         slides = [(float(seen[k]["slide"]) - float(truth[k]["slide"]), float(seen[k]["slide_deviation"])) for k in found]
         right = [(e, d) for e, d in slides if abs(e) < 5e-4]
-        line = "%-14s found %d/%d wrong %d" % (name, len(right), len(keys), len(slides) - len(right))
+        silent = sum(1 for k, (e, _) in zip(found, slides) if abs(e) >= 5e-4 and not seen[k]["doubt"])
+        line = "%-14s found %d/%d wrong %d, without doubt %d" % (name, len(right), len(keys), len(slides) - len(right), silent)
         if right:
             mean = sum(e for e, _ in right) / len(right)
             rms = math.sqrt(sum(e * e for e, _ in right) / len(right))
@@ -334,20 +341,23 @@ class Rig:
         self.scene.collection.objects.link(thing)
         return thing
 
-    def tube(self, name, radius, begin, end, material, steps=512):
-        """Around x. The print's angle phi grows from the side of the camera to y down; its picture goes down with it."""
+    def tube(self, name, radius, begin, end, material, steps=512, askew=0.0):
+        """Around x. The print's angle phi grows from the side of the camera to y down; its picture goes down with it.
+        A sleeve that was glued askew [rad] has its ends further along on one side of the rod than on the other."""
         points, faces, texture = [], [], []
         for i in range(steps + 1):
             phi = math.pi * (2 * i / steps - 1)
             for k, x in enumerate((begin, end)):
-                points.append((x * CM, -radius * CM * math.sin(phi), radius * CM * math.cos(phi)))
+                points.append(((x + radius * math.tan(askew) * math.sin(phi)) * CM, -radius * CM * math.sin(phi),
+                               radius * CM * math.cos(phi)))
                 texture.append((k, 1 - i / steps))
         for i in range(steps):
             faces.append((2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1))
         return self.add_mesh(name, points, faces, texture, material)
 
     def add_sleeve(self):
-        return self.tube("helix", RADIUS, -LENGTH / 2, LENGTH / 2, self.material(self.image("helix")))
+        askew = math.radians(2) if self.settings["extra"] == "askew" else 0
+        return self.tube("helix", RADIUS, -LENGTH / 2, LENGTH / 2, self.material(self.image("helix")), askew=askew)
 
     def add_rods(self):
         metal = self.material(grey=0.25, gloss=0.8)
@@ -363,15 +373,15 @@ class Rig:
 
     def add_ring(self):
         steps, points, faces, texture = 48, [], [], []
-        bend = {"bent": 1 / 40.0, "curled": 1 / 150.0}.get(self.settings["extra"], 0.0)  # curvature [1/mm]
+        bend = {"bent": 1 / 10.0, "curled": 1 / 150.0}.get(self.settings["extra"], 1e-9)  # curvature [1/mm]
         for j in range(steps + 1):
             for i in range(steps + 1):
                 a, b = (i / steps - 0.5) * SIDE, (0.5 - j / steps) * SIDE
-                lift = -bend * a * a / 2  # glued on something round
+                lift = (math.cos(bend * a) - 1) / bend  # glued on something round
                 if self.settings["extra"] == "curled":
                     corner = max(0.0, (a + b) / SIDE - 0.2)
                     lift += 1.5 * corner * corner
-                points.append((a * CM, b * CM, lift * CM))
+                points.append((math.sin(bend * a) / bend * CM, b * CM, lift * CM))
                 texture.append((i / steps, 1 - j / steps))
         for j in range(steps):
             for i in range(steps):
@@ -380,7 +390,7 @@ class Rig:
         return self.add_mesh("needle_driver", points, faces, texture, self.material(self.image("needle_driver")))
 
     def add_finger(self):
-        """A round tip that covers a third of both markers when they are at slide 0."""
+        """A round tip that covers both axes from about slide 0 to 17 mm."""
         skin = self.material(grey=0.45, gloss=0.1)
         finger = self.tube("finger", 8, -60, 60, skin, 96)
         x, y, z = place("helix", 9.5)
@@ -390,8 +400,28 @@ class Rig:
     def put(self, thing, point, turn):
         x, y, z = point
         thing.location = (x * CM, -y * CM, (DISTANCE - z) * CM)
-        askew = math.radians(2) if self.settings["extra"] == "askew" and thing.name in ROWS else 0
-        thing.rotation_euler = (turn, 0, -ANGLE + askew)
+        thing.rotation_euler = (turn, 0, -ANGLE)
+
+    def visible(self, name, slide):
+        """Share of the marker's picture, of the ring that of its outer disc, that nothing covers where it is now."""
+        from mathutils import Vector
+        graph, camera = self.bpy.context.evaluated_depsgraph_get(), self.scene.camera.location
+        x, y, z = place(name, slide)
+        half, height = (LENGTH / 2, RADIUS) if name == "helix" else (OUTER / 2, OUTER / 2)
+        seen = points = 0
+        for i in range(40):
+            for j in range(40):
+                a, b = (2 * i + 1) / 40 - 1, (2 * j + 1) / 40 - 1
+                if name != "helix" and a * a + b * b > 1:
+                    continue
+                u, v, lift = a * half, b * height, RADIUS * math.sqrt(1 - b * b) if name == "helix" else 0
+                point = (x + u * math.cos(ANGLE) - v * math.sin(ANGLE), y + u * math.sin(ANGLE) + v * math.cos(ANGLE), z - lift)
+                column, row = pixel(point)
+                ray = Vector((point[0] * CM, -point[1] * CM, (DISTANCE - point[2]) * CM)) - camera
+                hit, _, _, _, thing, _ = self.scene.ray_cast(graph, camera, ray.normalized())
+                points += 1
+                seen += hit and thing.name == name and -0.5 < column < WIDTH - 0.5 and -0.5 < row < HEIGHT - 0.5
+        return seen / points
 
     def move(self, stamp):
         """Keys of the motion during the exposure; frame 1 of the scene is its middle."""
@@ -502,7 +532,7 @@ def draw_frame(rig, background, settings, k, stamp):
 
 
 def inside_blender(options):
-    settings = dict(STANDARD, **SITUATIONS[options.situation])
+    settings = {**STANDARD, **SITUATIONS[options.situation], **dict(options.set)}
     rig = Rig(settings, options.samples, options.work)
     for thing in rig.markers.values():
         thing.hide_render = True
@@ -526,13 +556,20 @@ def inside_blender(options):
             write_png(os.path.join(options.out, "frame_%06d.png" % k), grey.astype(np.uint8))
             frames.write("%d,%.9f,%g\n" % (k, stamp, settings["exposure"]))
             helix, needle, turn = motion(settings, stamp)
+            rig.move(stamp)
             for name, slide in (("helix", helix), ("needle_driver", needle)):
                 x, y = pixel(place(name, slide))
                 faces = math.atan2(*place(name, slide)[1:])  # the camera looks at the rod from this angle
-                covered = settings["extra"] == "fingers" and name == "helix" and slide > 6
-                truth.write("%d,%.9f,%s,%.9g,%.9g,%.9g,0,%.9g,%.9g,0,%g\n" %
+                truth.write("%d,%.9f,%s,%.9g,%.9g,%.9g,0,%.9g,%.9g,0,%.3f\n" %
                             (k, stamp, name, slide * 1e-3, turn + faces if name == "helix" else float("nan"), slide * SCALE, x, y,
-                             0.3 if covered else 1))
+                             rig.visible(name, slide)))
+
+
+def setting(text):
+    key, _, value = text.partition("=")
+    if key not in STANDARD:
+        raise argparse.ArgumentTypeError("'%s' is none of %s" % (key, ", ".join(STANDARD)))
+    return key, value if isinstance(STANDARD[key], str) else ast.literal_eval(value)
 
 
 def main():
@@ -540,6 +577,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--list", action="store_true", help="name the situations")
     parser.add_argument("--situation", choices=SITUATIONS, help="what to draw")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", type=setting,
+                        help="another value than the situation has, such as gamma=1.6")
     parser.add_argument("--frames", type=int, default=60)
     parser.add_argument("--first", type=int, default=0, help="number of the first frame")
     parser.add_argument("--samples", type=int, default=12, help="per ninth of a pixel; noise of the picture itself")

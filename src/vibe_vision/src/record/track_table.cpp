@@ -12,7 +12,7 @@ namespace {
 
 const char* const kColumns =
     "sequence,stamp,instrument,tracked,reason,slide,slide_deviation,rotation,rotation_deviation,score,visible,x,y,"
-    "along,lateral,scale,tilt,contrast,reacquired";
+    "along,lateral,scale,tilt,contrast,reacquired,doubt";
 
 /// A name for a CSV field.
 std::string field(const std::string& text) {
@@ -31,7 +31,7 @@ std::string number(double value) {
 }
 
 std::string rowOf(const Measurement& m) {
-  if (!m.tracked()) return std::string("0,") + toWord(m.reason) + ",,,,,0,,,,,,,,,0";
+  if (!m.tracked()) return std::string("0,") + toWord(m.reason) + ",,,,,0,,,,,,,,,0,";
   const bool turns = std::isfinite(m.rotation);
   std::string row = "1,,";
   row += number(m.slide) + "," + number(std::sqrt(m.covariance(0, 0))) + ",";
@@ -39,7 +39,7 @@ std::string rowOf(const Measurement& m) {
   for (const double value :
        {m.score, m.visible, m.pixel.x(), m.pixel.y(), m.along, m.lateral, m.scale, m.tilt, m.contrast})
     row += "," + number(value);
-  return row + (m.reacquired ? ",1" : ",0");
+  return row + (m.reacquired ? ",1," : ",0,") + toWord(m.doubt);
 }
 
 double percent(std::uint64_t part, std::uint64_t whole) {
@@ -70,6 +70,26 @@ const char* toWord(LostReason reason) {
       return "wrong_image";
     case LostReason::NoFrame:
       return "no_frame";
+  }
+  return "unknown";
+}
+
+const char* toWord(Doubt doubt) {
+  switch (doubt) {
+    case Doubt::None:
+      return "";
+    case Doubt::Size:
+      return "size";
+    case Doubt::Shutter:
+      return "shutter";
+    case Doubt::Unchecked:
+      return "unchecked";
+    case Doubt::Askew:
+      return "askew";
+    case Doubt::Bent:
+      return "bent";
+    case Doubt::Response:
+      return "response";
   }
   return "unknown";
 }

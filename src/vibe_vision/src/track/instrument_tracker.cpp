@@ -39,6 +39,7 @@ constexpr double kNearbyReach = 2.5;    // the same
 constexpr double kSameMotion = 0.2, kSameBend = 0.03;  // during the exposure, between prediction and fit [px]
 constexpr int kFirstLooks = 16, kLookEvery = 4;        // frames; to look for a shear costs as much as a step of the fit
 constexpr double kTellingSpeed = 0.05;                 // from which a picture would be sheared [m/s]
+constexpr double kUncheckedShift = 2.5e-4;             // standard deviation that is worth a doubt [m]
 constexpr double kSearchDoubt = 0.1;                   // about size, tilt and blur that a search found
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -68,6 +69,7 @@ InstrumentTracker::InstrumentTracker(const VisionConfig& config, const Instrumen
       gates_(config, instrument),
       slow_(config, instrument, fitter_.pattern().observes()),
       unknown_(slow_),
+      doubts_(instrument.axis.direction.x()),
       slide_(instrument.motion.max_speed, instrument.motion.max_acceleration),
       rotation_(instrument.motion.max_angular_speed, 30 * instrument.motion.max_angular_speed) {
   lose(LostReason::NoFrame);
@@ -160,17 +162,34 @@ bool InstrumentTracker::follow(const Frame& frame, const Prediction& prediction)
   if (reason_ == LostReason::None && !isExpected(fit, prediction, frame.stamp)) reason_ = LostReason::Jump;
   if (reason_ != LostReason::None) return false;
   accept(frame, fit, prediction, false);
-  lookForShear(frame, prior, fit);
+  lookForDistortions(frame, prior, fit);
   return true;
 }
 
 /// Rows that are exposed one after the other shear the picture of a marker that moves along them. In the first frames
-/// every picture is looked at.
-void InstrumentTracker::lookForShear(const Frame& frame, const FitPrior& prior, const MarkerFit& fit) {
+/// every picture is looked at. What covers a marker distorts it, too.
+void InstrumentTracker::lookForDistortions(const Frame& frame, const FitPrior& prior, const MarkerFit& fit) {
   const double scale = pixelsPerMetre(config_.axis, last_slide_);
   const double speed = slide_.predict(frame.stamp).mean[1] * scale;
-  if (std::abs(speed) < kTellingSpeed * scale || (++looks_ > kFirstLooks && looks_ % kLookEvery != 0)) return;
-  doubts_.addShear(fitter_.shear(fit, prior), speed, config_.axis.direction.x());
+  if (fit.visible < kGoodLook || std::abs(speed) < kTellingSpeed * scale) return;
+  if (++looks_ > kFirstLooks && looks_ % kLookEvery != 0) return;
+  const Eigen::Vector2d direction = config_.axis.direction;
+  const Distortions found =
+      fitter_.distortions(fit, prior, unknown_.prior(last_slide_), {direction.y(), direction.x()});
+  doubts_.addBend(found.bend);
+  if (fitter_.shows(kRotation))
+    doubts_.addShear(found.shear, speed, fit.x[kTilt], fit.x[kRotation]);
+  else
+    doubts_.addShear(found.shear, speed);
+}
+
+/// As long as nobody knows whether all rows are exposed at the same time, what moves fast may be elsewhere.
+Doubt InstrumentTracker::doubtAt(const Frame& frame) const {
+  const Doubt doubt = doubts_.doubt();
+  const MotionFilter::State state = slide_.predict(frame.stamp);
+  const double fastest = std::abs(state.mean[1]) + std::sqrt(state.covariance(1, 1));
+  const bool known = doubts_.unknownShutterError(fastest, frame.sensor_height) < kUncheckedShift;
+  return known || doubt == Doubt::Shutter ? doubt : Doubt::Unchecked;
 }
 
 /// Where the marker is now tells its speed during the exposure better than what was predicted.
@@ -244,7 +263,7 @@ bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& predic
     return false;
   }
   accept(frame, best, prediction, true);
-  if (is_last && prediction.known) lookForShear(frame, searchPrior(last_slide_), best);
+  if (is_last && prediction.known) lookForDistortions(frame, searchPrior(last_slide_), best);
   return true;
 }
 
@@ -314,6 +333,7 @@ void InstrumentTracker::accept(const Frame& frame, const MarkerFit& fit, const P
   measurement_.slide = slideOf(config_.axis, measurement_.along);
   measurement_.covariance(0, 0) = measurement_.along_variance / square(scale);
   describe(fit);
+  measurement_.doubt = doubtAt(frame);
   if (fit.visible > kGoodLook) slow_.update(fit.x, fit.covariance, measurement_.slide, reacquired ? kSearchDoubt : 0);
   jumps_ = lost_frames_ = 0;
 }
@@ -342,8 +362,7 @@ void InstrumentTracker::describe(const MarkerFit& fit) {
   measurement_.scale = std::exp(fit.x[kLogScale] - nominal[kLogScale]);
   measurement_.tilt = fit.x[kTilt];
   measurement_.contrast = fit.x[kContrast];
-  doubts_.addSize(std::log(measurement_.scale));
-  measurement_.doubt = doubts_.doubt();
+  doubts_.addFit(std::log(measurement_.scale), std::log(fit.x[kGamma] / nominal[kGamma]));
   measurement_.roi_x = fit.roi.x, measurement_.roi_y = fit.roi.y;
   measurement_.roi_width = fit.roi.width, measurement_.roi_height = fit.roi.height;
 }

@@ -30,7 +30,8 @@ class InstrumentTracker {
   MarkerMotion motionAt(const MotionFilter::State& slide, double exposure) const;
   FitVector startAt(double slide, const FitPrior& prior, const Prediction& prediction) const;
   bool follow(const Frame& frame, const Prediction& prediction);
-  void lookForShear(const Frame& frame, const FitPrior& prior, const MarkerFit& fit);
+  void lookForDistortions(const Frame& frame, const FitPrior& prior, const MarkerFit& fit);
+  Doubt doubtAt(const Frame& frame) const;
   void correctMotion(const Frame& frame, const FitPrior& prior, MarkerFit& fit);
   bool search(const Frame& frame, const Prediction& prediction);
   bool searchNearby(const Frame& frame, const Prediction& prediction);

@@ -21,9 +21,11 @@ constexpr double kSureGamma = 0.01;                     // standard deviation fr
 constexpr double kLeastGamma = 0.8, kMostGamma = 3;
 constexpr double kUnknownGamma = 0.1;  // standard deviation from which a search tries another one,
 constexpr double kCommonGamma = 2.2;   // that of many cameras
-constexpr double kStrange = 2.5;       // misfit from which the response may be why
+constexpr double kStrange = 2.5;       // misfit from which the response may be why,
+constexpr double kStrangeSheen = 1.4;  // the same of a rod whose light is known in detail
 constexpr double kBothEdges = 0.6;     // of the share of all edges: a curve moves white and black ones apart
 constexpr double kLearnVisible = 0.8;  // share of a rod that must be seen to learn the light on it
+constexpr double kLearnSheen = 0.6;    // the same before the line of the lamp on it is known well
 constexpr int kGuessAfter = 3;         // tries after which what was learnt of the light is doubted
 constexpr double kHopeless = 0.8;      // loss of a pixel after the coarse alignment
 constexpr double kVeryHopeless = 0.8;  // before size and tilt are known
@@ -85,19 +87,21 @@ void MarkerFitter::repeat(MarkerFit& fit, const FitPrior& prior, const MarkerMot
   refine(fit, prior, 0, kFollowSteps);
 }
 
-Shear MarkerFitter::shear(const MarkerFit& fit, const FitPrior& prior) {
+Distortions MarkerFitter::distortions(const MarkerFit& fit, const FitPrior& prior, const FitPrior& unlearnt,
+                                      const Eigen::Vector2d& down) {
   useHalf();
   fit_.evaluate(fit.x, pixels_);
   const FitStep step = fit_.step(fit.x, prior, pixels_, {});
-  return step.valid ? fit_.shear(fit.x, prior, pixels_) : Shear{};
+  return step.valid ? fit_.distortions(fit.x, prior, unlearnt, pixels_, down) : Distortions{};
 }
 
 MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
                                 double motion, double max_motion, bool known_rotation, double reach) {
   const MarkerFit fit = tryToAcquire(map, frame, start, prior, motion, max_motion, known_rotation, reach);
   const double known = prior.information(kGamma, kGamma);
-  const auto explains = [](const MarkerFit& f) {
-    return f.valid && f.loss < kPoor && f.misfit < kStrange && f.weaker_edges > kBothEdges * f.visible;
+  const auto explains = [this](const MarkerFit& f) {
+    const double strange = light_.shines() ? kStrangeSheen : kStrange;
+    return f.valid && f.loss < kPoor && f.misfit < strange && f.weaker_edges > kBothEdges * f.visible;
   };
   if (explains(fit) || seen_ > 0 || known == 0 || known * kUnknownGamma * kUnknownGamma > 1) return fit;
   FitVector other = start;
@@ -130,7 +134,8 @@ MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const Fit
   if (max_motion > 1) chooseMotion(fit, prior, max_motion);
   if (!read(map, frame, fit)) return fit;
   refine(fit, prior, kMotionUncertainty, kAcquireSteps);
-  if (light_.isRound() && guess && fit.visible > kLearnVisible) {
+  if (!light_.isRound() || !guess) return fit;
+  for (int i = 0; i < (light_.shines() ? 2 : 1) && fit.visible > (light_.shines() ? kLearnSheen : kLearnVisible); ++i) {
     fit_.learnLight(fit.x, pixels_, light_);
     light_.shine(poseOf(fit.x), pixels_, pixels_.padded());
     refine(fit, prior, 0, kAcquireSteps);
@@ -157,12 +162,12 @@ void MarkerFitter::linearise() {
 void MarkerFitter::useGamma(double gamma) {
   if (gamma == gamma_) return;
   const auto power = static_cast<float>(gamma / gamma_);
+  const auto sheen = static_cast<float>(light_.raise(gamma / gamma_));
   const std::size_t count = (all_ + kLanes - 1) / kLanes * kLanes;
   for (std::size_t i = 0; i < count; ++i) {
     pixels_.value[i] = 255 * std::pow(pixels_.value[i] / 255, power);
-    if (light_.isRound()) pixels_.light[i] = std::pow(pixels_.light[i], power);
+    if (light_.isRound()) pixels_.light[i] = std::pow(pixels_.light[i], power), pixels_.sheen[i] *= sheen;
   }
-  light_.raise(gamma / gamma_);
   gamma_ = gamma;
 }
 

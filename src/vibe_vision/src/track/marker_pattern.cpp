@@ -12,6 +12,7 @@ void PixelBlock::allocate(std::size_t capacity) {
   value.assign(size, 0);
   weight.assign(size, 0);
   light.assign(size, 1);
+  sheen.assign(size, 0);
   count = 0;
 }
 

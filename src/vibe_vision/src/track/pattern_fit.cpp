@@ -68,6 +68,7 @@ namespace {
 
 constexpr double kOutlier = 6;  // standard deviations beyond which a pixel counts nothing
 constexpr double kCut = kOutlier * kOutlier;
+constexpr float kSheenDoubt = 0.4F;  // of what a lamp's line adds: it is narrow
 
 // Moments of the biweight for normal residuals t: E[w], E[w t^2] (also E[d(w t)/dt]), E[w^2 t^2]; tails beyond the cut
 // are 2e-9. (Huber, Ronchetti, "Robust Statistics", 2009, section 3.2: variance of an M-estimator.)
@@ -141,7 +142,7 @@ void PatternFit::startLevels(const PixelBlock& pixels, FitVector& x) const {
   LevelHistogram black, white;
   for (std::size_t i = 0; i < pixels.count; ++i) {
     if (pixels.weight[i] == 0) continue;
-    const float value = pixels.value[i] / pixels.light[i];
+    const float value = (pixels.value[i] - pixels.sheen[i]) / pixels.light[i];
     if (values_.value[i] <= low + margin) black.add(value, values_.value[i]);
     if (values_.value[i] >= high - margin) white.add(value, values_.value[i]);
   }
@@ -213,7 +214,7 @@ VIBE_LANES void PatternFit::weighPixels(const FitVector& x, const PixelBlock& pi
   const float* __restrict by_scale = values_.derivative[kLogScale].data();
   const float* __restrict px = pixels.along.data(), * __restrict py = pixels.lateral.data();
   const float* __restrict seen = pixels.value.data(), * __restrict valid = pixels.weight.data();
-  const float* __restrict lamp = pixels.light.data();
+  const float* __restrict lamp = pixels.light.data(), * __restrict sheen = pixels.sheen.data();
   float* __restrict factor = factor_.data(), * __restrict residual = equations_.residual();
   float* __restrict weight = weight_.data(), * __restrict rest = rest_.data();
   float* __restrict information = information_.data(), * __restrict white = white_.data();
@@ -222,9 +223,10 @@ VIBE_LANES void PatternFit::weighPixels(const FitVector& x, const PixelBlock& pi
 #pragma GCC ivdep
   for (std::size_t i = 0; i < count; ++i) {
     const float light = lamp[i] * (1 + slope_x * (px[i] - centre_x) + slope_y * (py[i] - centre_y));
-    const float grey = (black + contrast * m[i]) * light, steep = by_along[i] * by_along[i];
+    const float grey = (black + contrast * m[i]) * light + sheen[i], steep = by_along[i] * by_along[i];
     const float slope = steep + by_lateral[i] * by_lateral[i];
-    const float inverse = 1 / (floor + gain * (grey > 0 ? grey : 0) + slack * slope);
+    const float unsure = kSheenDoubt * sheen[i];
+    const float inverse = 1 / (floor + gain * (grey > 0 ? grey : 0) + slack * slope + unsure * unsure);
     const float r = seen[i] - grey, left = 1 - r * r * inverse * kInverseCut, kept = left > 0 ? left : 0;
     const float share = valid[i] * kept * kept, root = valid[i] * kept * std::sqrt(inverse);
     weight[i] = share;
@@ -279,21 +281,42 @@ void PatternFit::learnLight(const FitVector& x, const PixelBlock& pixels, RodLig
   light.learn();
 }
 
-Shear PatternFit::shear(const FitVector& x, const FitPrior& prior, const PixelBlock& pixels) {
+Distortions PatternFit::distortions(const FitVector& x, const FitPrior& prior, const FitPrior& unlearnt,
+                                    const PixelBlock& pixels, const Eigen::Vector2d& down) {
+  const auto contrast = static_cast<float>(x[kContrast]);
+  const auto x0 = static_cast<float>(x[kAlong]), y0 = static_cast<float>(x[kLateral]);
+  const auto down_x = static_cast<float>(down.x()), down_y = static_cast<float>(down.y());
   const std::size_t count = pixels.padded();
-  float* sheared = equations_.column(columns_);
-  const auto contrast = static_cast<float>(x[kContrast]), centre = static_cast<float>(x[kLateral]);
-  for (std::size_t i = 0; i < count; ++i)
-    sheared[i] = lit_[i] * contrast * values_.derivative[kAlong][i] * (pixels.lateral[i] - centre);
-  FitSubvector common(columns_);
-  for (int a = 0; a < columns_; ++a) common[a] = dot(equations_.column(a), sheared, count);
+  const float *by_along = values_.derivative[kAlong].data(), *by_lateral = values_.derivative[kLateral].data();
+  float* column = equations_.column(columns_);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float rows = down_x * (pixels.along[i] - x0) + down_y * (pixels.lateral[i] - y0);
+    column[i] = lit_[i] * contrast * rows * by_along[i];
+  }
+  Distortions found;
+  found.shear = distortion(x, prior, count);
+  if (pattern_.rim() == 0) return found;
+  const auto per_area = static_cast<float>(1 / square(pattern_.rim() * std::exp(x[kLogScale])));
+  for (std::size_t i = 0; i < count; ++i) {
+    const float u = pixels.along[i] - x0, v = pixels.lateral[i] - y0;
+    column[i] = lit_[i] * contrast * per_area * (v * v * v * by_lateral[i] - u * u * u * by_along[i]);
+  }
+  found.bend = distortion(x, unlearnt, count);
+  return found;
+}
+
+/// What the column behind those of the fit tells beside them.
+Distortion PatternFit::distortion(const FitVector& x, const FitPrior& prior, std::size_t count) {
   FitSubmatrix h;
   FitSubvector g;
   assemble(x, prior, h, g);
+  const float* column = equations_.column(columns_);
+  FitSubvector common(columns_);
+  for (int a = 0; a < columns_; ++a) common[a] = dot(equations_.column(a), column, count);
   const FitSubvector others = h.ldlt().solve(common);
-  const double information = dot(sheared, sheared, count) - others.dot(common);
+  const double information = dot(column, column, count) - others.dot(common);
   if (!(information > 0)) return {};
-  return {(dot(sheared, equations_.residual(), count) - others.dot(g)) / information, kVarianceFactor / information};
+  return {(dot(column, equations_.residual(), count) - others.dot(g)) / information, kVarianceFactor / information};
 }
 
 void PatternFit::assemble(const FitVector& x, const FitPrior& prior, FitSubmatrix& h, FitSubvector& g) const {

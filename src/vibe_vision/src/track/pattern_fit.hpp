@@ -97,14 +97,17 @@ class PatternFit {
   FitStep step(const FitVector& x, const FitPrior& prior, const PixelBlock& pixels, const FitOptions& options);
   /// FitStep::loss alone.
   double loss(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
-  /// What the pixels of the last step(), which was at x with the same prior, tell of a shear beside all that it looked
-  /// for.
-  Shear shear(const FitVector& x, const FitPrior& prior, const PixelBlock& pixels);
+  /// What the pixels of the last step(), which was at x with the same prior, tell of distortions beside all that it
+  /// looked for. @param unlearnt  the prior before any picture: what a bend does to the first ones, it has taught
+  /// @param down  direction of the image's rows, along and across the axis
+  Distortions distortions(const FitVector& x, const FitPrior& prior, const FitPrior& unlearnt, const PixelBlock& pixels,
+                          const Eigen::Vector2d& down);
   const PatternValues& values() const { return values_; }
   /// Learns how the light changes around a rod, from the pixels and weights of the last step.
   void learnLight(const FitVector& x, const PixelBlock& pixels, RodLight& light) const;
 
  private:
+  Distortion distortion(const FitVector& x, const FitPrior& prior, std::size_t count);
   void chooseColumns(const FitOptions& options);
   void weigh(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
   void weighPixels(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);

@@ -57,6 +57,7 @@ class RingPattern : public MarkerPattern {
   std::array<bool, kPoseParameters> observes() const override;
   Eigen::Vector2d window(const MarkerPose& pose, double motion) const override;
   Eigen::Vector2d maxWindow() const override;
+  double rim() const override { return outer_; }
   void prepare(const MarkerPose& pose, const MarkerMotion& motion, bool rough = false) override;
   void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) override;
   void select(const MarkerPose& pose, double motion, PixelBlock& pixels) const override;

@@ -39,6 +39,17 @@ const char* toText(Doubt doubt) {
              "another size; calibrate the axis anew, or correct the size";
     case Doubt::Shutter:
       return "the picture of the moving marker is sheared, as by a rolling shutter; use a camera with a global shutter";
+    case Doubt::Unchecked:
+      return "too few fast frames have been seen to exclude a rolling shutter; move the instrument to and fro";
+    case Doubt::Askew:
+      return "the tilt of the sleeve's bars changes with its rotation: it may be glued askew, which moves its slide "
+             "with "
+             "the rotation; glue it anew, its ends at right angles to the rod";
+    case Doubt::Bent:
+      return "the marker is shortened towards two of its sides, as if it were bent; glue it on something flat";
+    case Doubt::Response:
+      return "the grey values do not grow with the light as configured: set camera.gamma to the camera's response, or "
+             "switch its gamma correction off";
   }
   return "unknown";
 }

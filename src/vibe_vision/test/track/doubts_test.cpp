@@ -1,6 +1,9 @@
 // What speaks against camera or calibration although the marker is tracked.
 #include <gtest/gtest.h>
 
+#include <map>
+
+#include "track/calibration_doubts.hpp"
 #include "track/ring_scene.hpp"
 
 namespace vibe::vision::doubts_test {
@@ -16,12 +19,21 @@ double placeAt(double time) {
   return kAmplitude * std::sin(kAngular * time);
 }
 
-/// A picture at rest as a camera shows it that moves, row by row [s]. The stamp is that of row 0.
-std::vector<std::uint8_t> moved(const ImageView& still, double stamp, double row_time) {
+/// What may be wrong with camera or marker.
+struct Fault {
+  double row_time = 0;  ///< [s]
+  double bend = 0;      ///< by how much the rim of the ring is nearer to its centre along the axis, of its radius
+};
+
+/// A picture at rest as a camera shows it that moves, row by row. The stamp is that of row 0.
+std::vector<std::uint8_t> moved(const ImageView& still, double centre, double stamp, const Fault& fault) {
+  constexpr double kRadius = 20;  // of the ring [px]
   std::vector<std::uint8_t> pixels;
   for (int y = 0; y < still.height; ++y)
     for (int x = 0; x < still.width; ++x) {
-      const double from = std::clamp(x - placeAt(stamp + y * row_time), 0.0, still.width - 2.0);
+      const double to = x - placeAt(stamp + y * fault.row_time) - centre;
+      const double bent = to * (1 + fault.bend * std::min(1.0, to * to / (kRadius * kRadius)));
+      const double from = std::clamp(centre + bent, 0.0, still.width - 2.0);
       const auto i = static_cast<int>(from);
       const double f = from - i;
       pixels.push_back(static_cast<std::uint8_t>(std::lround((1 - f) * still.row(y)[i] + f * still.row(y)[i + 1])));
@@ -30,11 +42,12 @@ std::vector<std::uint8_t> moved(const ImageView& still, double stamp, double row
 }
 
 struct Result {
-  int tracked = 0, doubtful = 0;
-  double most_deviations = 0;  ///< of the frames that are doubtful
+  int tracked = 0, silent = 0;  ///< silent: wrong by more than 0.5 mm without doubt
+  std::map<Doubt, int> doubts;
+  double most_deviations = 0;  ///< of the frames with doubts of the shutter
 };
 
-Result follow(double row_time) {
+Result follow(const Fault& fault) {
   SyntheticScene scene = ringScene("static");
   rest(scene, 0);
   const RenderedFrame still = Renderer(scene).render(0);
@@ -43,32 +56,40 @@ Result follow(double row_time) {
   for (int k = 0; k < 40; ++k) {
     Frame frame = still.frame;
     frame.stamp = k / 147.0, frame.exposure = 1e-5;
-    const std::vector<std::uint8_t> pixels = moved(still.frame.image, frame.stamp, row_time);
+    const std::vector<std::uint8_t> pixels = moved(still.frame.image, still.truth[0].pixel.x(), frame.stamp, fault);
     frame.image.data = pixels.data(), frame.image.stride = frame.image.width;
     const Measurement& m = tracker.track(frame)[0];
     result.tracked += m.tracked() ? 1 : 0;
-    if (m.doubt != Doubt::Shutter) continue;
-    ++result.doubtful;
+    ++result.doubts[m.doubt];
     const double error = m.along - still.truth[0].along - placeAt(frame.stamp);
+    result.silent += std::abs(error) > 5 && m.doubt == Doubt::None ? 1 : 0;
+    if (m.doubt != Doubt::Shutter) continue;
     result.most_deviations = std::max(result.most_deviations, std::abs(error) / std::sqrt(m.along_variance));
   }
   return result;
 }
 
 TEST(Doubts, ARollingShutterIsSeenAndItsErrorStated) {
-  const Result result = follow(1e-5);
+  Result result = follow({1e-5, 0});
   EXPECT_GT(result.tracked, 20);  // at full speed the ring looks too oblique
-  EXPECT_LE(result.tracked - result.doubtful, 6);
+  EXPECT_LE(result.tracked - result.doubts[Doubt::Shutter], 6);
+  EXPECT_EQ(result.silent, 0);
   EXPECT_LT(result.most_deviations, 3);
 }
 
-TEST(Doubts, AGlobalShutterRaisesNone) {
-  const Result result = follow(0);
+TEST(Doubts, AGlobalShutterAndAFlatMarkerRaiseNoneAfterTheFirstFrames) {
+  Result result = follow({});
   EXPECT_GT(result.tracked, 35);
-  EXPECT_EQ(result.doubtful, 0);
+  EXPECT_GE(result.doubts[Doubt::Unchecked], 1);
+  EXPECT_LE(result.doubts[Doubt::Unchecked], 6);
+  EXPECT_EQ(result.doubts[Doubt::None] + result.doubts[Doubt::Unchecked], result.tracked);
 }
 
-Doubt doubtOfSize(double scale) {
+TEST(Doubts, ABentMarker) {
+  EXPECT_GT(follow({0, 0.0067}).doubts[Doubt::Bent], 20);  // a sheet around something of 20 mm
+}
+
+Doubt doubtAtRest(double scale) {
   SyntheticScene scene = ringScene("static");
   scene.instruments[0].scale = scale;
   const Renderer renderer(scene);
@@ -80,9 +101,27 @@ Doubt doubtOfSize(double scale) {
 }
 
 TEST(Doubts, AnotherSizeThanCalibrated) {
-  EXPECT_EQ(doubtOfSize(1.03), Doubt::Size);
-  EXPECT_EQ(doubtOfSize(0.97), Doubt::Size);
-  EXPECT_EQ(doubtOfSize(1.005), Doubt::None);
+  EXPECT_EQ(doubtAtRest(1.03), Doubt::Size);
+  EXPECT_EQ(doubtAtRest(0.97), Doubt::Size);
+  EXPECT_EQ(doubtAtRest(1.005), Doubt::None);
+}
+
+/// What a sleeve shows of a tilt [rad] that is constant, of one of its print, and of a row time [s].
+Doubt doubtOfSleeve(double constant, double askew, double row_time) {
+  CalibrationDoubts doubts(1);
+  for (int k = 0; k < 40; ++k) {
+    const double phase = 0.2265 * k, speed = 5e3 * std::cos(phase), rotation = 0.4 + 0.9 * std::sin(phase + 0.6);
+    const double shear = speed * row_time - askew * std::cos(rotation - 1);
+    doubts.addShear({shear, 1e-6}, speed, constant, rotation);
+  }
+  return doubts.doubt();
+}
+
+TEST(Doubts, ASleeveThatIsAskewIsNotARollingShutter) {
+  EXPECT_EQ(doubtOfSleeve(0, 0, 0), Doubt::None);
+  EXPECT_EQ(doubtOfSleeve(0.1, 0.005, 0), Doubt::None);
+  EXPECT_EQ(doubtOfSleeve(0.1, 0.035, 0), Doubt::Askew);
+  EXPECT_EQ(doubtOfSleeve(0.1, 0.035, 1e-5), Doubt::Shutter);
 }
 
 }  // namespace

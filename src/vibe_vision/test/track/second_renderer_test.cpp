@@ -1,5 +1,6 @@
 // Pictures of a renderer that is not ours, Blender's Cycles: scripts/render_with_blender.py draws them from the printed
-// sheet with light, paper and lens of its own. Three frames each of five situations, cut around the markers.
+// sheet with light, paper and lens of its own. Three frames each of five situations, cut around the markers, and of
+// a sixth with the sleeve alone: shade, gloss, gamma and a lens out of focus at once.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,8 +78,22 @@ TEST(SecondRenderer, MarkersAreFoundWhereTheyAre) {
     if (sample.instrument != "helix") continue;
     EXPECT_LT(std::abs(std::remainder(m.rotation - sample.rotation, 2 * M_PI)), 0.05) << sample.image;
   }
-  EXPECT_EQ(count, 30);
+  EXPECT_EQ(count, 33);
   EXPECT_LE(lost, 1);  // known: the second frame of the sleeve under a response that nobody gave
+}
+
+/// A response that nobody gave is told where it was found, and no other.
+TEST(SecondRenderer, TheResponseIsTold) {
+  std::map<std::string, Tracker> trackers;
+  std::map<std::string, Doubt> last;
+  for (const Sample& sample : loadSamples()) {
+    if (sample.instrument == "helix") continue;
+    const std::string sequence = sample.image.substr(0, sample.image.rfind("_needle"));
+    Tracker& tracker = trackers.try_emplace(sequence, configOf(sample.instrument)).first->second;
+    last[sequence] = trackSample(tracker, sample).doubt;
+  }
+  for (const auto& [sequence, doubt] : last)
+    EXPECT_EQ(doubt, sequence == "gamma22" ? Doubt::Response : Doubt::None) << sequence;
 }
 
 /// Out of focus, a wrong motion during the exposure explains a blurred ring nearly as well as the right one.

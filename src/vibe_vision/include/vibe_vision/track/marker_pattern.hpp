@@ -40,6 +40,7 @@ constexpr std::size_t kLanes = 8;
 struct PixelBlock {
   std::vector<float> along, lateral, value;  ///< where each pixel is [px], and its grey value [DN]
   std::vector<float> light;   ///< on this pixel, relative to the marker's mean; 1 unless somebody knows better
+  std::vector<float> sheen;   ///< what the surface mirrors to this pixel, whatever is printed there [DN]; 0 likewise
   std::vector<float> weight;  ///< 0: nothing can be said about this pixel (saturated, outside of the image), else 1
   std::size_t count = 0;      ///< of pixels; what is behind them is filled up
 
@@ -86,6 +87,9 @@ class MarkerPattern {
   virtual Eigen::Vector2d window(const MarkerPose& pose, double motion) const = 0;
   /// The largest window() that there can be.
   virtual Eigen::Vector2d maxWindow() const = 0;
+
+  /// Distance of a flat marker's outermost edge from its centre, in pixels of the pattern; 0: it is not flat.
+  virtual double rim() const { return 0; }
 
   /// Makes ready for evaluations near a pose; once per frame. No allocation.
   /// @param rough  the picture may be wrong by a few percent in a few places: enough to find the marker

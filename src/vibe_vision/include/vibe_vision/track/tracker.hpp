@@ -29,9 +29,13 @@ const char* toText(LostReason reason);  ///< a sentence for people
 
 /// What speaks against camera or calibration although the marker is tracked, from many frames.
 enum class Doubt {
-  None,    ///< nothing does
-  Size,    ///< the marker is not as large as calibrated
-  Shutter  ///< the rows of an image are not exposed at the same time
+  None,       ///< nothing does
+  Size,       ///< the marker is not as large as calibrated
+  Shutter,    ///< the rows of an image are not exposed at the same time
+  Unchecked,  ///< the marker may move fast, and too few frames have been seen to know whether they are
+  Askew,      ///< a sleeve is askew on its rod
+  Bent,       ///< a flat marker is bent
+  Response    ///< the response of the camera is not the one that was given
 };
 const char* toText(Doubt doubt);  ///< a sentence for people, with possible causes; empty for None
 
