@@ -47,6 +47,10 @@ for _ in range(201):
     *_, info = wrapped.step(np.zeros((2, 4), np.float32))
     if "episode" in info and info["episode"]["l"].max() == 200:
         print("wrapped")
+processes = gymnasium.vector.AsyncVectorEnv([lambda: Environment(**small)] * 2, context="spawn")
+(seen, _), (expected, _) = processes.reset(seed=1), VectorEnvironment("Reach", 2, threads=1, **small).reset(seed=1)
+print("processes" if all(np.array_equal(seen[name], expected[name]) for name in expected) else "differ")
+processes.close()
 """
 SMALL = {"particles": 300, "organs": [("sthenic", 1.0)]}
 
@@ -198,7 +202,10 @@ class EnvironmentTest(unittest.TestCase):
         environment = Environment("Reach", **SMALL)
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "reach.hdf5")
-            self.assertEqual(demonstrations.record(environment, Expert(environment), file, 2), (2, 2))
+            for episodes in (1, 2):  # it goes on
+                self.assertEqual(demonstrations.record(environment, Expert(environment), file, episodes), (episodes, episodes))
+            with self.assertRaisesRegex(vibe.Error, "of other settings"):
+                demonstrations.record(environment, Expert(environment), file, 3, seed=1)
             with h5py.File(file) as found:
                 demo = found["data/demo_1"]
                 steps = demo.attrs["num_samples"]
@@ -241,7 +248,7 @@ class EnvironmentTest(unittest.TestCase):
             checked = subprocess.run([sys.executable, "-B", "-c", CHECK], env={**os.environ, "PYTHONPATH": path},
                                      stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
         self.assertEqual(checked.returncode, 0, checked.stdout)
-        self.assertEqual(checked.stdout.split(), [*TASKS, "refused", "wrapped"], checked.stdout)
+        self.assertEqual(checked.stdout.split(), [*TASKS, "refused", "wrapped", "processes"], checked.stdout)
 
 
 if __name__ == "__main__":

@@ -18,8 +18,9 @@ namespace vibe {
 namespace {
 
 constexpr const char* kKey = "tissue.model";
-// Steps at least until a factor is used that has been begun. Design choice: what the default interval is at 60 Hz. Where
-// steps are longer, a factor every second step takes more time than the steps, and its age hardly changes their error.
+// Steps at least until a factor is used that has been begun. Design choice: what the default interval is at 60 Hz.
+// Where steps are longer, a factor every second step takes more time than the steps, and its age hardly changes their
+// error.
 constexpr double kFactorSteps = 6;
 
 TissueAndSolver makeShapeMatching(const TissueRequest& request) {
