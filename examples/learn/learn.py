@@ -7,7 +7,7 @@
 
 ppo.py goes on from there by reinforcement.
 
-Actions are the tip's velocity. evaluate keeps every episode in a file and goes on where it was stopped."""
+Actions are the tip's velocity. demonstrate and evaluate go on where they were stopped."""
 
 import argparse
 import hashlib
@@ -20,6 +20,7 @@ import numpy as np
 from vibe.env import BREATHING, HELD_OUT, TRAINING, Environment, Expert, demonstrations
 
 INPUTS = ("to_goal", "wrench")
+STEP_PERIOD = 1 / 60  # [s], of the tables in docs/python.md; with the default, 1/20, episodes are computed twice as fast
 # What counts as one, at least: demonstrations hardly touch the wall, and by their own deviation a touch would be far away
 SCALE = np.array([0.01] * 3 + [1.0] * 3 + [0.05] * 3)  # [m], [N], [N m]
 
@@ -110,7 +111,7 @@ def show(text):
 
 
 def demonstrate(options):
-    environment = Environment("Reach", organs=TRAINING, action="tip")
+    environment = Environment("Reach", organs=TRAINING, action="tip", step_period=STEP_PERIOD)
     kept, of = demonstrations.record(environment, Expert(environment), options.file, options.episodes, seed=options.seed,
                                      progress=lambda done, of, kept: show(f"episode {done} of {of}, {kept} succeeded"))
     print(f"\n{kept} of {of} episodes succeeded and are in {options.file}")
@@ -138,7 +139,7 @@ def policy_of(name):
 
 def episode(policy, breathing, seed):
     """The outcome of one episode on the organs that nobody trained on."""
-    environment = Environment("Reach", organs=HELD_OUT, action="tip", breathing=breathing)
+    environment = Environment("Reach", organs=HELD_OUT, action="tip", breathing=breathing, step_period=STEP_PERIOD)
     acting = {"random": Random, "expert": Scripted}[policy](environment) if isinstance(policy, str) else policy
     observation, info = environment.reset(seed=seed)
     acting.reset(seed)

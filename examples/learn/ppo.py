@@ -146,7 +146,8 @@ def train(options):
     learner = Learner(options.start, options.seed)
     state = learner.load(file) if goes_on else {"round": 0, "actions": 0, "seconds": 0.0}
     environments = VectorEnvironment("Reach", options.slots, threads=options.threads, organs=TRAINING, action="tip",
-                                     particles=options.particles, breathing=options.breathing, autoreset="same_step")
+                                     particles=options.particles, breathing=options.breathing, autoreset="same_step",
+                                     step_period=learn.STEP_PERIOD)
     observation, _ = environments.reset(seed=20000 + 1000 * state["round"])
     begun, before = time.monotonic(), state["seconds"]
     while state["seconds"] < 60 * options.minutes:

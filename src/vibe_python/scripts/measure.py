@@ -96,17 +96,18 @@ def step_periods():
                   f"{1e3 * np.linalg.norm(moved - wall, axis=2).max():.2f} mm | {reach(scale, None, 1 / period)} |", flush=True)
 
 
-def scaling():
+def scaling(slots=16, actions=25, rounds=3):
+    """Actions per second of wall time of episodes side by side by number of threads; the best of some rounds in turn."""
     rates = {}
-    for threads in (1, 2):
-        environments = VectorEnvironment("Reach", 16, threads=threads, organs=ORGAN)
+    random = np.random.default_rng(1)
+    moves = [0.3 * random.uniform(-1, 1, (slots, 4)) for _ in range(actions)]
+    for threads in rounds * (1, 2):
+        environments = VectorEnvironment("Reach", slots, threads=threads, organs=ORGAN)
         environments.reset(seed=1)
-        random = np.random.default_rng(1)
-        actions = [0.3 * random.uniform(-1, 1, (16, 4)) for _ in range(25)]
         begin = time.monotonic()
-        for action in actions:
+        for action in moves:
             environments.step(action)
-        rates[threads] = 16 * len(actions) / (time.monotonic() - begin)
+        rates[threads] = max(rates.get(threads, 0), slots * actions / (time.monotonic() - begin))
         environments.close()
     return rates
 
@@ -131,44 +132,53 @@ def memory(particles, impedance):
     return (resident() - before) / 8 / 1e6
 
 
+def resets():
+    """Times [ms] of restore(), of the first step after it, and of reset() with a goal that is known."""
+    organ = organs.organ("sthenic", 1.0, 1000)
+    simulation, spent = organ.take(), []
+    restored = median(lambda: simulation.restore(organ.starts[1][0]), 50)
+    for _ in range(20):
+        simulation.run(5, insertion=0.12)
+        simulation.restore(organ.starts[1][0])
+        spent.append(median(simulation.step, 1))
+    environment = Environment("Reach", organs=ORGAN)
+    for seed in range(20):
+        environment.reset(seed=seed)
+    seeds = iter(range(20))
+    return restored, float(np.median(spent)), median(lambda: environment.reset(seed=next(seeds)), 20)
+
+
+def session():
+    """The hash of the first session of the README."""
+    model = vibe.load()
+    simulation = vibe.Simulation(model)
+    simulation.follow(vibe.Trainee(model, "package://vibe_core/trainees/first.yaml"))
+    return f"{simulation.hash():016x}"
+
+
 def main():
     imported, stepped, cpu = first_step()
     print(f"| `import vibe`; and the first step of the default stomach | {imported:.2f} s; {stepped:.2f} s of wall time, "
           f"{cpu:.2f} s of CPU |")
     print(f"| `step()` from Python more than a step in C++ | {overhead():.1f} us |")
-    organ = organs.organ("sthenic", 1.0, 1000)
-    simulation = organ.take()
-    simulation.restore(organ.starts[0])
-    print(f"| `restore()` of a snapshot, 1,000 particles | {median(lambda: simulation.restore(organ.starts[1]), 50):.2f} ms |")
-
-    def reset_and_step():
-        simulation.run(5, insertion=0.12)
-        simulation.restore(organ.starts[1])
-        reset_and_step.spent.append(median(simulation.step, 1))
-
-    reset_and_step.spent = []
-    for _ in range(20):
-        reset_and_step()
-    print(f"| the first step after it, of a prepared snapshot | {np.median(reset_and_step.spent):.1f} ms |")
-    environment = Environment("Reach", organs=ORGAN)
-    for seed in range(20):
-        environment.reset(seed=seed)
-    seeds = iter(range(20))
-    print(f"| `reset()` of `Reach`, a goal known | {median(lambda: environment.reset(seed=next(seeds)), 20):.2f} ms |")
+    restored, first, reset = resets()
+    print(f"| `restore()` of a snapshot, 1,000 particles | {restored:.2f} ms |")
+    print(f"| the first step after it, of a prepared snapshot | {first:.1f} ms |")
+    print(f"| `reset()` of `Reach`, a goal known | {reset:.2f} ms |")
     full = vibe.Simulation(vibe.load())
     full.run(30, insertion=0.08, insufflate=True)
     print(f"| depth and labels, 128 x 128, 3,618 particles | {median(lambda: full.camera(128, 128), 30):.2f} ms |")
     print(f"| the same with colours | {median(lambda: full.camera(128, 128, colour=True), 30):.2f} ms |")
-    print(f"| `Reach`, 1,000 particles, actions per second: slow motions, moderate breathing, free; in contact | "
-          f"{reach(0.2, 'moderate')} |")
     rates = scaling()
     print(f"| 16 episodes of `Reach` side by side, actions per second of wall time: one thread; two | {rates[1]:.0f}; "
-          f"{rates[2]:.0f} |")
+          f"{rates[2]:.0f}, {rates[2] / rates[1]:.2f} times as many |")
     for name, impedance in (("without impedance, as in environments", False), ("all of it", True)):
         print(f"| memory per further simulation, 1,000; 3,618 particles: {name} | {memory(1000, impedance):.0f} MB; "
               f"{memory(3618, impedance):.0f} MB |")
     print("| time per step | force differs: root mean square, greatest | wall, greatest | actions per second: free; in contact |")
     step_periods()
+    print(f"With moderate breathing, slow motions, free; in contact: {reach(0.2, 'moderate')}")
+    print(f"state hash of the first session: {session()}")
     print(f"load {os.getloadavg()[0]:.1f}, {len(os.sched_getaffinity(0))} cores", file=sys.stderr)
 
 

@@ -9,25 +9,42 @@ import vibe
 
 def record(environment, policy, file, episodes, seed=0, progress=None):
     """Runs episodes with a policy (reset(), action(observation)) and writes those that succeed; they have the seeds
-    seed, seed + 1, ... Returns how many of how many succeeded. Needs h5py (Debian: python3-h5py)."""
+    seed, seed + 1, ... A file that was begun in the same way is gone on with. Returns how many of how many succeeded.
+    Needs h5py (Debian: python3-h5py)."""
     try:
         import h5py
     except ImportError:
         raise vibe.Error("Demonstrations need h5py; install python3-h5py.") from None
-    kept = total = 0
-    with h5py.File(file, "x") as out:  # nothing is overwritten
-        data = out.create_group("data")
-        data.attrs["env_args"] = json.dumps({"env_name": environment.task.name, "type": 2, "env_kwargs": {
-            "particles": environment.task.particles, "action": environment.task.mode}})
-        for number in range(seed, seed + episodes):
+    try:
+        out = h5py.File(file, "a")
+    except OSError as error:
+        raise vibe.Error(f"{file} cannot be written as HDF5 ({error}); name another file.") from None
+    with out:
+        data = out.require_group("data")
+        _begin(data, environment.task, seed, file)
+        kept, tried, total = (int(data.attrs[name]) for name in ("kept", "tried", "total"))
+        for number in range(seed + tried, seed + episodes):
             rows, success = episode(environment, policy, number)
             if success:
+                data.pop(f"demo_{kept}", None)  # of a run that was killed while it wrote
                 total += _write(data.create_group(f"demo_{kept}"), rows, number)
                 kept += 1
+            data.attrs.update({"kept": kept, "tried": number - seed + 1, "total": total})
+            out.flush()
             if progress:
                 progress(number - seed + 1, episodes, kept)
-        data.attrs["total"] = total
-    return kept, episodes
+    return kept, max(tried, episodes)
+
+
+def _begin(data, task, seed, file):
+    """Writes what the episodes are of, or sees that it is the same as when the file was begun."""
+    args = json.dumps({"env_name": task.name, "type": 2,
+                       "env_kwargs": {"particles": task.particles, "action": task.mode, "organs": task.organs,
+                                      "breathing": task.breathing, "step_period": task.step_period}})
+    if data.attrs.setdefault("env_args", args) != args or data.attrs.setdefault("seed", seed) != seed:
+        raise vibe.Error(f"{file} holds demonstrations of other settings, {data.attrs['env_args']}; name another file.")
+    for name in ("kept", "tried", "total"):
+        data.attrs.setdefault(name, 0)
 
 
 def episode(environment, policy, seed):

@@ -30,8 +30,8 @@ class Environment(api.Env):
     pictures   which: of 'depth' float32 [m], 'label' uint8, 'normal' (.., 3) float32 and 'colour' (.., 3) uint8, as
                vibe.Simulation.camera() has them; depth and label by default
     step_period
-               simulated time per step [s], a whole part of that of an action; None: 1/60. Longer steps are faster and less
-               accurate (docs/python.md)
+               simulated time per step [s], a whole part of that of an action; None: one step per action, which is 1/20
+               with Reach and Inspect and 1/60 with the others. Shorter steps are slower and more accurate (docs/python.md)
     breathing  None (still), 'slight', 'moderate' or 'strong': the diaphragm moves the stomach (vibe.env.BREATHING)
 
     reset(seed) draws stomach, start and goal; the same seed gives the same episode, to the bit. Steps after an episode

@@ -1,6 +1,7 @@
 """Episodes side by side: what the single and the vector environment share, so that both have the same bits."""
 
 import functools
+import math
 
 import numpy as np
 
@@ -75,6 +76,7 @@ class Task:
     name = ""
     seconds = 10.0  #: simulated time until an episode is truncated
     rate = 20  #: actions per simulated second
+    rate_of_steps = 20  #: steps per simulated second, at least, where `step_period` does not say it
     speeds = np.array([0.05, 1.0, 1.0, 1.0])  #: of the joints at action 1 [m/s], [rad/s]
     along, around = (0.3, 0.72), (-1.2, 1.2)  #: uniform distribution of the goal: axis [1], angle around it [rad]
 
@@ -102,9 +104,9 @@ class Task:
         self.closed = False
 
     def _period(self, period):
-        """Simulated time per step [s], of which a whole number makes up an action; None: the scene's."""
+        """Simulated time per step [s], of which a whole number makes up an action; None: an action, at most 1/20 s."""
         if period is None:
-            return None
+            return 1 / (self.rate * max(1, math.ceil(self.rate_of_steps / self.rate)))
         steps = 1 / (self.rate * period) if _number(period) and 1e-4 <= period <= 0.1 else 0
         if round(steps) < 1 or abs(steps - round(steps)) > 1e-6:
             raise vibe.Error(f"'step_period' is {vibe._shown(period)}; give a whole part of an action of 1/{self.rate} s, such as "

@@ -31,7 +31,7 @@ class Organ:
     def __init__(self, shape, scale, particles, breathing, step_period):
         self.name = f"{shape} {scale:g}" + (f", {breathing} breathing" if breathing else "")
         self._breath = None
-        sections = {} if step_period is None else {"step_period": step_period}
+        sections = {"step_period": step_period}
         if breathing:
             rate, amplitude = BREATHING[breathing]
             self._breath = 1 / rate  # [s]
@@ -97,5 +97,5 @@ class Organ:
 
 
 @functools.lru_cache(maxsize=None)
-def organ(shape, scale, particles, breathing=None, step_period=None):
+def organ(shape, scale, particles, breathing=None, step_period=1 / 20):
     return Organ(shape, scale, particles, breathing, step_period)
