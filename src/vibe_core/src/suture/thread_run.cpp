@@ -4,7 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/LU>
+#include "common/ordered_algebra.hpp"
+#include "common/ordered_lu.hpp"
 
 namespace vibe::detail {
 
@@ -54,7 +55,8 @@ class Path {
     const int m = static_cast<int>(residual.size());
     const double even = residual.sum() / compliance.sum();
     residual_.resize(m, 2);
-    residual_.col(0) = compliance.rowwise().sum() * even;
+    sumRows(compliance, residual_.col(0));
+    residual_.col(0) *= even;
     residual_.col(1) = residual - residual_.col(0);
     residual_scale_ = residual_.cwiseAbs().maxCoeff();
     tight_.fill(true);
@@ -165,12 +167,11 @@ bool solveLinked(const SegmentMatrix& compliance, const SegmentPath& residual, c
     for (int j = 0; j < m; ++j)
       if (group[j] >= 0) matrix(group[i], group[j]) += compliance(i, j) * ratio[j];
   }
-  SegmentPath first(groups, 2);
-  if (groups > 0) first = matrix.partialPivLu().solve(right);
+  solveByOrderedLu(matrix, right);
   tension.resize(m, 2);
   slide.resize(std::max(0, m - 1), 2);
   for (int k = 0; k < m; ++k)
-    tension.row(k) = group[k] < 0 ? Eigen::RowVector2d::Zero().eval() : (ratio[k] * first.row(group[k])).eval();
+    tension.row(k) = group[k] < 0 ? Eigen::RowVector2d::Zero().eval() : (ratio[k] * right.row(group[k])).eval();
   Eigen::RowVector2d through(0, 0);
   for (int k = 0; k + 1 < m; ++k) {
     const bool linked = group[k] >= 0 && group[k] == group[k + 1];

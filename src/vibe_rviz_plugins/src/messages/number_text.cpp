@@ -1,8 +1,10 @@
 #include "messages/number_text.hpp"
 
-#include <array>
-#include <charconv>
+#include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <locale>
+#include <sstream>
 
 namespace vibe::rviz_plugins {
 namespace {
@@ -20,12 +22,10 @@ const char* const kNoValue = "\u2013";
 std::string numberText(double value, int decimals) {
   if (!std::isfinite(value)) return kNoValue;
   const bool plain = std::abs(value) < kMaxPlain;
-  std::array<char, 64> text{};
-  // to_chars, because printf writes a comma if Qt has set such a locale
-  const auto result = std::to_chars(text.data(), text.data() + text.size(), value,
-                                    plain ? std::chars_format::fixed : std::chars_format::scientific,
-                                    plain ? std::max(0, std::min(decimals, 9)) : 1);
-  const std::string number(text.data(), result.ptr);
+  std::ostringstream text;
+  text.imbue(std::locale::classic());  // Qt may have set one that writes a comma
+  text << (plain ? std::fixed : std::scientific) << std::setprecision(plain ? std::clamp(decimals, 0, 9) : 1) << value;
+  const std::string number = text.str();
   return number.find_first_of("123456789") == std::string::npos && number[0] == '-' ? number.substr(1) : number;
 }
 
