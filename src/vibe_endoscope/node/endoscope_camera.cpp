@@ -62,6 +62,7 @@ EndoscopeCamera::EndoscopeCamera(ros::NodeHandle node, const CameraOptions& opti
   eyes_.reserve(2);
   addEye(options.stereo ? "endoscope/left/" : "endoscope/", 0, options.frame_id);
   if (options.stereo) addEye("endoscope/right/", options.baseline, options.right_frame_id);
+  particles_.registerCallback(&EndoscopeCamera::followParticles, this);
 }
 
 void EndoscopeCamera::addEye(const std::string& name, double aside, const std::string& frame) {
@@ -114,6 +115,12 @@ void EndoscopeCamera::receiveSutures(const vibe_msgs::SutureArray::ConstPtr& mes
   if (set_back) recent_sutures_.clear();
   recent_sutures_.push_back(message);
   if (recent_sutures_.size() > kSutures) recent_sutures_.pop_front();
+}
+
+/// Smoke and the age of marks need no transforms, and must not miss a state whose transforms are gone already: a
+/// simulation that is faster than the camera drops most of its states there, and marks stayed white.
+void EndoscopeCamera::followParticles(const sensor_msgs::PointCloud2::ConstPtr& message) {
+  scene_.followParticles(*message);  // receiveParticles() says what is wrong
 }
 
 void EndoscopeCamera::receiveParticles(const sensor_msgs::PointCloud2::ConstPtr& message) {
