@@ -117,8 +117,9 @@ void EndoscopeCamera::receiveSutures(const vibe_msgs::SutureArray::ConstPtr& mes
   if (recent_sutures_.size() > kSutures) recent_sutures_.pop_front();
 }
 
-/// Smoke and the age of marks need no transforms, and must not miss a state whose transforms are gone already: a
-/// simulation that is faster than the camera drops most of its states there, and marks stayed white.
+/// Smoke and the age of marks follow the states as they arrive. Transforms of a simulation that is faster than real
+/// time can be gone already, or release states in another order, which looked as if time had been set back: marks
+/// stayed white.
 void EndoscopeCamera::followParticles(const sensor_msgs::PointCloud2::ConstPtr& message) {
   scene_.followParticles(*message);  // receiveParticles() says what is wrong
 }
@@ -151,7 +152,7 @@ vibe_msgs::SutureArray::ConstPtr EndoscopeCamera::suturesAt(const ros::Time& sta
 
 /// What is wrong with the particles, in one sentence; empty: the scene shows this state.
 std::string EndoscopeCamera::draw(const sensor_msgs::PointCloud2& particles, const EndoscopeScene::PoseOf& pose_of) {
-  std::string problem = scene_.setParticles(particles);
+  std::string problem = scene_.showParticles(particles);
   if (!problem.empty()) return problem;
   scene_.placeInstrument(pose_of);
   const vibe_msgs::SutureArray::ConstPtr sutures = suturesAt(particles.header.stamp);
