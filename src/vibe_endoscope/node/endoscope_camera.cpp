@@ -62,6 +62,7 @@ EndoscopeCamera::EndoscopeCamera(ros::NodeHandle node, const CameraOptions& opti
   eyes_.reserve(2);
   addEye(options.stereo ? "endoscope/left/" : "endoscope/", 0, options.frame_id);
   if (options.stereo) addEye("endoscope/right/", options.baseline, options.right_frame_id);
+  particles_.registerCallback(&EndoscopeCamera::followParticles, this);
 }
 
 void EndoscopeCamera::addEye(const std::string& name, double aside, const std::string& frame) {
@@ -116,6 +117,13 @@ void EndoscopeCamera::receiveSutures(const vibe_msgs::SutureArray::ConstPtr& mes
   if (recent_sutures_.size() > kSutures) recent_sutures_.pop_front();
 }
 
+/// Smoke and the age of marks follow the states as they arrive. Transforms of a simulation that is faster than real
+/// time can be gone already, or release states in another order, which looked as if time had been set back: marks
+/// stayed white.
+void EndoscopeCamera::followParticles(const sensor_msgs::PointCloud2::ConstPtr& message) {
+  scene_.followParticles(*message);  // receiveParticles() says what is wrong
+}
+
 void EndoscopeCamera::receiveParticles(const sensor_msgs::PointCloud2::ConstPtr& message) {
   const ros::Time stamp = message->header.stamp;
   if (!isWatched() || !due_.isDue(stamp)) return;
@@ -144,7 +152,7 @@ vibe_msgs::SutureArray::ConstPtr EndoscopeCamera::suturesAt(const ros::Time& sta
 
 /// What is wrong with the particles, in one sentence; empty: the scene shows this state.
 std::string EndoscopeCamera::draw(const sensor_msgs::PointCloud2& particles, const EndoscopeScene::PoseOf& pose_of) {
-  std::string problem = scene_.setParticles(particles);
+  std::string problem = scene_.showParticles(particles);
   if (!problem.empty()) return problem;
   scene_.placeInstrument(pose_of);
   const vibe_msgs::SutureArray::ConstPtr sutures = suturesAt(particles.header.stamp);

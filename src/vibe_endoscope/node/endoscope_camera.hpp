@@ -52,6 +52,7 @@ class EndoscopeCamera {
 
   void receiveTopology(const vibe_msgs::TissueTopology::ConstPtr& message);
   void receiveSutures(const vibe_msgs::SutureArray::ConstPtr& message);
+  void followParticles(const sensor_msgs::PointCloud2::ConstPtr& message);
   void receiveParticles(const sensor_msgs::PointCloud2::ConstPtr& message);
   vibe_msgs::SutureArray::ConstPtr suturesAt(const ros::Time& stamp) const;
   std::string draw(const sensor_msgs::PointCloud2& particles, const EndoscopeScene::PoseOf& poseOf);

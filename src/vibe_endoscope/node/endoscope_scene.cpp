@@ -120,6 +120,12 @@ std::string EndoscopeScene::setParticles(const sensor_msgs::PointCloud2& message
   return problem;
 }
 
+std::string EndoscopeScene::showParticles(const sensor_msgs::PointCloud2& message) {
+  const std::string problem = read(message);
+  if (problem.empty()) tissue_.show(frame_);
+  return problem;
+}
+
 std::string EndoscopeScene::followParticles(const sensor_msgs::PointCloud2& message) {
   const std::string problem = read(message);
   if (problem.empty()) tissue_.follow(frame_);

@@ -74,6 +74,8 @@ class EndoscopeScene {
 
   std::string setTopology(const vibe_msgs::TissueTopology& message);
   std::string setParticles(const sensor_msgs::PointCloud2& message);
+  /// The same for a state that has been followed.
+  std::string showParticles(const sensor_msgs::PointCloud2& message);
   /// A state that is not to be drawn: smoke and the colour of marks depend on it (TissueVisual::follow()).
   std::string followParticles(const sensor_msgs::PointCloud2& message);
   std::string setSutures(const vibe_msgs::SutureArray& message, const PoseOf& poseOf);

@@ -1,29 +1,28 @@
 #!/usr/bin/env python3
 """Usage: soak.py MINUTES
 What pages cost the simulator, and whether the server bears them for long: again and again 15 s without pages, with one,
-with ten, and with one while others come, go, sleep and send rubbish. The scope makes the same motion in each 15 s, so
-the times of the steps can be compared. Needs a workspace that is built, with the page, and a roscore. Prints a table;
-the status is 1 if the server ended, lost a steady page, or keeps descriptors: more than three, which ROS opens and
-closes itself, above those after the first round."""
+with ten, and with one while others come, go, sleep and send rubbish, and a page of Chromium visits where it is
+installed. The scope makes the same motion in each 15 s, so the times of the steps can be compared. Needs a workspace
+that is built, with the page, and a roscore with robot_description. Prints a table; the status is 1 if the server ended,
+lost a steady page, showed nothing to a visitor, or has grown since the first round: by threads, by 2 MB, or by more
+than three descriptors, which ROS opens and closes itself."""
 
 import json
 import math
 import os
+import shutil
 import subprocess
 import sys
 import time
 
 import numpy
 import rospy
-from sensor_msgs.msg import JointState
 from vibe_msgs.msg import SolverStatistics
-from vibe_testing.program import Program
-from vibe_testing.wait import wait_until
 
 from compare_views import page_work
+from moving_scope import SECONDS, MovingScope
 
-SECONDS = 15  # of a part
-SETTLE = 2  # of it that do not count: pages open and close, and a window of the statistics is a second
+SETTLE = 2  # seconds of a part that do not count: pages open and close, and a window of the statistics is a second
 PARTS = ("0", "1", "10", "1 rough")
 STAGES = ("solver", "solver_wall", "publish")
 PORT = 8898
@@ -36,8 +35,10 @@ class Watch:
     def __init__(self, program):
         self.program, self.folder = program, "/proc/{}/".format(program.process.pid)
 
-    def descriptors(self):
-        return len(os.listdir(self.folder + "fd"))
+    def kept(self):
+        """Memory [MB], descriptors, threads."""
+        counts = [len(os.listdir(self.folder + name)) for name in ("fd", "task")]
+        return (self.program.memory() / 1e6, *counts)
 
     def cpu(self):
         with open(self.folder + "stat", encoding="ascii") as file:
@@ -47,19 +48,14 @@ class Watch:
 
 class Soak:
     def __init__(self):
-        self.simulator = Program(
-            "vibe_sim", "sim_node", name="sim_node", scene="package://vibe_core/scenes/stomach.yaml", time_source="wall"
-        )
-        self.server = Program("vibe_web", "web_node", name="web_node", port=PORT)
-        if not wait_until(lambda: "http" in self.server.output()):
-            sys.exit("soak.py: web_node has not started: " + self.server.last_words())
+        self.graph = MovingScope(PORT)
+        self.server = self.graph.server
         self.watch = Watch(self.server)
-        self.crowd = subprocess.Popen(["node", "test/crowd.mjs", str(PORT)], cwd=page_work(), text=True,
-                                      stdin=subprocess.PIPE, stdout=subprocess.PIPE)  # fmt: skip
-        self.command = rospy.Publisher("scope/servo_jp", JointState, queue_size=1)
+        self.crowd = subprocess.Popen(["node", "test/crowd.mjs", str(PORT), *filter(None, [shutil.which("chromium")])],
+                                      cwd=page_work(), text=True, stdin=subprocess.PIPE, stdout=subprocess.PIPE)  # fmt: skip
         self.windows = {part: [] for part in PARTS}
         self.told = {part: [] for part in PARTS}
-        self.part, self.kept = None, []
+        self.part, self.kept, self.visits = None, [], {}
         rospy.Subscriber("solver_statistics", SolverStatistics, self.take)
 
     def take(self, message):
@@ -67,17 +63,11 @@ class Soak:
             stages = {stage.name: stage for stage in message.stages}
             self.windows[self.part].append([[stages[name].p50, stages[name].p99] for name in STAGES])
 
-    def move(self, seconds):
-        turn = 2 * math.pi * seconds / SECONDS
-        self.command.publish(
-            JointState(position=[0.12 - 0.08 * math.cos(turn), 0, 0.9 * math.sin(turn), 0.5 * math.sin(2 * turn)])
-        )
-
     def perform(self, part):
         self.ask(part)
         begin, cpu = time.monotonic(), self.watch.cpu()
         while time.monotonic() < begin + SECONDS:
-            self.move(time.monotonic() - begin)
+            self.graph.move(time.monotonic() - begin)
             if self.part is None and time.monotonic() > begin + SETTLE:
                 self.part = part
             time.sleep(1 / 60)
@@ -94,10 +84,10 @@ class Soak:
         while time.monotonic() < end and self.server.is_running():
             for part in PARTS:
                 self.told[part].append(self.perform(part))
-            self.ask("0")
+            self.visits = self.ask("0")
             time.sleep(5)  # what slept is closed
-            self.kept.append((self.server.memory() / 1e6, self.watch.descriptors()))
-            print("round {}: {:.1f} MB, {} descriptors".format(len(self.kept), *self.kept[-1]), flush=True)
+            self.kept.append(self.watch.kept())
+            print("round {}: {:.1f} MB, {} descriptors, {} threads".format(len(self.kept), *self.kept[-1]), flush=True)
 
     def report(self):
         print("\npages     steps' p50 and p99 [ms]: CPU; wall; publish      server CPU  frames/s  MB/s  longest gap  others")
@@ -113,14 +103,16 @@ class Soak:
         noise = [numpy.std([w[0][1] for w in self.windows[part]]) / math.sqrt(len(self.windows[part])) for part in PARTS]
         print("standard error of the mean of the p99 of a second, CPU [ms]:", " ".join("{:.2f}".format(n) for n in noise))
         lost = sum(each["lost"] for part in PARTS for each in self.told[part])
-        grown = self.kept[-1][1] - self.kept[0][1]
-        print("steady pages lost: {}; descriptors: {:+d}; memory: {:+.1f} MB".format(lost, grown, self.kept[-1][0] - self.kept[0][0]))
-        return 1 if lost or grown > 3 or not self.server.is_running() else 0
+        visits, seen = self.visits["visits"], self.visits["seen"]
+        print("steady pages lost: {}; visits of Chromium: {}, of which {} saw the organ".format(lost, visits, seen))
+        memory, descriptors, threads = (last - first for first, last in zip(self.kept[0], self.kept[-1]))
+        print("memory: {:+.1f} MB; descriptors: {:+d}; threads: {:+d}".format(memory, descriptors, threads))
+        grown = memory > 2 or descriptors > 3 or threads > 0
+        return 1 if lost or seen < visits or grown or not self.server.is_running() else 0
 
     def close(self):
         self.crowd.stdin.close()
-        self.server.stop()
-        self.simulator.stop()
+        self.graph.stop()
 
 
 def main(minutes):

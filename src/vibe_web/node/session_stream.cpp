@@ -26,8 +26,9 @@ namespace {
 
 constexpr std::uint32_t kQueue = 2;  // a state that is not the newest is of no use
 constexpr std::uint32_t kEventQueue = 1000;
-constexpr int kSlowTicks = 2;  // of tick(): heat and thread five times a second
-constexpr int kFoldTicks = 4;  // the stretch of the wall, on which folds depend, changes slowly
+constexpr int kSlowTicks = 2;                     // of tick(): heat and thread five times a second
+constexpr int kFoldTicks = 4;                     // the stretch of the wall, on which folds depend, changes slowly
+constexpr std::size_t kShapeBytesPerTick = 5000;  // of thread, and as much of blood: 50 kB/s each
 const char* const kBase = "scope_base";
 
 PageFile pageFile(const std::string& type, std::string content) {
@@ -180,12 +181,25 @@ void SessionStream::publishSutures() {
   const std::string wrong = graphics::readSutures(*sutures_, drawing);
   if (!wrong.empty()) return complain(wrong);
   server_.publish(Kind::Sutures, encodeSutures(drawing));
+  publishThreads(drawing);
+  if (organ_) organ_->bleeding.setWounds(drawing, {});
+}
+
+/// The shape of all thread is large, and pages move it with the lines of the sutures. So it is sent anew only when
+/// there are other lines, and else no more often than the wire bears.
+void SessionStream::publishThreads(const graphics::SutureDrawing& drawing) {
+  std::vector<Eigen::Vector3d> points;
+  for (const auto& set : drawing.sets)
+    for (const auto& piece : set.pieces) points.insert(points.end(), piece.line.begin(), piece.line.end());
+  if (points.size() == thread_points_ && ticks_ < threads_due_) return;
   graphics::ColouredShape threads;
   graphics::appendSutures(drawing, graphics::naturalSutures(), threads);
-  Bytes shape = encodeShape(Kind::Threads, threads);
-  if (shape != threads_) server_.publish(Kind::Threads, shape);
+  Bytes shape = encodeShape(Kind::Threads, threads, points);
+  if (shape == threads_) return;
+  server_.publish(Kind::Threads, shape);
+  thread_points_ = points.size();
+  threads_due_ = ticks_ + static_cast<int>(shape.size() / kShapeBytesPerTick);
   threads_ = std::move(shape);
-  if (organ_) organ_->bleeding.setWounds(drawing, {});
 }
 
 void SessionStream::publishWall() {
@@ -194,9 +208,12 @@ void SessionStream::publishWall() {
     if (auto folds = organ_->look.folds(frame_)) server_.publish(Kind::Folds, std::move(*folds));
   if (auto heat = organ_->look.heat(frame_)) server_.publish(Kind::Heat, std::move(*heat));
   if (!sutures_ || (sutures_->bleedings.empty() && organ_->bleeding.shape().triangles.empty())) return;
+  if (ticks_ < blood_due_) return;  // pages move it with the wall
   organ_->surface.update(frame_.positions);
-  if (organ_->bleeding.update(&organ_->surface.vertices(), Eigen::Isometry3d::Identity()))
-    server_.publish(Kind::Blood, encodeShape(Kind::Blood, organ_->bleeding.shape()));
+  if (!organ_->bleeding.update(&organ_->surface.vertices(), Eigen::Isometry3d::Identity())) return;
+  Bytes shape = encodeShape(Kind::Blood, organ_->bleeding.shape());
+  blood_due_ = ticks_ + static_cast<int>(shape.size() / kShapeBytesPerTick);
+  server_.publish(Kind::Blood, std::move(shape));
 }
 
 void SessionStream::complain(const std::string& sentence) {

@@ -17,6 +17,7 @@
 #include "scene_text.hpp"
 #include "server/web_server.hpp"
 #include "state_text.hpp"
+#include "vibe_graphics/geometry/suture_drawing.hpp"
 
 namespace vibe::web {
 
@@ -40,6 +41,7 @@ class SessionStream {
   void publishScene();
   void publishFrame();
   void publishSutures();
+  void publishThreads(const graphics::SutureDrawing& drawing);
   void publishWall();
   void complain(const std::string& sentence);
 
@@ -59,7 +61,8 @@ class SessionStream {
   Bytes threads_;  // as last sent
   std::string complaint_, state_text_;
   bool has_frame_ = false, events_changed_ = true, sutures_changed_ = false;
-  int ticks_ = 0;
+  std::size_t thread_points_ = 0;  // of the threads as last sent
+  int ticks_ = 0, threads_due_ = 0, blood_due_ = 0;
 };
 
 }  // namespace vibe::web

@@ -273,6 +273,28 @@ class EndoscopeCameraTest(unittest.TestCase):
             self.check_spot(image, info, PLACE + ASIDE / 2)
             type(self).clock = end
 
+    def test_a_mark_browns_also_while_its_states_have_no_transforms(self):
+        marked = Ball()
+        spot = marked.burn((1, 0.45, 0.3))
+        marked.grade //= 3
+        cls = type(self)
+
+        def light_of(stamp):
+            image, info = camera.last(stamp)
+            x, y = project(info, in_camera(spot, PLACE)).round().astype(int)
+            return pixels_of(image)[y - 3 : y + 4, x - 3 : x + 4].mean()
+
+        with Camera(rate=0) as camera:
+            camera.last(self.show(ball=Ball()))
+            cls.clock += rospy.Duration(1)
+            self.particles.publish(marked.particles(cls.clock))
+            cls.clock += rospy.Duration(479)  # twice the time in which half of the white is gone
+            old = light_of(self.show(ball=marked))
+            camera.last(self.show(ball=Ball()))
+            new = light_of(self.show(ball=marked))
+        print("grey level of a mark: old {:.0f}, new {:.0f}".format(old, new))
+        self.assertGreater(new, 1.2 * old)
+
     def check_truth(self, truth, stamp, info, place):
         pixel = numpy.round(project(info, in_camera(self.spot, place))).astype(int)
         x, y = pixel

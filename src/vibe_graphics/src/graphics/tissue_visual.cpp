@@ -116,8 +116,12 @@ void TissueVisual::setMesh(const TissueMesh& mesh) {
 }
 
 void TissueVisual::setFrame(const TissueFrame& frame) {
-  if (!surface_) return;
   follow(frame);
+  show(frame);
+}
+
+void TissueVisual::show(const TissueFrame& frame) {
+  if (!surface_) return;
   frame_ = frame;
   has_frame_ = true;
   draw();

@@ -1,7 +1,7 @@
 // The endoscope's picture: two plane pictures, bent by the lens, as vibe_graphics/graphics/endoscope_lens does it.
 
 import {
-  FloatType, HalfFloatType, LinearFilter, Mesh, OrthographicCamera, PerspectiveCamera, PlaneGeometry, Scene, Vector2, WebGLRenderTarget,
+  FloatType, HalfFloatType, LinearFilter, LinearMipmapLinearFilter, Mesh, OrthographicCamera, PerspectiveCamera, PlaneGeometry, Scene, Vector2, WebGLRenderTarget,
   type Object3D, type RawShaderMaterial, type WebGLRenderer, DoubleSide, BufferAttribute,
 } from 'three';
 import { AutoExposure } from './exposure';
@@ -41,7 +41,7 @@ export class EndoscopeView {
     const plane = ({ size }: Source) => new WebGLRenderTarget(size, size, { type, minFilter: LinearFilter, magFilter: LinearFilter });
     this.whole = plane(lens.whole);
     this.middle = plane(lens.middle.size > 0 ? lens.middle : lens.whole);
-    this.target = new WebGLRenderTarget(lens.size, lens.size, { depthBuffer: false });
+    this.target = new WebGLRenderTarget(lens.size, lens.size, { depthBuffer: false, generateMipmaps: true, minFilter: LinearMipmapLinearFilter });
     this.right = this.target.clone();
     this.exposure = new AutoExposure(lens.exposure);
     this.camera.layers.set(kEndoscopeLayer);

@@ -2,9 +2,11 @@
 // around, and controllers that hold the handle of the scope.
 
 import {
-  BufferAttribute, BufferGeometry, CircleGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial, PlaneGeometry, Quaternion, Vector3,
+  BoxGeometry, BufferAttribute, BufferGeometry, CanvasTexture, CapsuleGeometry, CircleGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial,
+  PlaneGeometry, Quaternion, SphereGeometry, Vector3,
   type Texture, type WebXRManager, type XRTargetRaySpace,
 } from 'three';
+import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import type { Drive } from './drive';
 import type { Lens } from './messages';
 import { kPlainLayer } from './organ';
@@ -14,6 +16,8 @@ const kMonitor = 0.9; // edge of the monitor [m]
 const kAhead = 1.3, kBelow = 0.1; // where its centre is: in front of the eyes and below them [m]
 const kModelAhead = 0.65, kModelBelow = 0.45; // the same of the organ's model
 const kModelScale = 1.2;
+const kPatientAhead = 1.05, kPatientBelow = 0.88; // the same of the middle of the patient
+const kSheet = [0.5, 0.62, 0.68]; // colour
 const kDome = 1.6; // radius of the picture around the viewer [m]
 const kInsertion = 0.03, kRotation = 0.8; // speeds of the hand that are those of a key: [m/s], [rad/s]
 const kStrong = 8; // force of the strongest pulse [N]
@@ -63,14 +67,53 @@ class Pair extends Group {
   }
 }
 
+/** The patient on a table, the head to the left: a figure in a sheet, for the eye to know where it is. */
+function patient(): Mesh {
+  const limb = (radius: number, length: number, x: number, z: number) =>
+    new CapsuleGeometry(radius, length, 4, 12).rotateZ(Math.PI / 2).translate(x, 0, z);
+  const parts = [
+    new SphereGeometry(0.1, 16, 10).translate(-0.5, 0.02, 0), limb(0.14, 0.42, -0.1, 0), limb(0.075, 0.75, 0.6, -0.09), limb(0.075, 0.75, 0.6, 0.09),
+    limb(0.045, 0.5, -0.05, -0.2), limb(0.045, 0.5, -0.05, 0.2), new BoxGeometry(2, 0.06, 0.62).translate(0.15, -0.17, 0),
+  ];
+  const figure = mergeGeometries(parts), normal = figure.getAttribute('normal');
+  const light = (k: number) => kSheet[k % 3] * (0.65 + 0.35 * normal.getY(Math.floor(k / 3))); // from above
+  figure.setAttribute('color', new BufferAttribute(Float32Array.from({ length: 3 * normal.count }, (_, k) => light(k)), 3));
+  return new Mesh(figure, new MeshBasicMaterial({ vertexColors: true }));
+}
+
+/** A line of text on a plane, drawn anew only when it changes. */
+class Label extends Mesh<PlaneGeometry, MeshBasicMaterial> {
+  private canvas = document.createElement('canvas');
+  private text = '';
+
+  constructor(width: number) {
+    super(new PlaneGeometry(width, width / 8), new MeshBasicMaterial({ transparent: true }));
+    Object.assign(this.canvas, { width: 512, height: 64 });
+    this.material.map = new CanvasTexture(this.canvas);
+    this.layers.set(kPlainLayer);
+  }
+
+  show(text: string) {
+    if (text === this.text) return;
+    this.text = text;
+    const pen = this.canvas.getContext('2d')!;
+    pen.clearRect(0, 0, 512, 64);
+    Object.assign(pen, { font: '30px sans-serif', fillStyle: '#e8eaed', textAlign: 'center', textBaseline: 'middle' });
+    pen.fillText(text, 256, 32);
+    this.material.map!.needsUpdate = true;
+  }
+}
+
 /** A controller, and how it was held in the frame before. */
 interface Grip { space: XRTargetRaySpace; source: XRInputSource | null; held: boolean; place: Vector3; turn: Quaternion; pressed: boolean[] }
 
 export class Headset {
   private room = new Group();
   private model = new Group(); // the organ upright, at the height of a table
+  private delay = new Label(0.9);
   private monitor = new Pair(new PlaneGeometry(kMonitor, kMonitor));
   private around: Pair;
+  private patient = patient();
   private grips: Grip[] = [];
   private last = 0;
   private placed = false;
@@ -83,9 +126,10 @@ export class Headset {
     this.around = new Pair(dome(lens.field_of_view));
     const floor = new Mesh(new CircleGeometry(3, 48).rotateX(-Math.PI / 2), new MeshBasicMaterial({ color: 0x2c3238 }));
     const rim = new Mesh(new PlaneGeometry(kMonitor + 0.06, kMonitor + 0.06).translate(0, 0, -0.01), new MeshBasicMaterial({ color: 0x0a0c0e }));
-    for (const part of [floor, rim]) part.layers.set(kPlainLayer);
-    this.monitor.add(rim);
-    this.room.add(floor, this.monitor, this.around, this.model);
+    for (const part of [floor, rim, this.patient]) part.layers.set(kPlainLayer);
+    this.delay.position.set(0, -kMonitor / 2 - 0.1, 0);
+    this.monitor.add(rim, this.delay);
+    this.room.add(floor, this.patient, this.monitor, this.around, this.model);
     this.around.visible = false;
     this.room.visible = false;
     stage.scene.add(this.room);
@@ -152,8 +196,13 @@ export class Headset {
     this.room.rotation.y = Math.atan2(-ahead.x, -ahead.z);
     this.monitor.position.set(0, eye.y - kBelow, -kAhead);
     this.around.position.set(0, eye.y, 0);
+    this.patient.position.set(0, eye.y - kPatientBelow, -kPatientAhead);
     this.model.position.set(0, eye.y - kModelBelow, -kModelAhead);
     this.placed = true;
+  }
+
+  showDelay(text: string) {
+    this.delay.show(text);
   }
 
   /** Called for each frame of the headset. */

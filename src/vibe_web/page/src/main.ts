@@ -9,6 +9,7 @@ import { Stage } from './stage';
 import { Stream } from './stream';
 
 const kRate = 60; // frames asked for [Hz]
+const kOtherTime = 10000; // [ms]
 const options = new URLSearchParams(location.hash.slice(1));
 
 const askPattern = () => fetch('pattern').then((answer) => (answer.ok ? answer.arrayBuffer() : null), () => null);
@@ -24,6 +25,7 @@ const drive = new Drive(stream);
 const panel = new Panel(stream, drive);
 const video = new VideoRecorder(canvas);
 let scene: SceneText | null = null, headset: Headset | null = null, frame: Frame | null = null, complete = false;
+let drawnAt = 0; // the last frame [ms]
 let undrawn = 0; // frames that have come since the last picture
 
 /** For tests and for the curious: what has been received and drawn. */
@@ -42,7 +44,7 @@ async function takeScene(text: SceneText) {
   if (!bytes) return panel.status('The server does not give the look of the mucosa; load this page again.');
   stage.organ.setPattern(new Uint8Array(bytes), text.pattern.size);
   complete = true;
-  stage.dirty = true;
+  stage.refresh();
 }
 
 stream.on(Kind.Scene, (bytes) => void takeScene(readText(bytes)));
@@ -52,11 +54,17 @@ stream.on(Kind.Frame, (bytes) => {
   stats.frames++;
   undrawn++;
 });
-stream.on(Kind.Folds, (bytes) => stage.organ.setFolds(bytes, scene?.tallest_fold ?? 0));
-stream.on(Kind.Heat, (bytes) => stage.organ.setHeat(readHeat(bytes)));
-stream.on(Kind.Sutures, (bytes) => stage.sutures.set(readSutures(bytes)));
-stream.on(Kind.Threads, (bytes) => stage.sutures.setThreads(readShape(bytes)));
-stream.on(Kind.Blood, (bytes) => stage.sutures.setBlood(readShape(bytes)));
+
+/** What is shown besides places. */
+const onLook = (kind: Kind, set: (bytes: ArrayBuffer) => void) => stream.on(kind, (bytes) => {
+  set(bytes);
+  stage.refresh();
+});
+onLook(Kind.Folds, (bytes) => stage.organ.setFolds(bytes, scene?.tallest_fold ?? 0));
+onLook(Kind.Heat, (bytes) => stage.organ.setHeat(readHeat(bytes)));
+onLook(Kind.Sutures, (bytes) => stage.sutures.set(readSutures(bytes)));
+onLook(Kind.Threads, (bytes) => stage.sutures.setThreads(readShape(bytes)));
+onLook(Kind.Blood, (bytes) => stage.sutures.setBlood(readShape(bytes), stage.organ.particles));
 
 drive.onChange = () => panel.showDriving();
 element('swap').onclick = () => {
@@ -82,7 +90,7 @@ stage.renderer.setAnimationLoop(() => {
     frame = null;
     stage.setFrame(shown);
     const force = Math.hypot(...shown.wrench.subarray(0, 3));
-    panel.showForce(force);
+    panel.showForce(force, Math.hypot(...shown.wrench.subarray(3, 6)));
     if (headset) headset.force = force;
   }
   if (stage.renderer.xr.isPresenting) headset?.draw();
@@ -92,8 +100,17 @@ stage.renderer.setAnimationLoop(() => {
   if (!shown || !complete) return;
   stats.drawn++;
   stats.firstPicture ||= performance.now();
-  stats.latencies.push(Date.now() - 1000 * shown.time);
+  drawnAt = performance.now();
+  stats.latencies.push(stream.now - 1000 * shown.time);
   if (stats.latencies.length > 600) stats.latencies.shift();
 });
+
+setInterval(() => {
+  const last = stats.latencies.slice(-15).sort((a, b) => a - b), delay = last[last.length >> 1];
+  // a recording, and a simulation that is not in real time, have stamps of another time
+  const text = delay >= 0 && delay < kOtherTime && performance.now() < drawnAt + kOtherTime / 2 ? `${delay.toFixed(0)} ms from state to picture` : '';
+  panel.showDelay(text);
+  headset?.showDelay(text);
+}, 1000);
 
 Object.assign(window, { vibe: { stage, stream, drive, stats, headset: () => headset } });

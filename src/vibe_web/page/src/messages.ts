@@ -97,12 +97,13 @@ export function readSutures(bytes: ArrayBuffer): Sutures {
   };
 }
 
-export interface Shape { places: Float32Array; triangles: Uint32Array; colours: Uint8Array; normals: Float32Array }
+export interface Shape { places: Float32Array; points: Float32Array; triangles: Uint32Array; colours: Uint8Array; normals: Float32Array }
 
 export function readShape(bytes: ArrayBuffer): Shape {
-  const [vertices, corners, runs] = new Uint32Array(bytes, 4, 3), all = new Uint8Array(bytes);
-  const box = new Float32Array(bytes, 16, 6), raw = new Uint16Array(bytes, 40, 3 * vertices), signed = new Int8Array(bytes, 40 + 6 * vertices, 3 * vertices);
-  let at = 40 + 9 * vertices;
+  const [vertices, corners, runs, points] = new Uint32Array(bytes, 4, 4), all = new Uint8Array(bytes), box = new Float32Array(bytes, 20, 6);
+  const placesFrom = (start: number, count: number) => Float32Array.from(new Uint16Array(bytes, start, 3 * count), (place, k) => box[k % 3] + box[3 + (k % 3)] * place);
+  const signed = new Int8Array(bytes, 44 + 6 * (vertices + points), 3 * vertices);
+  let at = 44 + 9 * vertices + 6 * points;
   const whole = () => {
     for (let number = 0, scale = 1; ; scale *= 128) {
       number += (all[at] & 0x7f) * scale;
@@ -118,7 +119,7 @@ export function readShape(bytes: ArrayBuffer): Shape {
     const step = whole();
     triangles[k] = corner += step % 2 ? -(step + 1) / 2 : step / 2;
   }
-  return { places: Float32Array.from(raw, (place, k) => box[k % 3] + box[3 + (k % 3)] * place), triangles, colours, normals: Float32Array.from(signed, (n) => n / 127) };
+  return { places: placesFrom(44, vertices), points: placesFrom(44 + 6 * vertices, points), triangles, colours, normals: Float32Array.from(signed, (n) => n / 127) };
 }
 
 // --- texts

@@ -33,7 +33,7 @@ export class Organ {
   revision = -1;
   private topology: Topology | null = null;
   private geometry = new BufferGeometry();
-  private particles = new Float32Array(0);
+  particles = new Float32Array(0); // their places
   private normals = new Float32Array(0);
   private meshes: Mesh[];
 

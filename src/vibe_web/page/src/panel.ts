@@ -30,6 +30,7 @@ function row(cells: string[], className: string, title: string): HTMLElement {
 export class Panel {
   private replay: ReplayText | null = null;
   private seeking = false;
+  private delay = '';
 
   constructor(private stream: Stream, private drive: Drive) {
     stream.on(Kind.State, (bytes) => this.showState(readText(bytes)));
@@ -49,9 +50,15 @@ export class Panel {
     element('status').textContent = text;
   }
 
-  showForce(newton: number) {
+  showDelay(text: string) {
+    this.delay = text || '-';
+    const shown = element('state').lastElementChild;
+    if (shown) shown.textContent = this.delay;
+  }
+
+  showForce(newton: number, torque: number) {
     element<HTMLMeterElement>('force').value = newton;
-    element('newton').textContent = newton.toFixed(1) + ' N';
+    element('newton').textContent = `${newton.toFixed(1)} N, ${(1000 * torque).toFixed(0)} mN m`;
   }
 
   showDriving() {
@@ -101,6 +108,7 @@ export class Panel {
       ['Needle', state.needle], ['Gas', `${(state.pressure / 133.322).toFixed(1).replace('-0.0', '0.0')} mmHg, ${(1e6 * state.volume).toFixed(0)} mL`],
       ['Marks', String(state.marks)], ['Bites', String(state.bites)], ['Sets', `${state.cinched} of ${state.sutures} cinched`],
       ['Bleeding', state.bleeding ? `${state.bleeding} now, ${(1e6 * state.blood).toFixed(1)} mL lost` : 'none'],
+      ['Delay', this.delay], // last: showDelay() writes there
     ];
     fill(element('state'), terms.flatMap(([name, value]) => [made('dt', name), made('dd', value)]));
     fill(element('sets').querySelector('tbody')!, state.sets.map((set) => row([set.set, set.bites, set.technique, set.stage, set.tension], set.warns ? 'warns' : '', set.help)));

@@ -51,6 +51,7 @@ function bodyOf(visual: Visual): BufferGeometry | null {
 export class Robot {
   readonly root = new Group();
   capsules: Capsule[] = []; // that cast shadows
+  onLoad: () => void = () => {}; // when its parts are there
   private frames = new Map<string, Object3D>();
   private moving: { link: Link; frame: Object3D; place: Vector3; turn: Quaternion; axis: Vector3 }[] = [];
   private names: string[] = [];
@@ -131,6 +132,7 @@ export class Robot {
       return { frame, material, geometry: geometry.clone().applyMatrix4(placed.matrix) };
     }));
     if (parts.length > 0) this.addBody(parts);
+    this.onLoad();
   }
 
   /** All links as the bones of one body, which is drawn at once: from outside, and as the endoscope sees it. */

@@ -16,6 +16,7 @@ const kSizes = [720, 480, 320, 240]; // of the endoscope's picture: a larger one
 const kFirstSize = 240; // the first picture is soon there
 const kQuick = 15, kTooLong = 60; // [ms]
 const kPatience = 20; // pictures before one of another size
+const kAside = 0.35; // the organ from the middle, in edges of the endoscope's picture [1]
 const kArrow = 0.02; // length of a newton [m]
 const kLensFrame = 'scope_camera_optical', kTipFrame = 'scope_tip';
 
@@ -57,6 +58,7 @@ export class Stage {
     this.light();
     this.arrow.traverse((part) => part.layers.set(kPlainLayer));
     this.arrow.visible = false;
+    this.robot.onLoad = () => this.refresh();
     this.camera.layers.set(kPlainLayer);
     this.camera.up.set(0, 0, 1);
     this.camera.position.set(0.4, -0.19, 0.08);
@@ -95,6 +97,7 @@ export class Stage {
   setFrame(frame: Frame) {
     if (frame.revision !== this.organ.revision) return;
     this.organ.setFrame(frame);
+    this.sutures.moveBlood(this.organ.particles);
     this.robot.setJoints(frame.joints);
     smoke.value = [frame.smoke, frame.time % 1000, 0, 0];
     this.showForce(frame.wrench);
@@ -128,6 +131,12 @@ export class Stage {
     if (this.renderer.xr.isPresenting || !clientWidth || !clientHeight) return;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(clientWidth, clientHeight, false);
+    this.dirty = true;
+  }
+
+  /** Both pictures anew, although the frame is the same: a simulator that pauses sends no other. */
+  refresh() {
+    this.drawnTime = NaN;
     this.dirty = true;
   }
 
@@ -165,8 +174,11 @@ export class Stage {
     renderer.clear();
     if (this.endoscopeLarge) {
       this.drawPicture(new Vector4((width - square) / 2, (height - square) / 2, square, square));
+      this.camera.clearViewOffset();
       this.drawOutside(inset);
     } else {
+      const aside = this.endoscope ? kAside * edge : 0; // the organ beside or above the endoscope's picture
+      this.camera.setViewOffset(width, height, width > height ? aside : 0, width > height ? 0 : aside, width, height);
       this.drawOutside(new Vector4(0, 0, width, height));
       this.drawPicture(inset);
     }

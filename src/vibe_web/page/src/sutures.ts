@@ -10,6 +10,7 @@ import { kReach, materialOf, smoke } from './shaders';
 const kThread = 0.16e-3; // radius of 2-0 polypropylene [m]
 const kEmphasis = 3; // of the view from outside, as in vibe.rviz
 const kSides = 6;
+const kCell = 0.008; // of the grid in which neighbours are found [m]
 const kSteel = [0.72, 0.72, 0.74, 0.5], kPolymer = [0.85, 0.86, 0.88, 1];
 const kStrong = 8; // tension at the end of the colours [N]
 
@@ -69,8 +70,49 @@ class Shape {
 
 const kFull = [0.1, 0.75, 0.3, 1], kPartial = [0.95, 0.55, 0.1, 1], kBleeding = [0.7, 0.03, 0.03, 1], kStopped = [0.3, 0.12, 0.08, 1];
 
+/** A shape whose vertices go where the points go that were nearest to them when it was sent. */
+class Follower {
+  private nearest: Uint32Array;
+
+  constructor(private places: Float32Array, private points: Float32Array) {
+    this.nearest = nearestOf(places, points);
+  }
+
+  move(mesh: Mesh, points: Float32Array) {
+    const { places, nearest } = this, position = mesh.geometry.getAttribute('position') as BufferAttribute;
+    if (points.length !== this.points.length || points.length === 0) return;
+    for (let k = 0; k < places.length; k++) {
+      const from = 3 * nearest[Math.floor(k / 3)] + (k % 3);
+      position.array[k] = places[k] + points[from] - this.points[from];
+    }
+    position.needsUpdate = true;
+  }
+}
+
+/** For each place the nearest of the points, which is looked for in its cell and in those around. */
+function nearestOf(places: Float32Array, points: Float32Array): Uint32Array {
+  const cells = new Map<number, number[]>(), all = Array.from({ length: points.length / 3 }, (_, k) => k);
+  const key = (of: Float32Array, k: number, x = 0, y = 0, z = 0) =>
+    ((Math.floor(of[k] / kCell) + x) * 1009 + Math.floor(of[k + 1] / kCell) + y) * 1009 + Math.floor(of[k + 2] / kCell) + z;
+  for (const k of all) cells.set(key(points, 3 * k), [...(cells.get(key(points, 3 * k)) ?? []), k]);
+  const steps = [-1, 0, 1];
+  return Uint32Array.from({ length: places.length / 3 }, (_, vertex) => {
+    const v = 3 * vertex, near = steps.flatMap((x) => steps.flatMap((y) => steps.flatMap((z) => cells.get(key(places, v, x, y, z)) ?? [])));
+    let nearest = 0, least = Infinity;
+    for (const k of near.length > 0 ? near : all) {
+      const x = points[3 * k] - places[v], y = points[3 * k + 1] - places[v + 1], z = points[3 * k + 2] - places[v + 2];
+      const squared = x * x + y * y + z * z;
+      if (squared < least) [nearest, least] = [k, squared];
+    }
+    return nearest;
+  });
+}
+
 export class SutureView {
   readonly root = new Group();
+  private threads: Follower | null = null; // by the lines of the sutures
+  private pools: Follower | null = null; // blood, by the wall
+  private line = new Float32Array(0); // of all threads, as last sent
   private plain = this.mesh(kPlainLayer, new MeshBasicMaterial({ vertexColors: true }));
   private natural = this.mesh(kEndoscopeLayer, materialOf({
     vertex: 'surface.vert', fragment: 'suture.frag', side: DoubleSide, uniforms: { reach: { value: kReach }, smoke },
@@ -90,14 +132,24 @@ export class SutureView {
 
   set(sutures: Sutures) {
     replace(this.plain, this.shapeOf(sutures).geometry());
+    this.line = Float32Array.from(sutures.sets.flatMap((set) => set.threads.flatMap(({ points }) => Array.from(points))));
+    this.threads?.move(this.natural, this.line); // else another shape will come
   }
 
   setThreads(shape: SentShape) {
     replace(this.natural, geometryOf(shape));
+    this.threads = new Follower(shape.places, shape.points);
+    this.threads.move(this.natural, this.line);
   }
 
-  setBlood(shape: SentShape) {
+  /** @param wall  places of its particles now */
+  setBlood(shape: SentShape, wall: Float32Array) {
     replace(this.blood, geometryOf(shape));
+    this.pools = shape.places.length > 0 && wall.length > 0 ? new Follower(shape.places, wall.slice()) : null;
+  }
+
+  moveBlood(wall: Float32Array) {
+    this.pools?.move(this.blood, wall);
   }
 
   private shapeOf(sutures: Sutures): Shape {
@@ -123,7 +175,7 @@ const woundRadius = (millilitres: number) => Math.min(0.02, 0.01 * Math.cbrt(0.3
 
 function geometryOf({ places, triangles, colours, normals }: SentShape): BufferGeometry {
   const geometry = new BufferGeometry();
-  geometry.setAttribute('position', new BufferAttribute(places, 3));
+  geometry.setAttribute('position', new BufferAttribute(places.slice(), 3));
   geometry.setAttribute('normal', new BufferAttribute(normals, 3));
   geometry.setAttribute('vertex_colour', new BufferAttribute(colours, 4, true));
   geometry.setAttribute('texcoord0', new BufferAttribute(new Float32Array(places.length), 3));

@@ -16,8 +16,8 @@ for await (const file of createInterface({ input: process.stdin })) {
   await wait(2500); // folds and heat come five times a second
   const data = await page.evaluate(() => {
     const { stage } = window.vibe;
-    stage.endoscope.exposure.time = stage.drawnTime = NaN;
-    stage.dirty = true;
+    stage.endoscope.exposure.time = NaN;
+    stage.refresh();
     stage.draw();
     let text = '';
     for (const byte of stage.pictureBytes().bytes) text += String.fromCharCode(byte);

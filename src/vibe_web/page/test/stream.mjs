@@ -39,6 +39,7 @@ function drive(client, number, keys = [kW], grant = text(client, 13).grant) {
   client.socket.send(bytes);
 }
 
+const timeOf = (client) => client.last[3].readDoubleLE(8); // of the last frame [s]
 const insertion = (client) => text(client, 10).joints[0];
 async function rest(client) {
   for (let last = NaN; ; last = insertion(client)) {
@@ -105,7 +106,15 @@ await check('a client gets the rate that it asks for', async () => {
   return { rate };
 });
 
-await check('a page that has not drawn what it has gets no more', async () => {
+await check('more pages than there is room for are refused', async () => {
+  const pages = Array.from({ length: 24 }, () => open()); // one looks already
+  await until(() => pages.some(({ status }) => status > 0), 'a refusal');
+  expect(pages.every(({ status }) => status === 0 || status === 503), pages.map(({ status }) => status).join());
+  for (const { socket } of pages) socket.terminate();
+  await wait(500);
+});
+
+await check('a page that has not drawn what it has gets no more, and then what is newest', async () => {
   const page = open();
   await isOpen(page);
   page.socket.send(Buffer.from([7, 0]));
@@ -115,6 +124,7 @@ await check('a page that has not drawn what it has gets no more', async () => {
   expect(page.counts[3] === before && before >= 2, `${before}, then ${page.counts[3]} frames`);
   page.socket.send(Buffer.from([7, before]));
   await until(() => page.counts[3] === before + 2, 'two more frames');
+  expect(timeOf(watcher) - timeOf(page) < 0.5, `${timeOf(watcher) - timeOf(page)} s behind`);
   await wait(500);
   expect(page.counts[3] === before + 2, `${page.counts[3] - before} more frames`);
   page.socket.terminate();
@@ -160,6 +170,7 @@ await check('bytes on the wire', async () => {
   await wait(2000);
   const seconds = (Date.now() - begin) / 1000;
   const perFrame = watcher.last[3].length;
+  expect(watcher.counts[2] === 1, `${watcher.counts[2]} topologies`);
   expect(60 * perFrame < 1.5e6, `${perFrame} bytes per frame`);
   return { bytes_per_second: (watcher.bytes - bytes) / seconds, frames_per_second: (watcher.counts[3] - frames) / seconds, bytes_per_frame: perFrame };
 });

@@ -20,11 +20,11 @@ enum class Kind : std::uint8_t {
   Events = 8,     ///< text: the last events with their numbers
   Replay = 9,     ///< text: where a recording stands
   Operator = 10,  ///< text: whether anybody drives, and why not
-  Pong = 11,      ///< to one client: the eight bytes of its ping
-  Refusal = 12,   ///< text, to one client: one sentence
-  Grant = 13,     ///< text, to one client: it drives, and what its drive messages have to name
-  Blood = 14,     ///< shape_message.hpp
-  Threads = 15    ///< shape_message.hpp: thread, T-tags and cinches as the endoscope sees them
+  Pong = 11,  ///< to one client: u8 kind, u8 0[7], the eight bytes of its ping, f64 time of the server since 1970 [s]
+  Refusal = 12,  ///< text, to one client: one sentence
+  Grant = 13,    ///< text, to one client: it drives, and what its drive messages have to name
+  Blood = 14,    ///< shape_message.hpp
+  Threads = 15   ///< shape_message.hpp: thread, T-tags and cinches as the endoscope sees them
 };
 constexpr std::size_t kKinds = 16;  ///< one more than the largest number
 

@@ -39,18 +39,20 @@ void putCorners(ByteWriter& writer, const std::vector<std::uint32_t>& corners) {
 
 }  // namespace
 
-Bytes encodeShape(Kind kind, const graphics::ColouredShape& shape) {
+Bytes encodeShape(Kind kind, const graphics::ColouredShape& shape, const std::vector<Eigen::Vector3d>& points) {
   const std::size_t count = shape.vertices.size();
   const PlaceBox box(count, [&](std::size_t i) { return shape.vertices[i].position; });
   const std::vector<Run> runs = runsOf(shape.colours);
-  ByteWriter writer(kind, 40 + 9 * count + 6 * runs.size() + 2 * shape.triangles.size());
+  ByteWriter writer(kind, 44 + 9 * count + 6 * points.size() + 6 * runs.size() + 2 * shape.triangles.size());
   for (int k = 0; k < 3; ++k) writer.put(std::uint8_t{0});
-  for (const std::size_t number : {count, shape.triangles.size(), runs.size()})
+  for (const std::size_t number : {count, shape.triangles.size(), runs.size(), points.size()})
     writer.put(static_cast<std::uint32_t>(number));
   writer.putAll(box.lowest.data(), 3);
   writer.putAll(box.step.data(), 3);
   for (const graphics::MovingVertex& vertex : shape.vertices)
     for (std::size_t k = 0; k < 3; ++k) writer.put(box.place(vertex.position[k], k));
+  for (const Eigen::Vector3d& point : points)
+    for (std::size_t k = 0; k < 3; ++k) writer.put(box.place(static_cast<float>(point[static_cast<int>(k)]), k));
   for (const graphics::MovingVertex& vertex : shape.vertices)
     for (const float component : vertex.normal) writer.put(static_cast<std::int8_t>(std::lround(127 * component)));
   for (const Run& run : runs) {

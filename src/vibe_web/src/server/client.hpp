@@ -6,6 +6,7 @@
 
 #include <boost/asio/steady_timer.hpp>
 
+#include "protocol/byte_writer.hpp"
 #include "server/shared.hpp"
 
 namespace vibe::web {
@@ -142,9 +143,11 @@ class Client : public std::enable_shared_from_this<Client<Stream>> {
   }
 
   void answer(const std::array<std::uint8_t, 8>& ping) {
-    Bytes pong{static_cast<std::uint8_t>(Kind::Pong)};
-    pong.insert(pong.end(), ping.begin(), ping.end());
-    offer(Kind::Pong, std::make_shared<const Bytes>(std::move(pong)));
+    ByteWriter pong(Kind::Pong);
+    for (int k = 0; k < 7; ++k) pong.put(std::uint8_t{0});
+    pong.putAll(ping.data(), ping.size());
+    pong.put(std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count());
+    offer(Kind::Pong, std::make_shared<const Bytes>(pong.take()));
   }
 
   void close(websocket::close_code code) {

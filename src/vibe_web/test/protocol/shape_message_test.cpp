@@ -31,18 +31,21 @@ graphics::ColouredShape tube() {
 
 TEST(ShapeMessage, HoldsTheShapeInLittleMoreThanAThirdOfItsBytes) {
   const graphics::ColouredShape shape = tube();
-  const Bytes bytes = encodeShape(Kind::Threads, shape);
+  const Bytes bytes = encodeShape(Kind::Threads, shape, {{0.0995, 0, 0}});
   EXPECT_LT(28 * bytes.size(), 10 * (20 * shape.vertices.size() + 4 * shape.triangles.size()));
   float box[6];
-  std::memcpy(box, bytes.data() + 16, sizeof box);
+  std::memcpy(box, bytes.data() + 20, sizeof box);
   for (std::size_t i = 0; i < 3 * shape.vertices.size(); ++i) {
     std::uint16_t place;
-    std::memcpy(&place, bytes.data() + 40 + 2 * i, sizeof place);
+    std::memcpy(&place, bytes.data() + 44 + 2 * i, sizeof place);
     ASSERT_NEAR(box[i % 3] + box[3 + i % 3] * place, shape.vertices[i / 3].position[i % 3], 1e-6);
-    const auto normal = static_cast<std::int8_t>(bytes[40 + 6 * shape.vertices.size() + i]);
+    const auto normal = static_cast<std::int8_t>(bytes[44 + 6 * shape.vertices.size() + 6 + i]);
     ASSERT_NEAR(normal / 127.0, shape.vertices[i / 3].normal[i % 3], 0.005);
   }
-  const std::uint8_t* at = bytes.data() + 40 + 9 * shape.vertices.size();
+  std::uint16_t point;
+  std::memcpy(&point, bytes.data() + 44 + 6 * shape.vertices.size(), sizeof point);
+  EXPECT_EQ(point, 65535);
+  const std::uint8_t* at = bytes.data() + 44 + 9 * shape.vertices.size() + 6;
   for (const graphics::PackedColour colour : {0xFF102030, 0xFF203040}) {
     EXPECT_EQ(std::memcmp(at, &colour, sizeof colour), 0);
     at += sizeof colour;
@@ -58,7 +61,7 @@ TEST(ShapeMessage, HoldsTheShapeInLittleMoreThanAThirdOfItsBytes) {
 }
 
 TEST(ShapeMessage, NothingIsAHeader) {
-  EXPECT_EQ(encodeShape(Kind::Blood, {}).size(), 40U);
+  EXPECT_EQ(encodeShape(Kind::Blood, {}).size(), 44U);
 }
 
 }  // namespace

@@ -80,6 +80,8 @@ class TissueVisual {
   void setMesh(const TissueMesh& mesh);
   /// @param frame  of this mesh, checked by readParticles()
   void setFrame(const TissueFrame& frame);
+  /// The same for a frame that has been followed, and may come later than those after it.
+  void show(const TissueFrame& frame);
   /// A frame that is not to be drawn, but smokes and lets marks age.
   void follow(const TissueFrame& frame);
   void setLook(const TissueLook& look);  ///< at once, also for the frame that is drawn

@@ -1,0 +1,66 @@
+// How soon a page shows the organ, and how old what it shows is: for benchmark/opening.py. Arguments: PORT CHROMIUM TIMES
+// SECONDS. One line of JSON for each opening in a browser that has nothing in its store, then one about the ages.
+
+import { launch, until, wait } from './checks.mjs';
+
+const [port, chromium, times, seconds] = process.argv.slice(2);
+const kKinds = { 1: 'scene', 2: 'topology', 3: 'frame', 4: 'folds' };
+const browser = await launch(chromium);
+
+/** Notes when the first message of each kind comes. */
+function noteFirst() {
+  window.first = {};
+  const Plain = window.WebSocket;
+  window.WebSocket = class extends Plain {
+    constructor(address) {
+      super(address);
+      this.addEventListener('message', ({ data }) => (window.first[new Uint8Array(data, 0, 1)[0]] ??= performance.now()));
+    }
+  };
+}
+
+async function open() {
+  const context = await browser.createBrowserContext(), page = await context.newPage();
+  await page.setViewport({ width: 800, height: 600 });
+  await page.evaluateOnNewDocument(noteFirst);
+  await page.goto(`http://localhost:${port}/`);
+  await until(() => page.evaluate(() => window.vibe?.stats.firstPicture > 0), 'a picture', 120);
+  return { context, page };
+}
+
+const timesOf = (page) => page.evaluate((kinds) => {
+  const all = { picture: window.vibe.stats.firstPicture };
+  for (const { name, responseEnd } of performance.getEntriesByType('resource'))
+    if (/\.js$|\/pattern$/.test(name)) all[name.endsWith('pattern') ? 'pattern' : 'script'] = responseEnd;
+  for (const [kind, name] of Object.entries(kinds)) all[name] = window.first[kind];
+  return all;
+}, kKinds);
+
+/** Of pictures that are finished: the time to draw each, and how old its state was then [ms]. */
+const agesOf = (page) => page.evaluate(() => {
+  const { stage } = window.vibe, draw = stage.draw.bind(stage), gl = stage.renderer.getContext();
+  const found = (window.found = { edge: 0, draw: [], age: [], begin: performance.now() });
+  stage.draw = () => {
+    if (!stage.dirty) return;
+    const begin = performance.now();
+    draw();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits until it is drawn
+    const end = performance.now();
+    found.edge = stage.endoscope.target.width;
+    found.draw.push(end - begin);
+    found.age.push(performance.timeOrigin + end - 1000 * stage.time);
+  };
+});
+
+for (let k = 0; k < Number(times); k++) {
+  const { context, page } = await open();
+  console.log(JSON.stringify(await timesOf(page)));
+  await context.close();
+}
+const { page } = await open();
+await wait(2000);
+await agesOf(page);
+await wait(1000 * Number(seconds));
+console.log(JSON.stringify(await page.evaluate(() => ({ ...window.found, seconds: (performance.now() - window.found.begin) / 1000 }))));
+await browser.close();
+process.exit(0);
