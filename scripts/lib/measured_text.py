@@ -7,6 +7,7 @@ import textwrap
 from measured_store import number
 
 WIDTH = 120  # of a line of a page
+MANY = 6  # rows of one origin that are not named one by one, where there are other origins
 NEGLIGIBLE = 1e-6  # an error as a fraction: what is smaller is not told apart
 
 
@@ -74,9 +75,11 @@ def origin(store, section, labelled):
         labels, loads = groups.setdefault(place, ({}, []))
         labels[label] = None
         loads += [float(row["load"])] if row["load"] else []
+    most = max((labels for labels, _ in groups.values()), key=len, default={})
     parts = []
     for (old, date, version, machine), (labels, loads) in sorted(groups.items(), key=lambda item: item[0][0]):
         load = ", load " + span(loads) if loads else ""
-        rows = ": " + ", ".join(labels) if len(groups) > 1 else ""
+        named = "all others" if labels is most and len(most) > MANY else ", ".join(labels)
+        rows = ": " + named if len(groups) > 1 else ""
         parts.append(f"{'**an older version**, ' if old else ''}{date}, version {version}, {machine}{load}{rows}")
     return sentence(f"Measured: {'; '.join(parts)} (`scripts/accuracy --section {section}`).")
