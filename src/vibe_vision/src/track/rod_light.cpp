@@ -57,7 +57,8 @@ void RodLight::guess(const MarkerPose& pose, const PixelBlock& pixels) {
   solve(Vector::Ones(), 1e-6);
 }
 
-/// Where a lamp is mirrored, a row is brighter, but its black and white differ as much as elsewhere.
+/// Where a lamp is mirrored, a row is brighter than most, but its black and white differ as much as elsewhere. Rows
+/// that are only less distinct, as in a long exposure, mirror nothing.
 void RodLight::guessSheen(const PixelBlock& pixels) {
   Vector count = Vector::Zero(), sum = count, squares = count;
   for (std::size_t i = 0; i < pixels.count; ++i) {
@@ -72,7 +73,10 @@ void RodLight::guessSheen(const PixelBlock& pixels) {
     if (count[k] < 1) ratio[k] = 1e9;
   const Vector all = ratio;
   std::nth_element(ratio.data(), ratio.data() + kPlain - 1, ratio.data() + kPlaces);
-  sheen_ = (mean - ratio[kPlain - 1] * spread).cwiseMax(0);
+  Vector sorted = mean;
+  std::nth_element(sorted.data(), sorted.data() + kPlaces / 2, sorted.data() + kPlaces);
+  sheen_ = (mean - ratio[kPlain - 1] * spread).cwiseMin(mean - Vector::Constant(sorted[kPlaces / 2]));
+  sheen_ = sheen_.cwiseMax(0);
   for (int k = 0; k < kPlaces; ++k)
     if (all[k] == 1e9) sheen_[k] = 0;
   shines_ = placed_ = sheen_.maxCoeff() > kNoticeableSheen * level_;
