@@ -23,15 +23,16 @@ rospy.init_node("forces", anonymous=True)
 rospy.Subscriber("scope/measured_cf", WrenchStamped, keep)
 rospy.Subscriber("procedure/events", ProcedureEvent, lambda message: events.append(message.text))
 rospy.sleep(float(sys.argv[1]))
+samples = list(rows)  # messages still come
 with open(sys.argv[2], "w", newline="") as file:
     writer = csv.writer(file)
     writer.writerow(("time", "fx", "fy", "fz", "tx", "ty", "tz"))  # [s], [N], [N m]
-    writer.writerows(rows)
-forces = [(fx**2 + fy**2 + fz**2) ** 0.5 for _, fx, fy, fz, *_ in rows]
-print("{} samples, {:.2f} N at most".format(len(rows), max(forces)))
+    writer.writerows(samples)
+forces = [(fx**2 + fy**2 + fz**2) ** 0.5 for _, fx, fy, fz, *_ in samples]
+print("{} samples, {:.2f} N at most".format(len(samples), max(forces)))
 print("\n".join(events))
 plt.figure(figsize=(4.8, 3.2), layout="constrained")
-plt.plot([row[0] - rows[0][0] for row in rows], forces)
+plt.plot([row[0] - samples[0][0] for row in samples], forces)
 plt.xlabel("time [s]")
 plt.ylabel("force on the tool [N]")
 plt.savefig(sys.argv[3], dpi=110)

@@ -22,20 +22,27 @@ const kDome = 1.6; // radius of the picture around the viewer [m]
 const kInsertion = 0.03, kRotation = 0.8; // speeds of the hand that are those of a key: [m/s], [rad/s]
 const kStrong = 8; // force of the strongest pulse [N]
 
+const kRings = 24, kSectors = 64; // of that picture
+const kMiddle = 0.55; // share of its rings that are its middle, which leaves the edge of the eye at rest
+
 const enum Pad { Trigger = 0, Squeeze = 1, Stick = 3, Lower = 4, Upper = 5 }
-const kGrab = 'G'.charCodeAt(0), kGas = 'I'.charCodeAt(0), kPedal = ' '.charCodeAt(0);
+// Keys of the table that buttons hold: of the hand at the handle, and of the other one, which works the device.
+const keyOf = (letter: string) => letter.charCodeAt(0);
+const kHandle: [Pad, number][] = [[Pad.Trigger, keyOf(' ')], [Pad.Lower, keyOf('G')], [Pad.Upper, keyOf('I')], [Pad.Stick, keyOf('T')]];
+const kDevice: [Pad, number][] = [[Pad.Trigger, keyOf('R')], [Pad.Lower, keyOf('N')], [Pad.Upper, keyOf('C')], [Pad.Stick, keyOf('F')]];
+const kHelixAdvance = 4, kHelixRotation = 5; // joints
 
 /** The picture as the lens took it, on a part of a ball around the eye: equidistant, so angles are true. */
 function dome(fieldOfView: number): BufferGeometry {
-  const rings = 24, sectors = 64, place: number[] = [], uv: number[] = [], triangles: number[] = [];
-  for (let r = 0; r <= rings; r++)
-    for (let s = 0; s < sectors; s++) {
-      const share = r / rings, theta = (share * fieldOfView) / 2, phi = (2 * Math.PI * s) / sectors;
+  const place: number[] = [], uv: number[] = [], triangles: number[] = [];
+  for (let r = 0; r <= kRings; r++)
+    for (let s = 0; s < kSectors; s++) {
+      const share = r / kRings, theta = (share * fieldOfView) / 2, phi = (2 * Math.PI * s) / kSectors;
       place.push(kDome * Math.sin(theta) * Math.cos(phi), kDome * Math.sin(theta) * Math.sin(phi), -kDome * Math.cos(theta));
       uv.push(0.5 + 0.5 * share * Math.cos(phi), 0.5 + 0.5 * share * Math.sin(phi));
-      if (r === rings) continue;
-      const a = r * sectors + s, b = r * sectors + ((s + 1) % sectors);
-      triangles.push(a, b, a + sectors, b, b + sectors, a + sectors);
+      if (r === kRings) continue;
+      const a = r * kSectors + s, b = r * kSectors + ((s + 1) % kSectors);
+      triangles.push(a, b, a + kSectors, b, b + kSectors, a + kSectors); // from the middle outwards
     }
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(new Float32Array(place), 3));
@@ -56,6 +63,11 @@ class Pair extends Group {
       this.add(mesh);
       return mesh;
     });
+  }
+
+  /** Of a dome, from its middle. */
+  showRings(count: number) {
+    for (const { geometry } of this.eyes) geometry.setDrawRange(0, 6 * kSectors * count);
   }
 
   show(pictures: Texture[]) {
@@ -117,6 +129,7 @@ export class Headset {
   private grips: Grip[] = [];
   private last = 0;
   private placed = false;
+  private view = 0;
   force = 0; // [N]
 
   constructor(private stage: Stage, private drive: Drive, lens: Lens) {
@@ -249,28 +262,32 @@ export class Headset {
     grip.turn.copy(grip.space.quaternion);
   }
 
+  // Without a hand at the handle the buttons are those of the room.
   private readPad(grip: Grip, axes: number[], keys: Set<number>) {
     const pad = grip.source?.gamepad;
     if (!pad) return;
-    const down = (button: Pad) => pad.buttons[button]?.pressed ?? false;
-    const pressed = (button: Pad) => down(button) && !grip.pressed[button];
-    axes[3] -= pad.axes[2] ?? 0;
-    axes[2] -= pad.axes[3] ?? 0;
-    if (down(Pad.Trigger)) keys.add(kPedal);
-    if (grip.source!.handedness === 'left') {
-      if (pressed(Pad.Lower)) this.toggleAround();
-      if (pressed(Pad.Upper)) this.recentre();
+    const pressed = (button: Pad) => (pad.buttons[button]?.pressed ?? false) && !grip.pressed[button];
+    const held = this.grips.some((each) => each.held);
+    if (!held && pressed(Pad.Lower)) this.nextView();
+    if (!held && pressed(Pad.Upper)) this.recentre();
+    if (held) for (const [button, key] of grip.held ? kHandle : kDevice) if (pad.buttons[button]?.pressed) keys.add(key);
+    const [across, up] = [pad.axes[2] ?? 0, -(pad.axes[3] ?? 0)];
+    if (held && !grip.held) {
+      axes[kHelixAdvance] += up;
+      axes[kHelixRotation] += across;
     } else {
-      if (down(Pad.Lower)) keys.add(kGrab);
-      if (down(Pad.Upper)) keys.add(kGas);
+      axes[3] -= across;
+      axes[2] += up;
     }
     if (grip.held && this.force > 0.3) void pad.hapticActuators?.[0]?.pulse(Math.min(1, this.force / kStrong), 30);
     grip.pressed = pad.buttons.map((button) => button.pressed);
   }
 
-  /** The picture on the monitor, or all around the eyes. */
-  toggleAround() {
-    this.around.visible = !this.around.visible;
-    this.monitor.visible = !this.around.visible;
+  /** The picture on the monitor, all around the eyes, or its middle there. */
+  nextView() {
+    this.view = (this.view + 1) % 3;
+    this.around.visible = this.view > 0;
+    this.monitor.visible = this.view === 0;
+    this.around.showRings(this.view === 1 ? kRings : Math.round(kMiddle * kRings));
   }
 }

@@ -180,14 +180,21 @@ await check('a headset enters, drives with the handle and sees in stereo', async
     }
   });
   const moved = (await rest(page)) - begin;
-  await page.evaluate(() => window.device.controllers.right.updateButtonValue('squeeze', 0));
+  const helix = async () => (await operator(page)).joints[4], inside = await helix();
+  await page.evaluate(() => window.device.controllers.left.updateAxes('thumbstick', 0, -1)); // the other hand works the device
+  await until(async () => (await helix()) > inside + 0.002, 'the helix');
+  await page.evaluate(() => {
+    const { left, right } = window.device.controllers;
+    left.updateAxes('thumbstick', 0, 0);
+    right.updateButtonValue('squeeze', 0);
+  });
   const counts = { calls: 0, triangles: 0 }; // with new pictures of both lenses
   for (let k = 0; k < 40; k++, await wait(50)) {
     const { calls, triangles } = await page.evaluate(() => window.vibe.stage.counts);
     if (triangles > counts.triangles) Object.assign(counts, { calls, triangles });
   }
   expect(counts.calls <= 2 * 25 && counts.triangles <= 2 * 120000, JSON.stringify(counts)); // both eyes
-  await page.evaluate(() => window.vibe.headset().toggleAround());
+  await page.evaluate(() => window.vibe.headset().nextView());
   await wait(2000);
   await save(page, 'around');
   const seen = await levels(page);

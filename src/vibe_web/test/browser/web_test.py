@@ -61,7 +61,7 @@ class Web(unittest.TestCase):
             shutil.rmtree(cls.folder)
 
     def run_script(self, script, *arguments):
-        """Each check of a script is a subtest."""
+        """@return what the checks of a script found, by name"""
         if not NODE or not self.work:
             self.skipTest("the page has not been built: it needs nodejs and npm")
         run = subprocess.run(
@@ -76,9 +76,8 @@ class Web(unittest.TestCase):
         print(run.stdout)
         self.assertEqual(run.returncode, 0, run.stdout)
         self.assertTrue(checks, run.stdout)
-        for check in checks:
-            with self.subTest(check["name"]):
-                self.assertTrue(check["ok"], check["problem"] + "\n" + self.server.last_words())
+        failed = ["{name}: {problem}".format(**check) for check in checks if not check["ok"]]
+        self.assertFalse(failed, "\n".join([*failed, self.server.last_words()]))
         return {check["name"]: check.get("detail") for check in checks}
 
     def run_in_chromium(self, script, *arguments):
