@@ -288,6 +288,7 @@ export class Headset {
     this.view = (this.view + 1) % 3;
     this.around.visible = this.view > 0;
     this.monitor.visible = this.view === 0;
+    this.patient.visible = this.view !== 1; // which would stand before the picture
     this.around.showRings(this.view === 1 ? kRings : Math.round(kMiddle * kRings));
   }
 }

@@ -108,10 +108,13 @@ await check('a client gets the rate that it asks for', async () => {
 
 await check('more pages than there is room for are refused', async () => {
   const pages = Array.from({ length: 24 }, () => open()); // one looks already
-  await until(() => pages.some(({ status }) => status > 0), 'a refusal');
-  expect(pages.every(({ status }) => status === 0 || status === 503), pages.map(({ status }) => status).join());
-  for (const { socket } of pages) socket.terminate();
-  await wait(500);
+  try {
+    await until(() => pages.some(({ status }) => status > 0), 'a refusal');
+    expect(pages.every(({ status }) => status === 0 || status === 503), pages.map(({ status }) => status).join());
+  } finally {
+    for (const { socket } of pages) socket.terminate();
+    await wait(500);
+  }
 });
 
 await check('a page that has not drawn what it has gets no more, and then what is newest', async () => {

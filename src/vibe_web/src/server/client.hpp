@@ -35,12 +35,14 @@ template <class Stream>
 class Client : public std::enable_shared_from_this<Client<Stream>> {
  public:
   Client(Stream&& stream, std::shared_ptr<Shared> shared)
-      : socket_(std::move(stream)), timer_(socket_.get_executor()), shared_(std::move(shared)) {}
+      : socket_(std::move(stream)), timer_(socket_.get_executor()), shared_(std::move(shared)) {
+    ++shared_->client_count;  // before it is open: many may ask at once
+  }
 
   ~Client() {
+    --shared_->client_count;
     if (id_ == 0) return;
     shared_->clients.erase(id_);
-    --shared_->client_count;
     shared_->on_leave(id_);
   }
 
@@ -57,7 +59,6 @@ class Client : public std::enable_shared_from_this<Client<Stream>> {
  private:
   void begin() {
     id_ = ++shared_->last_id;
-    ++shared_->client_count;
     waiting_ = shared_->newest;
     shared_->clients[id_] = [weak = this->weak_from_this()](Kind kind, SharedBytes bytes) {
       if (const auto self = weak.lock()) self->offer(kind, std::move(bytes));
