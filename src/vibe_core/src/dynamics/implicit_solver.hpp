@@ -92,6 +92,8 @@ class ImplicitStep {
   ToolDisplacement expectedDisplacement() const;
   bool asleep(Activity activity) const;
   bool lost() const;
+  bool jammed() const;
+  void noteJam(double given, double held);
   bool heldByGas() const;
   void recover();
   void recoverAround();

@@ -32,6 +32,14 @@ constexpr double kRecoveryRate = 20;
 // Steps between checks for an organ that is inside out. Design choice: the check costs a pass over all triangles.
 constexpr int kCheckEvery = 10;
 
+// Walls are jammed where the guard against crossings takes back what the wall's forces do: rate at which it gives energy
+// back, over the energy that the wall holds. Design choice: a fold that is drawn through its own loops has 40 to 60, one
+// that is pressed together hardly any [1/s].
+constexpr double kJammedRate = 6;
+// Time for which they are until they are led back to rest. Design choice: folds that slip past each other are free
+// within some steps [s].
+constexpr double kJammedTime = 1;
+
 // Share of the wall's tension that the gas has to bear for a state to count as held by it. Design choice: half; the
 // rest is motion and what else pulls.
 constexpr double kHeldPart = 0.5;
@@ -67,7 +75,7 @@ void ImplicitStep::run() {
   const Activity activity = gather();
   if (asleep(activity)) return;
   begin();
-  if (state_.solver.recovery_steps == 0 && lost()) {
+  if (state_.solver.recovery_steps <= 0 && (lost() || jammed())) {
     report_.put_back = true;
     state_.solver.recovery_steps = std::max(1, static_cast<int>(std::lround(kRecoveryTime / context_.step)));
   }
@@ -117,6 +125,18 @@ bool ImplicitStep::lost() const {
   if (memory.steps % kCheckEvery != 0) return false;
   const double volume = lumenVolume(model_.organ.surface, state_.x, state_.y, state_.z);
   return volume < 0 || (model_.scene.gas && limits_.bursts(volume, state_.pressure, context_.insufflator_on));
+}
+
+// Loops of a coarse wall may catch in each other. Their forces then lead through each other, for good.
+bool ImplicitStep::jammed() const {
+  return -state_.solver.recovery_steps * context_.step >= kJammedTime;
+}
+
+// @param given  by the guard in this step [J]
+// @param held   by the wall after it [J]
+void ImplicitStep::noteJam(double given, double held) {
+  int& steps = state_.solver.recovery_steps;
+  steps = given > kJammedRate * context_.step * held ? steps - 1 : std::min(0, steps + 1);
 }
 
 // Whether the gas bears most of the wall's tension. By the virial theorem, forces in balance have opposite sums of
@@ -234,13 +254,14 @@ void ImplicitStep::store() {
 
 // Corrections are motions without forces: their work is the difference of the energies.
 void ImplicitStep::correct() {
-  if (!isCorrected()) return;
+  if (!isCorrected()) return noteJam(0, 0);
   std::array<std::vector<double>, 6>& before = scratch_.uncorrected;
   const Energies after = mechanicalEnergy();
   for (std::size_t k = 0; k < 6; ++k) before[k].swap(state_.*kMotionOf[k]);
   const Energies uncorrected = mechanicalEnergy();
   for (std::size_t k = 0; k < 6; ++k) before[k].swap(state_.*kMotionOf[k]);
   state_.energy.correction_work += after.total() - uncorrected.total();
+  noteJam(after.total() - uncorrected.total(), after.elastic);
   state_.solver.elastic_energy += (after.elastic + after.foundation) - (uncorrected.elastic + uncorrected.foundation);
 }
 

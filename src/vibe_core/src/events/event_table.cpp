@@ -25,7 +25,7 @@ const std::vector<EventRow>& eventRows() {
       {Kind::Recovery, Detail::SpeedLimited, "recovery", "",
        "{value:particles} were slowed to keep the step stable; move the tool slower or raise tissue.substeps."},
       {Kind::Recovery, Detail::Distorted, "recovery", "",
-       "The tissue was overstretched or turned inside out and is led back to rest; undo what caused it."},
+       "The tissue was overstretched, turned inside out or tangled and is led back to rest; undo what caused it."},
       {Kind::Rejected, Detail::None, "rejected", "", ""},
       {Kind::Mark, Detail::InZone, "mark", "J",
        "A mark begins (wall {wall}, region {region}), {amount:marks} in total."},

@@ -40,7 +40,7 @@ enum class EventDetail : std::uint8_t {
   None,
   NotFinite,         ///< Recovery: positions were not finite; the tissue starts again from rest
   SpeedLimited,      ///< Recovery: value: particles that were slowed
-  Distorted,         ///< Recovery: overstretched or inverted tissue is led back to rest
+  Distorted,         ///< Recovery: overstretched, inverted or tangled tissue is led back to rest
   InZone,            ///< Mark: in the working zone, see inWorkingZone()
   OutOfZone,         ///< Mark: outside of it
   FullThickness,     ///< Bite: through the whole wall
