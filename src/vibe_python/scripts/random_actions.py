@@ -55,7 +55,7 @@ def side_by_side(task, random, actions, autoreset, **settings):
 def alone(task, random, actions, **settings):
     """Half of the actions are the expert's where there is one: they go where chance does not."""
     environment = Environment(task, **settings)
-    expert = None if task == "Inspect" else Expert(environment)
+    expert = None if task == "Inspect" and settings["action"] == "tip" else Expert(environment)
     over, found, seen = True, [], None
     for action in itertools.islice(held_actions(environment.action_space, random), actions):
         if over:
