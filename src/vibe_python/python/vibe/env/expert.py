@@ -53,28 +53,34 @@ class _Reaching:
 
 
 class _Inspecting:
-    """All numbers are design choices: found by trying, with success in all of some episodes."""
+    """All numbers are design choices, found by trying."""
 
     apart = 0.06  # of the lens from what it looks at [m]
     cone = np.cos(0.8)  # half of what the camera sees about its axis
-    patience, rest = 1.5, 5.0  # after which a place is left, and looked for again [s]
+    decay = 0.03  # of the worth of what is farther than the camera sees [m]
+    patience, rest = 1.5, 15.0  # after which a place is left, and looked for again [s]
     gentle = 1.0  # force that it gives way to [N]
+    pressed, freeing = 1.0, 1.5  # after which it draws back, and for how long [s]
 
     def reset(self, task):
-        self.target = None
+        self.target, self.until, self.touched, self.free = None, 0.0, 0.0, 0.0
         self.later = np.zeros(len(task.mask[0]))  # simulated time from which a triangle is looked for
 
     def action(self, task, observation):
         simulation = task.simulation[0]
-        force = observation["wrench"][:3].astype(float)
-        if np.linalg.norm(force) > self.gentle:
-            return _shares(task, TIP_SPEED * force / np.linalg.norm(force))
+        now, force = simulation.time, observation["wrench"][:3].astype(float)
+        if np.linalg.norm(force) <= self.gentle:
+            self.touched = now
+        if now > self.touched + self.pressed:
+            self.touched, self.free = now + self.freeing, now + self.freeing
+        if now < self.free:  # out, and straight
+            return np.clip(np.array([-1, 0, *-simulation.joints[2:4]]), -1, 1)
         centre = simulation.positions[task.organ[0].model.triangles].mean(1)
-        if self.target is not None and simulation.time > self.until:
-            self.later[np.linalg.norm(centre - centre[self.target], axis=1) < 0.02] = simulation.time + self.rest
-        if self.target is None or task.mask[0][self.target] or simulation.time > self.until:
+        if self.target is not None and now > self.until:
+            self.later[np.linalg.norm(centre - centre[self.target], axis=1) < 0.02] = now + self.rest
+        if self.target is None or task.mask[0][self.target] or now > self.until:
             self._choose(task, simulation, centre)
-        return self._look_at(task, simulation, centre[self.target])
+        return self._look_at(task, simulation, centre[self.target], force)
 
     def _choose(self, task, simulation, centre):
         """The unseen triangle about which most is unseen, for the angle that the camera has to turn."""
@@ -84,22 +90,28 @@ class _Inspecting:
         if len(unseen) == 0:
             unseen = np.flatnonzero(~task.mask[0])
         direction = (apart / distance[:, None])[unseen]
-        worth = task.area[0][unseen] * np.exp(-np.maximum(distance[unseen] - task.sight, 0) / 0.03)
+        worth = task.area[0][unseen] * np.exp(-np.maximum(distance[unseen] - task.sight, 0) / self.decay)
         gain = (direction @ direction.T > self.cone) @ worth
         turn = np.arccos(np.clip(direction @ simulation.tip_pose[:3, 0], -1, 1))
         self.target, self.until = unseen[np.argmax(gain / (0.5 + turn))], simulation.time + self.patience
 
-    def _look_at(self, task, simulation, place):
-        """Damped least squares of three speeds: the two of turning to the place, and that along the view."""
+    def _look_at(self, task, simulation, place, force):
+        """Damped least squares of the two speeds of turning to the place, and of that along the view, or, where the wall
+        presses, of those along its force."""
         to_tip = simulation.tip_pose[:3, :3].T
         apart = to_tip @ (place - simulation.tip_pose[:3, 3])
         distance = np.linalg.norm(apart)
         axis = np.cross([1, 0, 0], apart / distance)
         turn = axis / max(np.linalg.norm(axis), 1e-9) * min(2 * np.arccos(np.clip(apart[0] / distance, -1, 1)), 1.5)
         jacobian = simulation.jacobian * task.speeds
-        rows = np.vstack([(to_tip @ jacobian[3:])[1:], 10 * (to_tip @ jacobian[:3])[:1]])
-        wanted = np.append(turn[1:], 10 * np.clip(2 * (distance - self.apart), -TIP_SPEED, TIP_SPEED))
-        shares = rows.T @ np.linalg.solve(rows @ rows.T + 0.05**2 * np.eye(3), wanted)
+        turning, moving = (to_tip @ jacobian[3:])[1:], 10 * (to_tip @ jacobian[:3])
+        if np.linalg.norm(force) > self.gentle:
+            rows, speed = np.vstack([0.3 * turning, moving]), TIP_SPEED * force / np.linalg.norm(force)
+            wanted = np.concatenate([0.3 * turn[1:], 10 * speed])
+        else:
+            rows = np.vstack([turning, moving[:1]])
+            wanted = np.append(turn[1:], 10 * np.clip(2 * (distance - self.apart), -TIP_SPEED, TIP_SPEED))
+        shares = rows.T @ np.linalg.solve(rows @ rows.T + 0.05**2 * np.eye(len(rows)), wanted)
         return shares / max(1.0, np.abs(shares).max())
 
 
