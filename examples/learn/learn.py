@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Baselines for the task Reach of vibe.env, one command each; numpy is enough, demonstrations need python3-h5py:
+"""Baselines for the tasks of vibe.env, one command each; numpy is enough, demonstrations need python3-h5py:
 
     learn.py demonstrate reach.hdf5          the expert's episodes on the organs of training
     learn.py clone reach.hdf5 cloned.npz     a policy that imitates them
@@ -7,7 +7,8 @@
 
 ppo.py goes on from there by reinforcement.
 
-Actions are the tip's velocity. demonstrate and evaluate go on where they were stopped."""
+The task is Reach, whose actions are the tip's velocity; `demonstrate` and `evaluate random expert` take another one by
+--task, with its own actions. Both go on where they were stopped."""
 
 import argparse
 import hashlib
@@ -17,7 +18,7 @@ import sys
 
 import numpy as np
 
-from vibe.env import BREATHING, HELD_OUT, TRAINING, Environment, Expert, demonstrations
+from vibe.env import BREATHING, HELD_OUT, TASKS, TRAINING, Environment, Expert, demonstrations
 
 INPUTS = ("to_goal", "wrench")
 STEP_PERIOD = 1 / 60  # [s], of the tables in docs/python.md; with the default, 1/20, episodes are computed twice as fast
@@ -110,8 +111,12 @@ def show(text):
     print(f"\r{text} ", end="", file=sys.stderr, flush=True)
 
 
+def environment_of(task, organs, **settings):
+    return Environment(task, organs=organs, action="tip" if task == "Reach" else "joints", step_period=STEP_PERIOD, **settings)
+
+
 def demonstrate(options):
-    environment = Environment("Reach", organs=TRAINING, action="tip", step_period=STEP_PERIOD)
+    environment = environment_of(options.task, TRAINING)
     kept, of = demonstrations.record(environment, Expert(environment), options.file, options.episodes, seed=options.seed,
                                      progress=lambda done, of, kept: show(f"episode {done} of {of}, {kept} succeeded"))
     print(f"\n{kept} of {of} episodes succeeded and are in {options.file}")
@@ -137,9 +142,9 @@ def policy_of(name):
         return Cloned(name), hashlib.sha1(file.read()).hexdigest()
 
 
-def episode(policy, breathing, seed):
+def episode(policy, task, breathing, seed):
     """The outcome of one episode on the organs that nobody trained on."""
-    environment = Environment("Reach", organs=HELD_OUT, action="tip", breathing=breathing, step_period=STEP_PERIOD)
+    environment = environment_of(task, HELD_OUT, breathing=breathing)
     acting = {"random": Random, "expert": Scripted}[policy](environment) if isinstance(policy, str) else policy
     observation, info = environment.reset(seed=seed)
     acting.reset(seed)
@@ -148,10 +153,10 @@ def episode(policy, breathing, seed):
         observation, _, terminated, truncated, info = environment.step(acting.action(observation))
         over = terminated or truncated
     environment.close()  # the simulation serves the next one
-    return {name: info[name] for name in ("is_success", "time", "max_force", "distance", "organ")}
+    return {name: info.get(name) for name in ("is_success", "time", "max_force", "distance", "organ")}
 
 
-def on_workers(address, policy, breathing, seeds):
+def on_workers(address, policy, task, breathing, seeds):
     """(seed, outcome) from the workers of a Dask scheduler, in the order in which episodes end. They need vibe."""
     try:
         from distributed import as_completed
@@ -164,7 +169,7 @@ def on_workers(address, policy, breathing, seeds):
     except SessionError as error:
         sys.exit(str(error))
     with client:
-        futures = {client.submit(episode, policy, breathing, seed, pure=False): seed for seed in seeds}
+        futures = {client.submit(episode, policy, task, breathing, seed, pure=False): seed for seed in seeds}
         for future in as_completed(futures, loop=client.loop):
             yield futures[future], future.result()
 
@@ -177,11 +182,11 @@ def evaluate(options):
     print("| policy | success | 95 % | time [s] | greatest force [N], median |\n|---|---|---|---|---|")
     for name in options.policies:
         policy, key = policy_of(name)
-        key += f" {options.breathing}" if options.breathing else ""
+        key += (f" {options.task}" if options.task != "Reach" else "") + (f" {options.breathing}" if options.breathing else "")
         seeds = range(options.first, options.first + options.seeds)
         missing = [seed for seed in seeds if (key, seed) not in known]
-        found = on_workers(options.scheduler, policy, options.breathing, missing) if options.scheduler else \
-            ((seed, episode(policy, options.breathing, seed)) for seed in missing)
+        found = on_workers(options.scheduler, policy, options.task, options.breathing, missing) if options.scheduler \
+            else ((seed, episode(policy, options.task, options.breathing, seed)) for seed in missing)
         for done, (seed, outcome) in enumerate(found):
             known[key, seed] = {"policy": key, "seed": seed, **outcome}
             with open(options.episodes, "a") as file:
@@ -222,6 +227,8 @@ def main():
     one.add_argument("--scheduler", metavar="HOST:PORT", help="let the workers of this Dask scheduler perform the episodes")
     one.add_argument("--episodes", default="episodes.jsonl", help="file that keeps them (default: %(default)s)")
     one.set_defaults(run=evaluate)
+    for one in (commands.choices["demonstrate"], commands.choices["evaluate"]):
+        one.add_argument("--task", choices=tuple(TASKS), default="Reach")
     options = parser.parse_args()
     options.run(options)
 

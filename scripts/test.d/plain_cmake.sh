@@ -24,7 +24,7 @@ build=$scratch/build
 prefix=$scratch/first_place
 moved=$scratch/second_place
 mkdir -p "$scratch/source"
-cp -r "$root"/src/vibe_{cmake,core,description} "$scratch/source/"
+cp -r "$root"/src/vibe_{cmake,core,description,python} "$scratch/source/"
 
 # bare COMMAND...: without ROS, without CMake's search paths, from a folder where nothing lies
 bare() {
@@ -98,6 +98,26 @@ landmarks: {oesophagus: [0, 42, 42], fundus: [0, 0, 60], incisura: [0, 60, 0], p
 YAML
   (cd "$scratch" && env -i PATH=/usr/bin:/bin "$moved/bin/vibe_headless" --quiet --duration 0.1 \
     --scene package://vibe_core/scenes/sphere.yaml --mesh meshes/ball.obj)
+}
+
+# with the core that is installed already, and without network
+makesAWheel() {
+  bare /usr/bin/python3 -m venv --system-site-packages "$scratch/venv" &&
+    bare VIBE_CORE_PREFIX="$moved" CMAKE_BUILD_PARALLEL_LEVEL=1 "$scratch/venv/bin/pip" wheel --no-build-isolation --no-deps \
+      --no-index --wheel-dir "$scratch/wheels" "$scratch/source/vibe_python"
+}
+
+installsTheWheel() {
+  bare "$scratch/venv/bin/pip" install --no-index "$scratch"/wheels/vibe_esg-*.whl && rm -rf "$scratch/source/vibe_python"
+}
+
+pythonHash() {
+  bare "$scratch/venv/bin/python" -c '
+import sys, vibe
+if not vibe.__file__.startswith(sys.prefix): sys.exit(vibe.__file__)
+simulation = vibe.Simulation(vibe.load())
+simulation.run(round(float(sys.argv[1]) / simulation.model.step_period))
+print(f"state hash: {simulation.hash():016x}")' "$1"
 }
 
 # --- functions of the C library that are exact to the last bit, and those that only look at a number
@@ -181,6 +201,14 @@ check 'a program elsewhere finds the installed library' \
 check 'a program elsewhere links the installed library' bare cmake --build "$scratch/consumer_build"
 check 'a program elsewhere gives the state of the catkin build' givesTheHashOfCatkin \
   bare "$scratch/consumer_build/run_scene" package://vibe_core/scenes/stomach.yaml "$seconds" -- --duration "$seconds"
+if [ ${#eigen[@]} -gt 0 ]; then
+  echo 'skipped a wheel of the Python module (it is made with the Eigen of the system)'
+else
+  check 'a wheel of the Python module is made in a virtual environment' makesAWheel
+  check 'the wheel is installed' installsTheWheel
+  check 'the module of the wheel links no part of ROS' namesNoRos <(bare ldd "$scratch"/venv/lib/python3*/site-packages/vibe/_core*.so)
+  check 'the module of the wheel gives the state of the catkin build' givesTheHashOfCatkin pythonHash "$seconds" -- --duration "$seconds"
+fi
 unknownPackage() {
   refuses 2 "There is no package 'vibe_elsewhere'" bare "$moved/bin/vibe_headless" --scene package://vibe_elsewhere/a.yaml
 }

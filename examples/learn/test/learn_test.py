@@ -73,9 +73,9 @@ class Evaluation(unittest.TestCase):
         except ImportError:
             self.skipTest("python3-distributed or vibe_sessions is not installed")
         with LocalCluster(n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None) as cluster, \
-                mock.patch.object(learn, "episode", lambda policy, breathing, seed: {"seen": [policy, breathing, seed]}):
-            found = dict(learn.on_workers(cluster.scheduler_address, "random", "slight", [3, 5]))
-        self.assertEqual(found, {seed: {"seen": ["random", "slight", seed]} for seed in (3, 5)})
+                mock.patch.object(learn, "episode", lambda *asked: {"seen": asked}):
+            found = dict(learn.on_workers(cluster.scheduler_address, "random", "Bite", "slight", [3, 5]))
+        self.assertEqual(found, {seed: {"seen": ("random", "Bite", "slight", seed)} for seed in (3, 5)})
 
 
 if __name__ == "__main__":

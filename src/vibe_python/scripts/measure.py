@@ -2,7 +2,9 @@
 """Measures what the module and the environments take, as the rows of the table in docs/python.md. CPU times of the
 process unless wall time is named; a machine with other work on it makes them longer."""
 
+import concurrent.futures
 import ctypes
+import multiprocessing
 import os
 import resource
 import subprocess
@@ -96,20 +98,30 @@ def step_periods():
                   f"{1e3 * np.linalg.norm(moved - wall, axis=2).max():.2f} mm | {reach(scale, None, 1 / period)} |", flush=True)
 
 
-def scaling(slots=16, actions=25, rounds=3):
-    """Actions per second of wall time of episodes side by side by number of threads; the best of some rounds in turn."""
-    rates = {}
+def side_by_side(threads, cores, slots=16, actions=25):
+    """Actions per second of wall time, and CPU time per action [ms], of episodes side by side in a process that has these
+    cores. The factors are made in threads of their own, beside those that step."""
+    os.sched_setaffinity(0, cores)
+    environments = VectorEnvironment("Reach", slots, threads=threads, organs=ORGAN)
+    environments.reset(seed=1)
     random = np.random.default_rng(1)
-    moves = [0.3 * random.uniform(-1, 1, (slots, 4)) for _ in range(actions)]
-    for threads in rounds * (1, 2):
-        environments = VectorEnvironment("Reach", slots, threads=threads, organs=ORGAN)
-        environments.reset(seed=1)
-        begin = time.monotonic()
-        for action in moves:
-            environments.step(action)
-        rates[threads] = max(rates.get(threads, 0), slots * actions / (time.monotonic() - begin))
-        environments.close()
-    return rates
+    begin, spent = time.monotonic(), time.process_time()
+    for _ in range(actions):
+        environments.step(0.3 * random.uniform(-1, 1, (slots, 4)))
+    wall, spent = time.monotonic() - begin, time.process_time() - spent
+    return slots * actions / wall, 1e3 * spent / (slots * actions)
+
+
+def scaling(rounds=3):
+    """side_by_side() for one thread on one core, one on two, two on two: of each the fastest of some rounds in turn."""
+    two = sorted(os.sched_getaffinity(0))[:2]
+    asked = {"one thread, one core": (1, two[:1]), "one thread, two cores": (1, two), "two threads, two cores": (2, two)}
+    best = {}
+    for _ in range(rounds):
+        for name, (threads, cores) in asked.items():
+            with concurrent.futures.ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as process:
+                best[name] = max(best.get(name, (0,)), process.submit(side_by_side, threads, cores).result())
+    return best
 
 
 def memory(particles, impedance):
@@ -156,30 +168,53 @@ def session():
     return f"{simulation.hash():016x}"
 
 
-def main():
+def first():
     imported, stepped, cpu = first_step()
     print(f"| `import vibe`; and the first step of the default stomach | {imported:.2f} s; {stepped:.2f} s of wall time, "
           f"{cpu:.2f} s of CPU |")
     print(f"| `step()` from Python more than a step in C++ | {overhead():.1f} us |")
-    restored, first, reset = resets()
+    restored, after, reset = resets()
     print(f"| `restore()` of a snapshot, 1,000 particles | {restored:.2f} ms |")
-    print(f"| the first step after it, of a prepared snapshot | {first:.1f} ms |")
+    print(f"| the first step after it, of a prepared snapshot | {after:.1f} ms |")
     print(f"| `reset()` of `Reach`, a goal known | {reset:.2f} ms |")
+
+
+def pictures():
     full = vibe.Simulation(vibe.load())
     full.run(30, insertion=0.08, insufflate=True)
     print(f"| depth and labels, 128 x 128, 3,618 particles | {median(lambda: full.camera(128, 128), 30):.2f} ms |")
     print(f"| the same with colours | {median(lambda: full.camera(128, 128, colour=True), 30):.2f} ms |")
-    rates = scaling()
-    print(f"| 16 episodes of `Reach` side by side, actions per second of wall time: one thread; two | {rates[1]:.0f}; "
-          f"{rates[2]:.0f}, {rates[2] / rates[1]:.2f} times as many |")
+
+
+def threads():
+    for name, (rate, spent) in scaling().items():
+        print(f"| 16 episodes of `Reach` side by side: {name} | {rate:.0f} actions per second of wall time, {spent:.2f} ms of "
+              f"CPU each |", flush=True)
+
+
+def memories():
     for name, impedance in (("without impedance, as in environments", False), ("all of it", True)):
         print(f"| memory per further simulation, 1,000; 3,618 particles: {name} | {memory(1000, impedance):.0f} MB; "
               f"{memory(3618, impedance):.0f} MB |")
+
+
+def speeds():
     print("| time per step | force differs: root mean square, greatest | wall, greatest | actions per second: free; in contact |")
     step_periods()
     print(f"With moderate breathing, slow motions, free; in contact: {reach(0.2, 'moderate')}")
-    print(f"state hash of the first session: {session()}")
-    print(f"load {os.getloadavg()[0]:.1f}, {len(os.sched_getaffinity(0))} cores", file=sys.stderr)
+
+
+PARTS = {"first": first, "pictures": pictures, "threads": threads, "memories": memories, "speeds": speeds,
+         "session": lambda: print(f"state hash of the first session: {session()}")}
+
+
+def main():
+    asked = sys.argv[1:] or list(PARTS)
+    if not set(asked) <= set(PARTS):
+        sys.exit(f"usage: measure.py [part ...]; the parts are {', '.join(PARTS)}; all of them by default")
+    for name in asked:
+        PARTS[name]()
+        print(f"{name}: load {os.getloadavg()[0]:.1f}, {len(os.sched_getaffinity(0))} cores", file=sys.stderr, flush=True)
 
 
 if __name__ == "__main__":

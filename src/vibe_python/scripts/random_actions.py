@@ -5,6 +5,7 @@ is not finite, no growth of memory. Prints a line per round of all tasks; ends w
 wrong."""
 
 import argparse
+import ctypes
 import itertools
 import os
 import sys
@@ -25,6 +26,18 @@ def resident():
     """Memory of the process [MB]."""
     with open("/proc/self/statm", encoding="ascii") as file:
         return int(file.read().split()[1]) * os.sysconf("SC_PAGESIZE") / 1e6
+
+
+def allocated():
+    """What malloc() has given out and not got back [MB]; what it keeps besides is free."""
+    class Info(ctypes.Structure):
+        _fields_ = [(name, ctypes.c_size_t) for name in ("arena ordblks smblks hblks hblkhd usmblks fsmblks uordblks "
+                                                         "fordblks keepcost").split()]
+
+    ask = ctypes.CDLL(None).mallinfo2
+    ask.restype = Info
+    info = ask()
+    return (info.uordblks + info.hblkhd) / 1e6
 
 
 def faults(name, parts):
@@ -55,7 +68,7 @@ def side_by_side(task, random, actions, autoreset, **settings):
 def alone(task, random, actions, **settings):
     """Half of the actions are the expert's where there is one: they go where chance does not."""
     environment = Environment(task, **settings)
-    expert = None if task == "Inspect" else Expert(environment)
+    expert = None if task == "Inspect" and settings["action"] == "tip" else Expert(environment)
     over, found, seen = True, [], None
     for action in itertools.islice(held_actions(environment.action_space, random), actions):
         if over:
@@ -120,7 +133,7 @@ def main():
         taken, found = one_round(number, options.particles, options.actions)
         total, number = total + taken, number + 1
         track.append(((time.monotonic() - begin) / 60, resident()))
-        print(f"round {number}: {total} actions, {track[-1][1]:.0f} MB", flush=True)
+        print(f"round {number}: {total} actions, {track[-1][1]:.0f} MB, of it {allocated():.0f} MB in use", flush=True)
         if found:
             sys.exit(f"{found[0]} and {len(found) - 1} more")
     later = np.array([point for point in track if point[0] > options.minutes / 2])

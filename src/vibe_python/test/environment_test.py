@@ -190,6 +190,13 @@ class EnvironmentTest(unittest.TestCase):
             still = type("Still", (), {"reset": lambda s: None, "action": lambda s, o: 0 * environment.action_space.high})
             self.assertFalse(demonstrations.episode(environment, still(), 0)[1])  # control
 
+    def test_experts_inspect(self):
+        environment = Environment("Inspect", **SMALL)
+        self.assertTrue(demonstrations.episode(environment, Expert(environment), 0)[1])
+        self.assertLess(environment.task.best_force[0], 5)
+        with self.assertRaisesRegex(vibe.Error, "no expert for the task Inspect with action='tip'"):
+            Expert(Environment("Inspect", action="tip", **SMALL))
+
     def test_trainees_mark(self):
         environment = Environment("Mark", **SMALL)
         self.assertTrue(demonstrations.episode(environment, Expert(environment), 1)[1])

@@ -6,6 +6,7 @@ import os
 import pickle
 import subprocess
 import sys
+import tempfile
 import threading
 import unittest
 
@@ -223,6 +224,28 @@ class RefusalTest(Worlds):
         self.refused("not finite", vibe.load, tissue={"density": float("nan")})
         self.refused("cannot be opened", vibe.load, "/nowhere.yaml")
         self.refused("give numbers, texts", vibe.load, geometry={"particles": object()})
+
+    def test_a_surface_file_becomes_the_organ(self):
+        model, places = self.model, 1e3 * self.model.rest_positions  # written in mm
+        cardia, pylorus = (places[model.region == k][0] for k in (0, 4))
+        fundus = places[model.region == 1][np.linalg.norm(places[model.region == 1] - pylorus, axis=1).argmax()]
+        incisura = next(places[k] for t in model.triangles for k in t if {2, 3} <= set(model.region[t]) and model.wall[k] == 3)
+        marks = {"oesophagus": cardia, "fundus": fundus, "incisura": incisura, "pylorus": pylorus}
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "organ.obj")
+            np.savetxt(file, places, "v %.9g %.9g %.9g")
+            with open(file, "a") as out:
+                np.savetxt(out, model.triangles + 1, "f %d %d %d")
+            self.refused("landmarks cannot be guessed", vibe.load, mesh=file)
+            with open(file + ".landmarks.yaml", "w") as out:
+                out.write("unit: 1 mm\nlandmarks: " + str({name: list(map(float, place)) for name, place in marks.items()}).replace("'", ""))
+            found = vibe.load(mesh=file, **SMALL)
+        self.assertEqual(found.mesh_report, "")  # nothing was guessed
+        self.assertAlmostEqual(found.area.sum() / model.area.sum(), 1, delta=0.05)
+        simulation = vibe.Simulation(found)
+        simulation.run(5)
+        self.assertAlmostEqual(simulation.volume / self.simulation().volume, 1, delta=0.02)
+        self.refused("no such surface file", vibe.load, mesh=file)
 
     def test_closed(self):
         simulation = self.simulation()

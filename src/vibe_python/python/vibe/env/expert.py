@@ -5,48 +5,129 @@ import numpy as np
 import vibe
 
 from .episodes import TIP_SPEED, tip_motion
-from .tasks import Reach
+from .tasks import Inspect, Reach
 
 
 class Expert:
-    """Actions for an Environment. Reach: the tip goes straight to the goal, and backs off while the force is above 3 N.
-    Mark, Bite, SutureSet: the trainee of the library with the skill of an expert, which looks and pursues the goal.
-    Call reset() after every reset of the environment."""
+    """Actions for an Environment. Reach: the tip goes straight to the goal. Inspect (action='joints'): the camera turns to
+    where most is unseen for the least turning, and keeps 6 cm from it. Both give way to a force. Mark, Bite, SutureSet: the
+    trainee of the library with the skill of an expert, which looks and pursues the goal. Call reset() after every reset of
+    the environment."""
 
     def __init__(self, environment, seed=1):
-        self.environment, self.seed = environment, seed
-        self.trainee = None
+        task = environment.task
+        if hasattr(task, "protocol"):
+            self._policy = _Trainee(seed)
+        elif isinstance(task, Reach):
+            self._policy = _Reaching()
+        elif isinstance(task, Inspect) and task.mode == "joints":
+            self._policy = _Inspecting()
+        else:
+            raise vibe.Error(f"There is no expert for the task {task.name} with action={task.mode!r}.")
+        self.environment = environment
 
     def reset(self):
-        task = self.environment.task
-        if not hasattr(task, "protocol"):
-            if not isinstance(task, Reach):
-                raise vibe.Error(f"There is no expert for the task {task.name}.")
-            return
-        along, around = task.place[0]
-        text = "name: expert\nskill: {like: expert, look_time: 0 s}\n" + task.protocol.format(along=along, around=around)
-        self.trainee = vibe.Trainee(task.organ[0].model, text, seed=self.seed)
+        self._policy.reset(self.environment.task)
 
     def action(self, observation):
-        task = self.environment.task
-        return self._reach(task, observation) if self.trainee is None else self._trainee(task)
+        return self._policy.action(self.environment.task, observation).astype(np.float32)
 
-    def _reach(self, task, observation):
-        simulation = task.simulation[0]
+
+def _shares(task, speed):
+    """Shares of the joint speeds that move the tip with a speed in its own axes [m/s]."""
+    simulation = task.simulation[0]
+    return tip_motion(simulation.jacobian, simulation.tip_pose[:3, :3] @ speed, task.speeds)
+
+
+class _Reaching:
+    def reset(self, task):
+        pass
+
+    def action(self, task, observation):
         apart = observation["to_goal"].astype(float)
         force = observation["wrench"][:3].astype(float)
         speed = apart / max(np.linalg.norm(apart), 1e-9) * min(TIP_SPEED, 3 * np.linalg.norm(apart))
         if np.linalg.norm(force) > 3:
             speed = TIP_SPEED / 4 * force / np.linalg.norm(force)
-        if task.mode == "tip":
-            return np.clip(speed / TIP_SPEED, -1, 1).astype(np.float32)
-        shares = tip_motion(simulation.jacobian, simulation.tip_pose[:3, :3] @ speed, task.speeds)
-        return shares.astype(np.float32)
+        return np.clip(speed / TIP_SPEED, -1, 1) if task.mode == "tip" else _shares(task, speed)
 
-    def _trainee(self, task):
+
+class _Inspecting:
+    """All numbers are design choices, found by trying."""
+
+    apart = 0.06  # of the lens from what it looks at [m]
+    cone = np.cos(0.8)  # half of what the camera sees about its axis
+    decay = 0.03  # of the worth of what is farther than the camera sees [m]
+    patience, rest = 1.5, 15.0  # after which a place is left, and looked for again [s]
+    gentle = 1.0  # force that it gives way to [N]
+    pressed, freeing = 1.0, 1.5  # after which it draws back, and for how long [s]
+
+    def reset(self, task):
+        self.target, self.until, self.touched, self.free = None, 0.0, 0.0, 0.0
+        self.later = np.zeros(len(task.mask[0]))  # simulated time from which a triangle is looked for
+
+    def action(self, task, observation):
+        simulation = task.simulation[0]
+        now, force = simulation.time, observation["wrench"][:3].astype(float)
+        if np.linalg.norm(force) <= self.gentle:
+            self.touched = now
+        if now > self.touched + self.pressed:
+            self.touched, self.free = now + self.freeing, now + self.freeing
+        if now < self.free:  # out, and straight
+            return np.clip(np.array([-1, 0, *-simulation.joints[2:4]]), -1, 1)
+        centre = simulation.positions[task.organ[0].model.triangles].mean(1)
+        if self.target is not None and now > self.until:
+            self.later[np.linalg.norm(centre - centre[self.target], axis=1) < 0.02] = now + self.rest
+        if self.target is None or task.mask[0][self.target] or now > self.until:
+            self._choose(task, simulation, centre)
+        return self._look_at(task, simulation, centre[self.target], force)
+
+    def _choose(self, task, simulation, centre):
+        """The unseen triangle about which most is unseen, for the angle that the camera has to turn."""
+        apart = centre - simulation.tip_pose[:3, 3]
+        distance = np.linalg.norm(apart, axis=1)
+        unseen = np.flatnonzero(~task.mask[0] & (self.later <= simulation.time))
+        if len(unseen) == 0:
+            unseen = np.flatnonzero(~task.mask[0])
+        direction = (apart / distance[:, None])[unseen]
+        worth = task.area[0][unseen] * np.exp(-np.maximum(distance[unseen] - task.sight, 0) / self.decay)
+        gain = (direction @ direction.T > self.cone) @ worth
+        turn = np.arccos(np.clip(direction @ simulation.tip_pose[:3, 0], -1, 1))
+        self.target, self.until = unseen[np.argmax(gain / (0.5 + turn))], simulation.time + self.patience
+
+    def _look_at(self, task, simulation, place, force):
+        """Damped least squares of the two speeds of turning to the place, and of that along the view, or, where the wall
+        presses, of those along its force."""
+        to_tip = simulation.tip_pose[:3, :3].T
+        apart = to_tip @ (place - simulation.tip_pose[:3, 3])
+        distance = np.linalg.norm(apart)
+        axis = np.cross([1, 0, 0], apart / distance)
+        turn = axis / max(np.linalg.norm(axis), 1e-9) * min(2 * np.arccos(np.clip(apart[0] / distance, -1, 1)), 1.5)
+        jacobian = simulation.jacobian * task.speeds
+        turning, moving = (to_tip @ jacobian[3:])[1:], 10 * (to_tip @ jacobian[:3])
+        if np.linalg.norm(force) > self.gentle:
+            rows, speed = np.vstack([0.3 * turning, moving]), TIP_SPEED * force / np.linalg.norm(force)
+            wanted = np.concatenate([0.3 * turn[1:], 10 * speed])
+        else:
+            rows = np.vstack([turning, moving[:1]])
+            wanted = np.append(turn[1:], 10 * np.clip(2 * (distance - self.apart), -TIP_SPEED, TIP_SPEED))
+        shares = rows.T @ np.linalg.solve(rows @ rows.T + 0.05**2 * np.eye(len(rows)), wanted)
+        return shares / max(1.0, np.abs(shares).max())
+
+
+class _Trainee:
+    def __init__(self, seed):
+        self.seed = seed
+
+    def reset(self, task):
+        along, around = task.place[0]
+        text = "name: expert\nskill: {like: expert, look_time: 0 s}\n" + task.protocol.format(along=along, around=around)
+        self.trainee = vibe.Trainee(task.organ[0].model, text, seed=self.seed)
+
+    def action(self, task, observation):
         simulation = task.simulation[0]
         wanted = self.trainee.next(simulation)
         joints = np.array([wanted[name] for name in vibe.JOINTS])
         shares = (joints - simulation.joints) * task.rate / task.speeds
         buttons = [1.0 if wanted[name] else -1.0 for name in vibe.BUTTONS]
-        return np.clip(np.concatenate([shares, buttons]), -1, 1).astype(np.float32)
+        return np.clip(np.concatenate([shares, buttons]), -1, 1)
