@@ -3,7 +3,7 @@
 # cost: 60
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-for name in format door rooms names launch links bash python; do
+for name in format door rooms names launch links catkin bash python; do
   check "lint $name" "$root/scripts/lint" --only "$name"
 done
 

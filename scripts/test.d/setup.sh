@@ -33,16 +33,16 @@ mkdir "$scratch/empty"
 check 'setup says when there is no package' refuses 1 'no package.xml' "$setup" --list --source "$scratch/empty"
 
 printf 'ID=debian\nVERSION_CODENAME=bullseye\nPRETTY_NAME="Debian 11"\n' >"$scratch/os-release"
-printf 'ID=debian\nVERSION_CODENAME=trixie\nPRETTY_NAME="Debian 13"\n' >"$scratch/trixie"
+for system in bookworm trixie; do printf 'ID=debian\nVERSION_CODENAME=%s\n' "$system" >"$scratch/$system"; done
 # the scripts look for what is missing only where the tests have not built already
 elsewhere() { env -u VIBE_WORKSPACE_IS_BUILT VIBE_OS_RELEASE="$scratch/os-release" "$@"; }
 for script in setup build test run; do
   check "$script refuses another Debian" refuses 1 'Debian 12 .bookworm. or 13 .trixie.*Debian 11' elsewhere "$root/scripts/$script"
 done
 check 'setup goes on when forced' elsewhere "$setup" --force --missing
-onTrixie() { VIBE_OS_RELEASE=$scratch/trixie "$setup" --list; }
+listOn() { VIBE_OS_RELEASE=$scratch/$1 "$setup" --list; }
 check 'setup takes the line of the system' bash -c '
-  grep -qx qt6-base-dev <<<"$1" && ! grep -qx qtbase5-dev <<<"$1" && grep -qx qtbase5-dev <<<"$2"' - "$(onTrixie)" "$("$setup" --list)"
+  grep -qx qt6-base-dev <<<"$1" && ! grep -qx qtbase5-dev <<<"$1" && grep -qx qtbase5-dev <<<"$2"' - "$(listOn trixie)" "$(listOn bookworm)"
 
 # --- an apt that gets its lists and then fails
 saysThatAptFailed() {

@@ -85,6 +85,8 @@ function(vibe_unity target)
 endfunction()
 
 # vibe_library(NAME [STATIC|SHARED] PATTERN...): a library of the sources that match, with the options of the package.
+# catkin_lint does not know that this makes a target, and vibe_eigen() variables, which CMake itself checks: packages tell
+# it so in a line after project(). It follows both branches of an if(); `skip` hides that of plain CMake.
 function(vibe_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC;SHARED" "" "")
   vibe_sources(sources ${arg_UNPARSED_ARGUMENTS})
