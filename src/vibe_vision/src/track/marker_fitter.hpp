@@ -54,6 +54,7 @@ class MarkerFitter {
   void useGamma(double gamma);
   MarkerFit tryToAcquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior, double motion,
                          double max_motion, bool known_rotation, double reach);
+  void learnLight(const MarkerFit& fit);
   void useHalf();
   void useQuarter();
   void useAll();
@@ -61,8 +62,11 @@ class MarkerFitter {
   void choosePlace(MarkerFit& fit, double reach);
   void chooseRotation(MarkerFit& fit);
   void chooseMotion(MarkerFit& fit, const FitPrior& prior, double max_motion);
+  static bool isMotionStrange(const MarkerFit& fit);
+  void refineMotion(MarkerFit& fit, const FitPrior& prior, double max_motion);
   bool tryMotions(MarkerFit& fit, const FitPrior& prior, double max_motion, double distance);
   void refine(MarkerFit& fit, const FitPrior& prior, double uncertainty, int max_steps);
+  void leaveOutCovered(const MarkerFit& fit);
   static void doubtCovered(MarkerFit& fit);
   void take(const FitStep& step, MarkerFit& fit);
 
