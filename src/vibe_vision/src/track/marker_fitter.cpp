@@ -14,7 +14,7 @@ constexpr double kConverged = 0.03;         // a step after which the next would
 constexpr double kMaxStep = 3;              // [px]
 constexpr double kMotionTrials[] = {2, 1};  // [px]
 constexpr double kTellingMotion = 6;        // from which what is seen where edges meet tells the motion [px]
-constexpr int kMotionRefinements = 10;      // trials of a long motion,
+constexpr int kMotionRefinements = 10;      // trials of a motion,
 constexpr double kStrangeMotion = 1.5, kMotionDoubt = 4;  // misfit from which a predicted one is wrong, by up to [px]
 constexpr double kWorthRefining = 0.35;                   // loss of a pixel up to which it may be the marker
 constexpr double kMotionRefined = 0.2;                    // until a step is this short [px]
@@ -26,7 +26,7 @@ constexpr double kLeastGamma = 0.8, kMostGamma = 3;
 constexpr double kUnknownGamma = 0.1;  // standard deviation from which a search tries another one,
 constexpr double kCommonGamma = 2.2;   // that of many cameras
 constexpr double kStrange = 2.5;       // misfit from which the response may be why,
-constexpr double kStrangeRod = 2;      // the same of a rod,
+constexpr double kStrangeRod = 2.1;    // the same of a rod,
 constexpr double kStrangeSheen = 1.4;  // the same of a rod whose light is known in detail
 constexpr double kBothEdges = 0.6;     // of the share of all edges: a curve moves white and black ones apart
 constexpr double kLearnVisible = 0.8;  // share of a rod that must be seen to learn the light on it
@@ -38,9 +38,6 @@ constexpr double kPoor = 0.25;         // loss of a pixel from which the rotatio
 constexpr int kAlignSteps = 3;
 constexpr double kPrepareBlur = 0.05, kPrepareScale = 0.01;  // changes after which the picture is made anew [px], 1
 constexpr double kPlaceTrial = 1.5;                          // [px]
-constexpr double kCoveredFrom = 0.8, kCoveredTo = 0.3;       // visible share of a marker that something covers
-constexpr float kSlice = 5;                                  // of a rod that is covered or not [px]
-constexpr float kCovered = 0.6F;                             // mean weight of its pixels below which it is
 constexpr double kSeenAsWhole = 0.9;                         // visible share of a marker that nothing covers
 constexpr double kCoverShift = 0.12, kCoverTurn = 0.02;      // by what covers a sleeve [px], [rad]
 constexpr double kQuarterEnough = 0.9;  // seen share of a marker from which a quarter of the pixels show where it is
@@ -81,7 +78,7 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
   if (!step.valid) return fit;
   take(step, fit);
   refine(fit, prior, 0, kFollowSteps);
-  if (fit.valid && fit.misfit > kStrangeMotion && isMotionStrange(fit))
+  if (fit.valid && fit.misfit > kStrangeMotion && isMotionLong(fit))
     refineMotion(fit, prior, std::abs(motion.length) + kMotionDoubt);
   seen_ = fit.visible;
   if (light_.isRound() && fit.valid && fit.visible > kLearnVisible) {
@@ -107,6 +104,17 @@ Distortions MarkerFitter::distortions(const MarkerFit& fit, const FitPrior& prio
 
 MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
                                 double motion, double max_motion, bool known_rotation, double reach) {
+  MarkerFit fit = acquireWithAnyResponse(map, frame, start, prior, motion, max_motion, known_rotation, reach);
+  // Only now: another motion would also explain some of what a response does.
+  const bool strange = light_.isRound() && fit.valid && fit.misfit > kStrangeMotion && !isMotionLong(fit);
+  if (strange && max_motion > 1 && fit.loss < kWorthRefining && read(map, frame, fit))
+    refineMotion(fit, prior, max_motion);
+  return fit;
+}
+
+MarkerFit MarkerFitter::acquireWithAnyResponse(AxisMap& map, const Frame& frame, const FitVector& start,
+                                               const FitPrior& prior, double motion, double max_motion,
+                                               bool known_rotation, double reach) {
   const MarkerFit fit = tryToAcquire(map, frame, start, prior, motion, max_motion, known_rotation, reach);
   const double known = prior.information(kGamma, kGamma);
   const auto explains = [this](const MarkerFit& f) {
@@ -117,7 +125,7 @@ MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVecto
   FitVector other = start;
   other[kGamma] = kCommonGamma;
   const MarkerFit second = tryToAcquire(map, frame, other, prior, motion, max_motion, known_rotation, reach);
-  return explains(second) ? second : fit;
+  return explains(second) && (!fit.valid || second.loss < fit.loss) ? second : fit;
 }
 
 MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
@@ -144,11 +152,7 @@ MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const Fit
   if (max_motion > 1) chooseMotion(fit, prior, max_motion);
   if (!read(map, frame, fit)) return fit;
   refine(fit, prior, kMotionUncertainty, kAcquireSteps);
-  if (isMotionStrange(fit)) refineMotion(fit, prior, max_motion);
-  if (light_.isRound() && fit.visible < kCoveredFrom && fit.visible > kCoveredTo) {
-    leaveOutCovered(fit);
-    refine(fit, prior, 0, kAcquireSteps);
-  }
+  if (isMotionLong(fit)) refineMotion(fit, prior, max_motion);
   if (!light_.isRound()) return fit;
   const int rounds = !guess ? 0 : (light_.shines() ? 2 : 1);
   for (int i = 0; i < rounds && fit.visible > (light_.shines() ? kLearnSheen : kLearnVisible); ++i) {
@@ -156,7 +160,7 @@ MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const Fit
     refine(fit, prior, 0, kAcquireSteps);
     if (fit.valid) tries_ = 0;
   }
-  if (!isMotionStrange(fit) || fit.visible < kLearnVisible) return fit;
+  if (!isMotionLong(fit) || fit.visible < kLearnVisible) return fit;
   learnLight(fit);
   refineMotion(fit, prior, max_motion);
   return fit;
@@ -299,13 +303,12 @@ bool MarkerFitter::tryMotions(MarkerFit& fit, const FitPrior& prior, double max_
   return true;
 }
 
-/// A long motion is known badly, and another one explains a picture badly.
-bool MarkerFitter::isMotionStrange(const MarkerFit& fit) {
-  const double length = std::abs(fit.motion.length);
-  return fit.loss < kWorthRefining && length > 1 && (length > kTellingMotion || fit.misfit > kStrangeMotion);
+/// Then it does not look like blur.
+bool MarkerFitter::isMotionLong(const MarkerFit& fit) {
+  return fit.loss < kWorthRefining && std::abs(fit.motion.length) > kTellingMotion;
 }
 
-/// The motion that explains the pixels best, if it is long: then it does not look like blur.
+/// The motion that explains the pixels best.
 void MarkerFitter::refineMotion(MarkerFit& fit, const FitPrior& prior, double max_motion) {
   double step = kMotionTrials[1];
   for (int i = 0; i < kMotionRefinements && std::abs(step) > kMotionRefined; ++i) {
@@ -345,19 +348,6 @@ void MarkerFitter::refine(MarkerFit& fit, const FitPrior& prior, double uncertai
     if (std::abs(step.change[kBlur]) > kPrepareBlur || std::abs(step.change[kLogScale]) > kPrepareScale)
       pattern_->prepare(poseOf(fit.x), fit.motion);
   }
-}
-
-/// What covers a rod covers all of it over some length: where most pixels across it are outliers, none counts. Those
-/// that fit by chance would draw the fit aside.
-void MarkerFitter::leaveOutCovered(const MarkerFit& fit) {
-  std::array<float, 64> kept{}, all{};
-  const auto slice = [&](std::size_t i) {
-    const float distance = pixels_.along[i] - static_cast<float>(fit.x[kAlong]);
-    return static_cast<std::size_t>(std::clamp(distance / kSlice + 32, 0.F, 63.F));
-  };
-  for (std::size_t i = 0; i < pixels_.count; ++i) kept[slice(i)] += fit_.weight(i), all[slice(i)] += pixels_.weight[i];
-  for (std::size_t i = 0; i < pixels_.count; ++i)
-    if (kept[slice(i)] < kCovered * all[slice(i)]) pixels_.weight[i] = 0;
 }
 
 /// The picture of what covers a part of a sleeve draws the fit aside, which the noise does not tell.

@@ -102,8 +102,6 @@ class PatternFit {
   /// @param down  direction of the image's rows, along and across the axis
   Distortions distortions(const FitVector& x, const FitPrior& prior, const FitPrior& unlearnt, const PixelBlock& pixels,
                           const Eigen::Vector2d& down);
-  /// Of a pixel in the last step: the biweight's, times PixelBlock::weight.
-  float weight(std::size_t i) const { return weight_[i]; }
   const PatternValues& values() const { return values_; }
   /// Learns how the light changes around a rod, from the pixels and weights of the last step.
   void learnLight(const FitVector& x, const PixelBlock& pixels, RodLight& light) const;
