@@ -14,14 +14,19 @@ constexpr double kConverged = 0.03;         // a step after which the next would
 constexpr double kMaxStep = 3;              // [px]
 constexpr double kMotionTrials[] = {2, 1};  // [px]
 constexpr double kTellingMotion = 6;        // from which what is seen where edges meet tells the motion [px]
-constexpr double kMotionUncertainty = 0.3;  // of the edges while it is tried [px]
-constexpr double kMinUncertainty = 0.3;     // of a prediction [px]
-constexpr double kCoarseBlur = 2.4, kMiddleBlur = 0.9;  // more than the camera's [px]
-constexpr double kSureGamma = 0.01;                     // standard deviation from which it is looked for no more
+constexpr int kMotionRefinements = 10;      // trials of a motion,
+constexpr double kStrangeMotion = 1.5, kMotionDoubt = 4;  // misfit from which a predicted one is wrong, by up to [px]
+constexpr double kWorthRefining = 0.35;                   // loss of a pixel up to which it may be the marker
+constexpr double kMotionRefined = 0.2;                    // until a step is this short [px]
+constexpr double kMotionUncertainty = 0.3;                // of the edges while it is tried [px]
+constexpr double kMinUncertainty = 0.3;                   // of a prediction [px]
+constexpr double kCoarseBlur = 2.4, kMiddleBlur = 0.9;    // more than the camera's [px]
+constexpr double kSureGamma = 0.01;                       // standard deviation from which it is looked for no more
 constexpr double kLeastGamma = 0.8, kMostGamma = 3;
 constexpr double kUnknownGamma = 0.1;  // standard deviation from which a search tries another one,
 constexpr double kCommonGamma = 2.2;   // that of many cameras
 constexpr double kStrange = 2.5;       // misfit from which the response may be why,
+constexpr double kStrangeRod = 2.1;    // the same of a rod,
 constexpr double kStrangeSheen = 1.4;  // the same of a rod whose light is known in detail
 constexpr double kBothEdges = 0.6;     // of the share of all edges: a curve moves white and black ones apart
 constexpr double kLearnVisible = 0.8;  // share of a rod that must be seen to learn the light on it
@@ -73,6 +78,8 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
   if (!step.valid) return fit;
   take(step, fit);
   refine(fit, prior, 0, kFollowSteps);
+  if (fit.valid && fit.misfit > kStrangeMotion && isMotionLong(fit))
+    refineMotion(fit, prior, std::abs(motion.length) + kMotionDoubt);
   seen_ = fit.visible;
   if (light_.isRound() && fit.valid && fit.visible > kLearnVisible) {
     useQuarter();
@@ -97,17 +104,28 @@ Distortions MarkerFitter::distortions(const MarkerFit& fit, const FitPrior& prio
 
 MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
                                 double motion, double max_motion, bool known_rotation, double reach) {
+  MarkerFit fit = acquireWithAnyResponse(map, frame, start, prior, motion, max_motion, known_rotation, reach);
+  // Only now: another motion would also explain some of what a response does.
+  const bool strange = light_.isRound() && fit.valid && fit.misfit > kStrangeMotion && !isMotionLong(fit);
+  if (strange && max_motion > 1 && fit.loss < kWorthRefining && read(map, frame, fit))
+    refineMotion(fit, prior, max_motion);
+  return fit;
+}
+
+MarkerFit MarkerFitter::acquireWithAnyResponse(AxisMap& map, const Frame& frame, const FitVector& start,
+                                               const FitPrior& prior, double motion, double max_motion,
+                                               bool known_rotation, double reach) {
   const MarkerFit fit = tryToAcquire(map, frame, start, prior, motion, max_motion, known_rotation, reach);
   const double known = prior.information(kGamma, kGamma);
   const auto explains = [this](const MarkerFit& f) {
-    const double strange = light_.shines() ? kStrangeSheen : kStrange;
+    const double strange = light_.shines() ? kStrangeSheen : (light_.isRound() ? kStrangeRod : kStrange);
     return f.valid && f.loss < kPoor && f.misfit < strange && f.weaker_edges > kBothEdges * f.visible;
   };
   if (explains(fit) || seen_ > 0 || known == 0 || known * kUnknownGamma * kUnknownGamma > 1) return fit;
   FitVector other = start;
   other[kGamma] = kCommonGamma;
   const MarkerFit second = tryToAcquire(map, frame, other, prior, motion, max_motion, known_rotation, reach);
-  return explains(second) ? second : fit;
+  return explains(second) && (!fit.valid || second.loss < fit.loss) ? second : fit;
 }
 
 MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
@@ -134,14 +152,23 @@ MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const Fit
   if (max_motion > 1) chooseMotion(fit, prior, max_motion);
   if (!read(map, frame, fit)) return fit;
   refine(fit, prior, kMotionUncertainty, kAcquireSteps);
-  if (!light_.isRound() || !guess) return fit;
-  for (int i = 0; i < (light_.shines() ? 2 : 1) && fit.visible > (light_.shines() ? kLearnSheen : kLearnVisible); ++i) {
-    fit_.learnLight(fit.x, pixels_, light_);
-    light_.shine(poseOf(fit.x), pixels_, pixels_.padded());
+  if (isMotionLong(fit)) refineMotion(fit, prior, max_motion);
+  if (!light_.isRound()) return fit;
+  const int rounds = !guess ? 0 : (light_.shines() ? 2 : 1);
+  for (int i = 0; i < rounds && fit.visible > (light_.shines() ? kLearnSheen : kLearnVisible); ++i) {
+    learnLight(fit);
     refine(fit, prior, 0, kAcquireSteps);
     if (fit.valid) tries_ = 0;
   }
+  if (!isMotionLong(fit) || fit.visible < kLearnVisible) return fit;
+  learnLight(fit);
+  refineMotion(fit, prior, max_motion);
   return fit;
+}
+
+void MarkerFitter::learnLight(const MarkerFit& fit) {
+  fit_.learnLight(fit.x, pixels_, light_);
+  light_.shine(poseOf(fit.x), pixels_, pixels_.padded());
 }
 
 void MarkerFitter::forget() {
@@ -274,6 +301,26 @@ bool MarkerFitter::tryMotions(MarkerFit& fit, const FitPrior& prior, double max_
   const double vertex = middle + distance * std::clamp((loss[0] - loss[2]) / (2 * bend), -1.5, 1.5);
   fit.motion = std::clamp(vertex, 0.0, max_motion);
   return true;
+}
+
+/// Then it does not look like blur.
+bool MarkerFitter::isMotionLong(const MarkerFit& fit) {
+  return fit.loss < kWorthRefining && std::abs(fit.motion.length) > kTellingMotion;
+}
+
+/// The motion that explains the pixels best.
+void MarkerFitter::refineMotion(MarkerFit& fit, const FitPrior& prior, double max_motion) {
+  double step = kMotionTrials[1];
+  for (int i = 0; i < kMotionRefinements && std::abs(step) > kMotionRefined; ++i) {
+    MarkerFit trial = fit;
+    const double length = std::clamp(std::abs(fit.motion.length) + step, 1.0, max_motion);
+    trial.motion.length = std::copysign(length, fit.motion.length);
+    refine(trial, prior, 0, kAcquireSteps);
+    const bool better = trial.loss < fit.loss;
+    if (better) fit = trial;
+    step *= better ? 1 : (i == 0 ? -1 : -0.5);
+  }
+  refine(fit, prior, 0, kAcquireSteps);
 }
 
 /// Steps with all parameters until they change no more.

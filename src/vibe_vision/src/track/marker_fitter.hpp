@@ -52,8 +52,11 @@ class MarkerFitter {
   bool read(AxisMap& map, const Frame& frame, MarkerFit& fit, bool guess_light = false);
   void linearise();
   void useGamma(double gamma);
+  MarkerFit acquireWithAnyResponse(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
+                                   double motion, double max_motion, bool known_rotation, double reach);
   MarkerFit tryToAcquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior, double motion,
                          double max_motion, bool known_rotation, double reach);
+  void learnLight(const MarkerFit& fit);
   void useHalf();
   void useQuarter();
   void useAll();
@@ -61,6 +64,8 @@ class MarkerFitter {
   void choosePlace(MarkerFit& fit, double reach);
   void chooseRotation(MarkerFit& fit);
   void chooseMotion(MarkerFit& fit, const FitPrior& prior, double max_motion);
+  static bool isMotionLong(const MarkerFit& fit);
+  void refineMotion(MarkerFit& fit, const FitPrior& prior, double max_motion);
   bool tryMotions(MarkerFit& fit, const FitPrior& prior, double max_motion, double distance);
   void refine(MarkerFit& fit, const FitPrior& prior, double uncertainty, int max_steps);
   static void doubtCovered(MarkerFit& fit);

@@ -91,6 +91,24 @@ TEST(SleeveTracking, KnowsThatALongExposureShowsAnAcceleratedMotion) {
   EXPECT_LT(result.nees, 1.6);
 }
 
+/// One frame alone must tell 20 px of motion, on which the rotation and the place across the axis depend.
+TEST(SleeveTracking, TellsALongMotionInItsFirstFrame) {
+  SyntheticScene scene = namedScene("long_exposure");
+  scene.instruments.resize(1);
+  const Renderer renderer(scene);
+  int found = 0;
+  for (int k = 0; k < 60; k += 6) {
+    Tracker tracker(nominalConfig(scene));  // knows nothing
+    const RenderedFrame rendered = renderer.render(static_cast<std::uint64_t>(k));
+    const Measurement& m = tracker.track(rendered.frame)[0];
+    if (!m.tracked()) continue;
+    EXPECT_NEAR(m.slide, rendered.truth[0].slide, 5e-5) << k;  // half a pixel
+    EXPECT_LT(std::abs(std::remainder(m.rotation - rendered.truth[0].rotation, 2 * M_PI)), 0.09) << k;
+    ++found;
+  }
+  EXPECT_GE(found, 8);
+}
+
 TEST(SleeveTracking, FollowsADefocusedPicture) {
   expectGood(follow(namedScene("defocus"), 60), 0.03, 0.6);
 }
