@@ -122,6 +122,22 @@ TEST(ShellScene, WhatTheSolverRemembersCounts) {
   EXPECT_FALSE(changed([](StepperMemory&) {}));
 }
 
+// Walls that catch in each other for good are a case of vibe_contact, wind; here, what is counted of it.
+TEST(ShellScene, WallsThatWereJammedForASecondAreLedBackToRest) {
+  World freed = livelyWorld(), jammed = livelyWorld();
+  freed.state.solver.recovery_steps = -30;
+  jammed.state.solver.recovery_steps = -60;
+  freed.run(0.6);
+  EXPECT_EQ(freed.state.solver.recovery_steps, 0) << "what is free is counted back";
+  EXPECT_EQ(freed.count(Event::Kind::Recovery), 0);
+  jammed.run(0.1);
+  EXPECT_GT(jammed.state.solver.recovery_steps, 0);
+  EXPECT_EQ(jammed.count(Event::Kind::Recovery), 1);
+  jammed.run(1);
+  EXPECT_EQ(jammed.state.solver.recovery_steps, 0);
+  EXPECT_EQ(jammed.count(Event::Kind::Recovery), 1);
+}
+
 TEST(ShellScene, ASleepingStateWakesUnderOtherLoads) {
   Scene quiet = livelyScene();
   quiet.gravity.reset();
