@@ -32,9 +32,9 @@ constexpr double kRecoveryRate = 20;
 // Steps between checks for an organ that is inside out. Design choice: the check costs a pass over all triangles.
 constexpr int kCheckEvery = 10;
 
-// Walls are jammed where the guard against crossings takes back what the wall's forces do: rate at which it gives energy
-// back, over the energy that the wall holds. Design choice: a fold that is drawn through its own loops has 40 to 60, one
-// that is pressed together hardly any [1/s].
+// Walls are jammed where the guard against crossings takes back what the wall's forces do: rate at which it gives
+// energy back, over the energy that the wall holds. Design choice: a fold that is drawn through its own loops has 40 to
+// 60, one that is pressed together hardly any [1/s].
 constexpr double kJammedRate = 6;
 // Time for which they are until they are led back to rest. Design choice: folds that slip past each other are free
 // within some steps [s].
