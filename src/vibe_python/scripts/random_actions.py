@@ -29,12 +29,14 @@ def resident():
 
 
 def allocated():
-    """What malloc() has given out and not got back [MB]; what it keeps besides is free."""
+    """What malloc() has given out and not got back [MB], with glibc 2.33 or newer; what it keeps besides is free."""
     class Info(ctypes.Structure):
         _fields_ = [(name, ctypes.c_size_t) for name in ("arena ordblks smblks hblks hblkhd usmblks fsmblks uordblks "
                                                          "fordblks keepcost").split()]
 
-    ask = ctypes.CDLL(None).mallinfo2
+    ask = getattr(ctypes.CDLL(None), "mallinfo2", None)
+    if ask is None:
+        return float("nan")
     ask.restype = Info
     info = ask()
     return (info.uordblks + info.hblkhd) / 1e6
