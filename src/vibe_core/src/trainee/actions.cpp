@@ -59,7 +59,7 @@ GoalResult perform(const InspectGoal& goal, Operator& me) {
 
 namespace {
 
-constexpr double kBeamGap = 3e-3;  // from the probe to the wall [m]
+constexpr double kBeamGap = 3e-3;  // from the probe to the wall, and more of it with each try [m]
 constexpr double kAimed = 2e-3;    // of the beam from its target, and of the probe from its distance [m]
 constexpr int kCorrections = 3;    // of the tip, before the pedal is pressed
 
@@ -97,7 +97,8 @@ GoalResult perform(const MarkGoal& goal, Operator& me) {
   const WallPoint place = find(goal.place, me.map());
   GoalResult result{false, ""};
   for (int k = 0; k < me.skill().attempts && !result.reached; ++k) {
-    if (!approachMark(me.withAimError(place), probe + kBeamGap, me))
+    if (k > 0) retreat(me);
+    if (!approachMark(me.withAimError(place), probe + (1 + k) * kBeamGap, me))
       result.reason = "the scope met a wall on its way";
     else if (burn(goal.time, me))
       result = {true, ""};

@@ -44,6 +44,7 @@ class Web(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = os.environ.get("VIBE_WEB_PICTURES") or tempfile.mkdtemp()
+        os.makedirs(cls.folder, exist_ok=True)
         cls.work = page_work()
         cls.simulator = Program(
             "vibe_sim", "sim_node", name="sim_node", scene="package://vibe_core/scenes/" + SIMULATOR, time_source="wall"
