@@ -128,15 +128,67 @@ Eigen::Matrix3f product(const HalfColumns& a, const HalfColumns& b) {
   return last;
 }
 
-Eigen::Vector3f product(const HalfColumns& a, const float* y) {
-  float sum[3] = {0, 0, 0};
-  const float* value = a.value.data();
-  for (std::size_t i = 0; i < a.begin.size(); ++i) {
-    const float* const from = y + a.begin[i];
-    for (int r = 0; r < a.count[i]; ++r, value += 3)
-      for (int k = 0; k < 3; ++k) sum[k] += value[k] * from[r];
+namespace {
+
+/// A sum over the runs of a column, in vectors of four, of which the last is no one's: it belongs to the next row.
+struct ColumnSum {
+  const float* value;
+  Eigen::Array4f sum = Eigen::Array4f::Zero();
+
+  void add(float y) {
+    sum += Eigen::Map<const Eigen::Array4f>(value) * y;
+    value += 3;
   }
-  return {sum[0], sum[1], sum[2]};
+  void addLast(float y) {  // of a run: nothing may follow
+    sum.head<3>() += Eigen::Map<const Eigen::Array3f>(value) * y;
+    value += 3;
+  }
+  void addRun(const float* y, int count) {
+    for (int r = 0; r + 1 < count; ++r) add(y[r]);
+    addLast(y[count - 1]);
+  }
+  Eigen::Vector3f total() const { return sum.head<3>().matrix(); }
+};
+
+// @returns the number of runs at the end that all have in common
+std::size_t commonRuns(const std::array<const HalfColumns*, kProducts>& columns) {
+  const HalfColumns& one = *columns[0];
+  std::size_t same = 0;
+  for (;; ++same)
+    for (const HalfColumns* other : columns) {
+      const std::size_t runs = other->begin.size();
+      if (same >= runs || same >= one.begin.size() ||
+          other->begin[runs - 1 - same] != one.begin[one.begin.size() - 1 - same] ||
+          other->count[runs - 1 - same] != one.count[one.begin.size() - 1 - same])
+        return same;
+    }
+}
+
+}  // namespace
+
+void productsOf(const std::array<const HalfColumns*, kProducts>& columns, const float* y, Eigen::Vector3f* out) {
+  const std::size_t common = commonRuns(columns);
+  std::array<ColumnSum, kProducts> sums{};
+  for (std::size_t c = 0; c < kProducts; ++c) {
+    const HalfColumns& a = *columns[c];
+    sums[c].value = a.value.data();
+    for (std::size_t i = 0; i + common < a.begin.size(); ++i) sums[c].addRun(y + a.begin[i], a.count[i]);
+  }
+  const HalfColumns& one = *columns[0];
+  for (std::size_t i = one.begin.size() - common; i < one.begin.size(); ++i) {
+    const float* const from = y + one.begin[i];
+    const int last = one.count[i] - 1;
+    for (int r = 0; r < last; ++r)
+      for (ColumnSum& sum : sums) sum.add(from[r]);
+    for (ColumnSum& sum : sums) sum.addLast(from[last]);
+  }
+  for (std::size_t c = 0; c < kProducts; ++c) out[c] = sums[c].total();
+}
+
+Eigen::Vector3f product(const HalfColumns& a, const float* y) {
+  ColumnSum sum{a.value.data()};
+  for (std::size_t i = 0; i < a.begin.size(); ++i) sum.addRun(y + a.begin[i], a.count[i]);
+  return sum.total();
 }
 
 void addProduct(const HalfColumns& a, const Eigen::Vector3f& c, float* y) {
@@ -223,12 +275,9 @@ void HalfRows::compliances(Eigen::MatrixXd& out) {
     const bool empty = first_[static_cast<std::size_t>(i)] == end(i);
     if (!empty) given_.assign(size, 0.0);
     for (int t = first_[static_cast<std::size_t>(i)]; t < end(i); ++t)
-      for (int k = 0; k < 3; ++k) {
-        const double c = coefficient_[static_cast<std::size_t>(t)][k];
-        if (c == 0) continue;
-        const double* const from = &gram_[static_cast<std::size_t>(3 * place_[static_cast<std::size_t>(t)] + k) * size];
-        for (std::size_t a = 0; a < size; ++a) given_[a] += c * from[a];
-      }
+      kernels_.subtractRows(given_.data(), static_cast<int>(size),
+                            &gram_[3 * static_cast<std::size_t>(place_[static_cast<std::size_t>(t)]) * size],
+                            Eigen::Vector3d(-coefficient_[static_cast<std::size_t>(t)]).data(), 3);
     for (int j = 0; j <= i; ++j) {
       double sum = 0;
       if (empty) {
@@ -248,7 +297,13 @@ void HalfRows::compliances(Eigen::MatrixXd& out) {
 
 // Each slot once, although several rows may share it.
 void HalfRows::values(const ColumnCache& cache, const float* y, Eigen::VectorXd& out) {
-  for (std::size_t u = 0; u < used_.size(); ++u) share_[u] = product(cache.columns(used_[u]), y);
+  std::size_t u = 0;
+  for (; u + kProducts <= used_.size(); u += kProducts) {
+    std::array<const HalfColumns*, kProducts> columns;
+    for (std::size_t c = 0; c < kProducts; ++c) columns[c] = &cache.columns(used_[u + c]);
+    productsOf(columns, y, &share_[u]);
+  }
+  for (; u < used_.size(); ++u) share_[u] = product(cache.columns(used_[u]), y);
   out.resize(count());
   for (int i = 0; i < count(); ++i) {
     double sum = 0;

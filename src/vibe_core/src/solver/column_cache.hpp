@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "solver/dense_row_kernel.hpp"
 #include "vibe_core/solver/body_loads.hpp"
 #include "vibe_core/sparse/factor.hpp"
 
@@ -59,7 +61,10 @@ class ColumnCache {
 
 /// Product of two sparse vectors: both consist of whole runs; those on the common part of the paths are the same runs.
 Eigen::Matrix3f product(const HalfColumns& a, const HalfColumns& b);
-/// Product with a dense vector.
+/// Products with a dense vector. All at once, because each is a sum in which every term waits for the one before; and
+/// their paths have much in common.
+constexpr int kProducts = 4;
+void productsOf(const std::array<const HalfColumns*, kProducts>& columns, const float* y, Eigen::Vector3f* out);
 Eigen::Vector3f product(const HalfColumns& a, const float* y);
 /// Adds the columns times c to a dense vector.
 void addProduct(const HalfColumns& a, const Eigen::Vector3f& c, float* y);
@@ -92,6 +97,7 @@ class HalfRows {
   int terms() const { return static_cast<int>(slot_.size()); }
   void formGram(ColumnCache& cache);
 
+  DenseRowKernels kernels_ = denseRowKernels();
   std::vector<int> first_;  // term of each row
   std::vector<double> compliance_;
   std::vector<int> slot_;                     // of each term

@@ -88,19 +88,13 @@ bool ContactProblem::holds(int row) const {
 
 void ContactProblem::findLeft(const double* lack, const double* force) {
   std::copy(lack, lack + n_, left_.begin());
-  for (int j = 0; j < n_; ++j) {
-    const double f = force[j];
-    if (f == 0) continue;
-    const double* const column = &compliance_[at(j, 0)];
-    for (int i = 0; i < n_; ++i) left_[static_cast<std::size_t>(i)] -= f * column[i];
-  }
+  kernels_.subtractRows(left_.data(), n_, compliance_.data(), force, n_);
 }
 
 void ContactProblem::change(int row, double by, double* force) {
   if (by == 0) return;
   force[row] += by;
-  const double* const column = &compliance_[at(row, 0)];
-  for (int i = 0; i < n_; ++i) left_[static_cast<std::size_t>(i)] -= by * column[i];
+  kernels_.subtractRows(left_.data(), n_, &compliance_[at(row, 0)], &by, 1);
 }
 
 // @returns the largest move of a row [m]

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include "solver/dense_row_kernel.hpp"
+
 namespace vibe {
 
 /// Dense factorization with partial pivoting of small matrices whose size changes from one to the next. Keeps its
@@ -26,6 +28,7 @@ class DenseLu {
   bool factorPanel(int from, int to);
   void update(int from, int to);
 
+  DenseRowKernels kernels_ = denseRowKernels();
   int n_ = 0;
   std::vector<double> a_;  // row after row
   std::vector<int> pivot_;
@@ -97,6 +100,7 @@ class ContactProblem {
   void setSlipRows(int equation, const Group& group, const Slip& slip);
   void newtonStep(double* force);
 
+  DenseRowKernels kernels_ = denseRowKernels();
   int n_ = 0;
   std::vector<double> compliance_;  // symmetric
   std::vector<Group> groups_;

@@ -1,9 +1,18 @@
-#include "solver/contact_problem.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "common/kernel_path.hpp"
+#include "solver/contact_problem.hpp"
+
 namespace vibe {
+
+DenseRowKernels denseRowKernelsSse2();
+DenseRowKernels denseRowKernelsAvx2();
+
+DenseRowKernels denseRowKernels() {
+  const bool wide = kernelPath() == KernelPath::Avx2 || kernelPath() == KernelPath::Avx512;
+  return wide ? denseRowKernelsAvx2() : denseRowKernelsSse2();
+}
 
 void DenseLu::resize(int n) {
   n_ = n;
@@ -38,12 +47,7 @@ void DenseLu::update(int from, int to) {
       for (int j = to; j < n_; ++j) row(k)[j] -= factor * row(p)[j];
     }
   if (to - from < kPanel) return;  // it is the last one
-  const double *const a = row(from), *const b = row(from + 1), *const c = row(from + 2), *const d = row(from + 3);
-  for (int i = to; i < n_; ++i) {
-    double* const out = row(i);
-    const double* const f = out + from;
-    for (int j = to; j < n_; ++j) out[j] -= (f[0] * a[j] + f[1] * b[j]) + (f[2] * c[j] + f[3] * d[j]);
-  }
+  kernels_.eliminateFour(a_.data(), n_, to);
 }
 
 bool DenseLu::factor() {

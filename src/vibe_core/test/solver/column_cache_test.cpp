@@ -69,6 +69,31 @@ TEST(ColumnCache, TheOrderDoesNotChangeTheBits) {
             other.gram(other.cache.attachmentSlot(2), other.cache.nodeSlot(*other.factor, 7)));
 }
 
+TEST(ColumnCache, ProductsOfSeveralColumnsHaveTheBitsOfEach) {
+  System system;
+  const Eigen::VectorXf y = Eigen::VectorXf::LinSpaced(system.factor->rows(), -1, 2);
+  for (const std::array<int, kProducts>& nodes :
+       {std::array<int, kProducts>{4, 40, 7, 12}, {9, 9, 9, 9}, {0, 1, 2, 60}}) {
+    std::array<HalfColumns, kProducts> columns;
+    std::array<const HalfColumns*, kProducts> asked;
+    for (std::size_t c = 0; c < kProducts; ++c) {
+      system.factor->halfColumns(nodes[c], columns[c]);
+      asked[c] = &columns[c];
+    }
+    std::array<Eigen::Vector3f, kProducts> found;
+    productsOf(asked, y.data(), found.data());
+    for (std::size_t c = 0; c < kProducts; ++c) {
+      EXPECT_EQ(found[c], product(columns[c], y.data()));
+      const float* value = columns[c].value.data();
+      Eigen::Vector3f expected = Eigen::Vector3f::Zero();
+      for (std::size_t i = 0; i < columns[c].begin.size(); ++i)
+        for (int r = 0; r < columns[c].count[i]; ++r, value += 3)
+          for (int k = 0; k < 3; ++k) expected[k] += value[k] * y[columns[c].begin[i] + r];
+      EXPECT_EQ(found[c], expected) << nodes[c];
+    }
+  }
+}
+
 TEST(ColumnCache, ForgetsWhatHasChangedAndKeepsTheRest) {
   System system;
   system.cache.prepare(*system.factor, {5, 9}, kPoints);
