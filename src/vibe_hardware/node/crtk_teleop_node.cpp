@@ -98,7 +98,7 @@ std::string CrtkTeleopNode::nameOf(const std::string& topic) const {
 
 void CrtkTeleopNode::advertise(ros::NodeHandle& handle) {
   scope_ = handle.advertise<sensor_msgs::JointState>("scope/servo_jp", kArmQueue);
-  if (mapping_.gripper)
+  if (mapping_.gripper || !mapping_.device.topic.empty())
     suturing_device_ = handle.advertise<sensor_msgs::JointState>("suturing_device/servo_jp", kArmQueue);
   button_publisher_ = handle.advertise<sensor_msgs::Joy>("scope/buttons", kArmQueue);
   if (mapping_.force_scale == 0) return;
@@ -125,6 +125,8 @@ void CrtkTeleopNode::subscribe(ros::NodeHandle& handle) {
         handle.subscribe(nameOf("gripper/measured_js"), kArmQueue, &CrtkTeleopNode::onGripper, this, hints));
   if (!mapping_.clutch.topic.empty())
     listenToButton(handle, mapping_.clutch, [this](bool pressed) { input_.clutch = pressed; });
+  if (!mapping_.device.topic.empty())
+    listenToButton(handle, mapping_.device, [this](bool pressed) { input_.device = pressed; });
   for (std::size_t b = 0; b < mapping_.buttons.size(); ++b)
     if (!mapping_.buttons[b].topic.empty())
       listenToButton(handle, mapping_.buttons[b], [this, b](bool pressed) { buttons_[b] = pressed ? 1 : 0; });
@@ -209,12 +211,15 @@ void CrtkTeleopNode::tick(const ros::WallTimerEvent&) {
 
 void CrtkTeleopNode::advance(double now) {
   input_.ready = scope_known_ && suturing_device_known_ && arm_ready_;
-  const bool was_engaged = state_.engaged;
+  const bool was_engaged = state_.engaged, was_on_device = state_.engaged && state_.on_device;
   const TeleopOutput output = step(mapping_, limits_, std::max(now, state_.time), input_, state_);
   input_.sample.reset();
   if (!output.sentence.empty()) ROS_WARN_STREAM(output.sentence);
   if (output.engaged != was_engaged)
     ROS_INFO_STREAM((output.engaged ? "The arm drives the scope." : "The arm has let go of the scope."));
+  if (output.on_device != was_on_device)
+    ROS_INFO_STREAM((output.on_device ? "The arm moves the suturing device, and the scope stays."
+                                      : "The arm has let go of the suturing device."));
   const ros::Time stamp = ros::Time::now();
   if (stamp.isZero()) return;  // simulated time has not begun; stamp 0 would mark invalid data
   if (state_.last || was_engaged) publishForce(output, stamp);
@@ -241,7 +246,7 @@ void CrtkTeleopNode::publishCommands(const TeleopOutput& output, double now, con
     DriveState drive;
     drive.joints = output.joints;
     scope_.publish(scopeCommand(drive, stamp));
-    if (mapping_.gripper) suturing_device_.publish(suturingDeviceCommand(drive, stamp));
+    if (mapping_.gripper || output.on_device) suturing_device_.publish(suturingDeviceCommand(drive, stamp));
   }
   const auto buttons = state_.last ? buttons_ : std::array<std::uint8_t, kButtonCount>{};
   if (buttons == sent_buttons_ && now - last_buttons_ < kArmButtonInterval) return;
@@ -257,7 +262,9 @@ void CrtkTeleopNode::fillDiagnostics(diagnostic_updater::DiagnosticStatusWrapper
   if (!state_.last)
     status.summary(DiagnosticStatus::WARN, "the arm is silent");
   else
-    status.summary(DiagnosticStatus::OK, state_.engaged ? "driving" : "waiting");
+    status.summary(DiagnosticStatus::OK, !state_.engaged    ? "waiting"
+                                         : state_.on_device ? "moving the device"
+                                                            : "driving");
   if (!scope_known_) status.mergeSummary(DiagnosticStatus::WARN, "no simulator");
   if (!arm_ready_) status.mergeSummary(DiagnosticStatus::WARN, "the arm is not ready");
   double balance = 1;

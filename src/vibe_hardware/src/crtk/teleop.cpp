@@ -27,6 +27,14 @@ bool isJump(const TeleopMapping& mapping, const std::array<double, kHandCoordina
   });
 }
 
+/// Joints that follow the hand.
+struct Followers {
+  std::size_t first, end;
+};
+Followers followersOf(const TeleopState& state) {
+  return state.on_device ? Followers{kScopeJointCount, kJointCount} : Followers{0, kScopeJointCount};
+}
+
 void letGo(TeleopState& state) {
   state.engaged = false;
   state.blends = {};
@@ -61,16 +69,27 @@ bool follow(const TeleopMapping& mapping, const ArmSample& sample, TeleopState& 
   return true;
 }
 
-void engage(const TeleopMapping& mapping, const TeleopInput& input, TeleopState& state) {
+/// From where the joints are.
+void engage(const TeleopMapping& mapping, bool on_device, TeleopState& state) {
   state.engaged = true;
-  state.joints = input.joints;
-  for (std::size_t j = 0; j < state.scales.size(); ++j) {
+  state.on_device = on_device;
+  state.tissue_time = -1e9;
+  const Followers followers = followersOf(state);
+  for (std::size_t j = followers.first; j < followers.end; ++j) {
     const HandJoint& joint = mapping.joints[j];
     if (joint.coordinate < 0) continue;
     JointScale& scale = state.scales[j];
     scale.scale = joint.scale;
-    scale.offset = input.joints[j] - joint.scale * state.hand[static_cast<std::size_t>(joint.coordinate)];
+    scale.offset = state.joints[j] - joint.scale * state.hand[static_cast<std::size_t>(joint.coordinate)];
   }
+}
+
+/// The scope stays where it was sent; the suturing device may have been moved by others.
+void changeOver(const TeleopMapping& mapping, const TeleopInput& input, TeleopState& state) {
+  letGo(state);
+  if (input.device)
+    std::copy(input.joints.begin() + kScopeJointCount, input.joints.end(), state.joints.begin() + kScopeJointCount);
+  engage(mapping, input.device, state);
 }
 
 double springForce(const JointSpring& spring, double coordinate) {
@@ -103,7 +122,8 @@ void takeSprings(const TeleopMapping& mapping, const TeleopInput& input, double 
 }
 
 void moveJoints(const TeleopMapping& mapping, const ToolLimits& limits, const TeleopInput& input, TeleopState& state) {
-  for (std::size_t j = 0; j < state.scales.size(); ++j) {
+  const Followers followers = followersOf(state);
+  for (std::size_t j = followers.first; j < followers.end; ++j) {
     const HandJoint& joint = mapping.joints[j];
     if (joint.coordinate < 0) continue;
     const double wanted = jointPosition(state.scales[j], state.hand[static_cast<std::size_t>(joint.coordinate)]);
@@ -126,7 +146,7 @@ void sendForces(const TeleopMapping& mapping, double now, TeleopState& state, Te
     const double at = state.hand[static_cast<std::size_t>(joint.coordinate)];
     const double spring = state.engaged ? fresh * springForce(state.springs[j], at) + state.blends[j] : 0;
     const double damping = state.engaged ? fresh * state.springs[j].damping : 0;
-    const bool silent = !state.engaged || mapping.force_scale == 0;
+    const bool silent = !state.engaged || state.on_device || mapping.force_scale == 0;
     const double sent =
         silent ? release(now, state.ports[j]) : command(joint.port, now, spring, damping, state.ports[j]);
     output.passivity_acts |= state.ports[j].acts;
@@ -165,17 +185,19 @@ TeleopOutput step(const TeleopMapping& mapping, const ToolLimits& limits, double
   if (!may && state.engaged) letGo(state);
   if (!may && !state.engaged && input.ready) state.joints = input.joints;
   if (may && !state.engaged && output.sentence.empty()) {
-    engage(mapping, input, state);
-    state.tissue_time = -1e9;
+    state.joints = input.joints;
+    engage(mapping, input.device, state);
   }
+  if (state.engaged && state.on_device != input.device) changeOver(mapping, input, state);
   if (state.engaged) {
-    takeSprings(mapping, input, now - state.time, state);
+    if (!state.on_device) takeSprings(mapping, input, now - state.time, state);
     moveJoints(mapping, limits, input, state);
   }
   state.time = now;
   sendForces(mapping, now, state, output);
   output.joints = state.joints;
   output.engaged = state.engaged;
+  output.on_device = state.engaged && state.on_device;
   return output;
 }
 

@@ -32,16 +32,17 @@ class ArmReader {
 
   TeleopMapping read() {
     const Fields fields =
-        mapOf(source_.root(), {"name", "hand", "joints", "arm", "forces", "clutch", "buttons", "gripper"},
+        mapOf(source_.root(), {"name", "hand", "joints", "arm", "forces", "clutch", "buttons", "gripper", "device"},
               {"name", "hand", "joints"});
     mapping_.name = source_.text(fields.at("name"));
     readHand(fields.at("hand"));
     if (fields.count("arm") > 0) readArm(fields.at("arm"));
-    readJoints(fields.at("joints"));
+    readJoints(fields.at("joints"), 0, kScopeJointCount);
     if (fields.count("forces") > 0) readForces(fields.at("forces"));
     if (fields.count("clutch") > 0) mapping_.clutch = readButton(fields.at("clutch"));
     if (fields.count("buttons") > 0) readButtons(fields.at("buttons"));
     if (fields.count("gripper") > 0) readGripper(fields.at("gripper"));
+    if (fields.count("device") > 0) readDevice(fields.at("device"));
     return mapping_;
   }
 
@@ -102,13 +103,24 @@ class ArmReader {
     readIf(fields, "resolution", "m", 0, 0.01, way_.resolution);
   }
 
-  void readJoints(const YamlField& field) {
-    const std::vector<std::string> names(kJointNames.begin(), kJointNames.begin() + kScopeJointCount);
+  void readJoints(const YamlField& field, int first, int end) {
+    used_.clear();
+    const std::vector<std::string> names(kJointNames.begin() + first, kJointNames.begin() + end);
     for (const auto& [name, entry] : mapOf(field, names, {})) {
-      const auto joint = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-      readJoint(entry, static_cast<int>(joint), mapping_.joints[joint]);
+      const int joint = first + static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+      if (mapping_.gripper && mapping_.gripper->joint == joint)
+        source_.fail(entry, "is set by the gripper already; leave it out here or there");
+      readJoint(entry, joint, mapping_.joints[static_cast<std::size_t>(joint)]);
     }
-    if (used_.empty()) source_.fail(field, "moves nothing; write at least one joint of the scope");
+    if (used_.empty())
+      source_.fail(field, "moves nothing; write at least one joint of the " +
+                              std::string(first == 0 ? "scope" : "suturing device"));
+  }
+
+  void readDevice(const YamlField& field) {
+    const Fields fields = mapOf(field, {"button", "joints"}, {"button", "joints"});
+    mapping_.device = readButton(fields.at("button"));
+    readJoints(fields.at("joints"), kScopeJointCount, kJointCount);
   }
 
   void readJoint(const YamlField& field, int index, HandJoint& joint) {

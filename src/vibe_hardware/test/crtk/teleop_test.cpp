@@ -97,6 +97,30 @@ TEST(Teleop, WithTheClutchTheHandComesBackAndTheScopeStays) {
   EXPECT_NEAR(s.output.joints[Insertion], 0.02 - 1e-4, 2e-4);
 }
 
+TEST(Teleop, TheButtonForTheDeviceMovesItAndTheScopeStays) {
+  Session s;
+  s.mapping = mappingOf(
+      "device:\n  button: {topic: button2}\n  joints:\n    helix_advance: {along: x, scale: 0.5}\n"
+      "    helix_rotation: {about: x, scale: 4}\n");
+  s.tick();
+  for (int i = 0; i < 100; ++i) s.tick({0, 0, -1e-4});
+  s.input.joints[HelixAdvance] = 0.002;  // another node has moved it
+  s.input.device = true;
+  s.tick();
+  EXPECT_TRUE(s.output.on_device);
+  for (int i = 0; i < 100; ++i) s.tick({0, 0, -4e-5}, {0, 0, -1e-3});
+  EXPECT_NEAR(s.output.joints[Insertion], 0.01, 1e-9);
+  EXPECT_EQ(s.output.joints[Rotation], 0);
+  EXPECT_NEAR(s.output.joints[HelixAdvance], 0.002 + 0.5 * 0.004, 1e-9);
+  EXPECT_NEAR(s.output.joints[HelixRotation], 4 * 0.1, 1e-9);
+  s.input.device = false;
+  s.tick();
+  for (int i = 0; i < 100; ++i) s.tick({0, 0, 1e-4});
+  EXPECT_FALSE(s.output.on_device);
+  EXPECT_NEAR(s.output.joints[Insertion], 0.01 - 0.01, 1e-9);  // goes on from where it was sent, without a jump
+  EXPECT_NEAR(s.output.joints[HelixRotation], 0.4, 1e-9);
+}
+
 TissueResponse wallAt(double time, double insertion, double effort, double stiffness) {
   TissueResponse tissue;
   tissue.time = time;
@@ -136,6 +160,20 @@ TEST(Teleop, WithoutNewsOfTheTissueTheForceFades) {
   EXPECT_NEAR(s.output.force.norm(), 1, 1e-2);
   for (int i = 0; i < 160; ++i) s.tick();
   EXPECT_LT(s.output.force.norm(), 1e-3);
+}
+
+TEST(Teleop, OnTheDeviceTheArmFeelsNothing) {
+  Session s;
+  s.mapping = mappingOf("device: {button: {topic: b}, joints: {helix_rotation: {about: x, scale: 4}}}\n");
+  s.tick();
+  for (int i = 0; i < 200; ++i) s.input.tissue = wallAt(s.time, 0, -1, 0), s.tick();
+  EXPECT_NEAR(s.output.force.norm(), 1, 1e-2);
+  s.input.device = true;
+  for (int i = 0; i < 20; ++i) s.input.tissue = wallAt(s.time, 0, -1, 0), s.tick();
+  EXPECT_EQ(s.output.force.norm(), 0);
+  s.input.device = false;
+  for (int i = 0; i < 200; ++i) s.input.tissue = wallAt(s.time, 0, -1, 0), s.tick();
+  EXPECT_NEAR(s.output.force.norm(), 1, 1e-2);
 }
 
 TEST(Teleop, AnArmThatIsSilentJumpsOrIsNotReadyGetsNoForce) {
@@ -224,9 +262,10 @@ TEST(Teleop, AWallGivesNoMoreThanTheCapacityWhateverItsStiffness) {
 }
 
 TEST(TeleopMapping, ShippedMappingsMoveEveryJointOfTheScope) {
-  for (const char* name : {"touch", "dvrk_mtm"}) {
-    const TeleopMapping mapping = loadTeleopMapping(std::string("../config/arms/") + name + ".yaml", toolLimits());
-    for (const HandJoint& joint : mapping.joints) EXPECT_GE(joint.coordinate, 0) << name;
+  for (const std::string name : {"touch", "touch_alone", "dvrk_mtm"}) {
+    const TeleopMapping mapping = loadTeleopMapping("../config/arms/" + name + ".yaml", toolLimits());
+    for (int j = 0; j < (name == "touch_alone" ? kJointCount : kScopeJointCount); ++j)
+      EXPECT_GE(mapping.joints[static_cast<std::size_t>(j)].coordinate, 0) << name;
     EXPECT_NEAR(mapping.hand.determinant(), 1, 1e-12) << name;
     EXPECT_FALSE(mapping.clutch.topic.empty()) << name;
   }
@@ -246,7 +285,13 @@ TEST(TeleopMapping, MistakesAreNamedWithPlaceAndRemedy) {
            {head + "joints:\n  insertion: {along: x, scale: 1}\narm: {delay: -1 ms}\n", "arm.delay"},
            {head + "joints:\n  insertion: {along: x, scale: 1}\ngripper: {joint: needle_driver, closed: 1, open: 1, "
                    "at_closed: 0, at_open: 0}\n",
-            "differ"}}) {
+            "differ"},
+           {head + "joints:\n  insertion: {along: x, scale: 1}\ndevice: {button: {topic: b}, joints: {}}\n",
+            "joint of the suturing device"},
+           {head + "joints:\n  insertion: {along: x, scale: 1}\ngripper: {joint: needle_driver, closed: 0, open: 1, "
+                   "at_closed: 0, at_open: 0}\ndevice: {button: {topic: b}, joints: {needle_driver: {along: x, scale: "
+                   "1}}}\n",
+            "by the gripper already"}}) {
     const std::string error = errorOf(text);
     EXPECT_NE(error.find(part), std::string::npos) << error;
     EXPECT_EQ(error.find("my_arm.yaml:"), 0U) << error;

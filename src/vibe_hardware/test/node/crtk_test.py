@@ -25,13 +25,16 @@ class CrtkTest(unittest.TestCase):
         cls.force = Recorder("arm/servo_cf", WrenchStamped)
         cls.operating = Recorder("arm/operating_state", OperatingState)
         cls.command = rospy.Publisher("scope/servo_jp", JointState, queue_size=10)
+        cls.device = Recorder("suturing_device/measured_js", JointState)
         cls.clutch = rospy.Publisher("arm/button1", Joy, queue_size=10)
+        cls.device_button = rospy.Publisher("arm/button2", Joy, queue_size=10)
         cls.state = rospy.Publisher("arm/state_command", StateCommand, queue_size=10)
         assert wait_until(lambda: cls.command.get_num_connections() > 0, 20)
         cls.command.publish(JointState(position=BEFORE_THE_WALL))
         assert wait_until(lambda: cls.joints.messages and abs(cls.insertion() - BEFORE_THE_WALL[0]) < 1e-6, 20)
         cls.arm = Program("vibe_hardware", "crtk_arm", sway=SWAY, start=0)
-        cls.node = Program("vibe_hardware", "crtk_teleop")
+        cls.node = Program("vibe_hardware", "crtk_teleop",
+                           mapping="package://vibe_hardware/config/arms/touch_alone.yaml")
 
     @classmethod
     def tearDownClass(cls):
@@ -49,8 +52,8 @@ class CrtkTest(unittest.TestCase):
         """Force to the person."""
         return self.force.messages[-1].wrench.force.z
 
-    def press(self, down):
-        self.clutch.publish(Joy(header=rospy.Header(stamp=rospy.Time.now()), buttons=[int(down)]))
+    def press(self, down, button=None):
+        (button or self.clutch).publish(Joy(header=rospy.Header(stamp=rospy.Time.now()), buttons=[int(down)]))
 
     def test_1_the_arm_moves_the_scope_and_feels_the_wall(self):
         self.assertTrue(wait_until(lambda: "drives the scope" in self.node.output(), 20), self.node.output())
@@ -69,6 +72,19 @@ class CrtkTest(unittest.TestCase):
         self.assertAlmostEqual(self.insertion(), place, 5)
         self.assertEqual(self.back(), 0)
         self.press(False)
+        self.assertTrue(wait_until(lambda: abs(self.insertion() - place) > 1e-3, 20))
+
+    def test_2b_with_the_button_for_the_device_the_helix_moves_and_the_scope_stays(self):
+        self.assertTrue(wait_until(lambda: self.device_button.get_num_connections() > 0, 20))
+        self.press(True, self.device_button)
+        self.assertTrue(wait_until(lambda: "moves the suturing device" in self.node.output(), 20), self.node.output())
+        rospy.sleep(0.5)  # until the simulator is where it was sent
+        place, helix = self.insertion(), lambda: self.device.messages[-1].position[0]
+        was = helix()
+        self.assertTrue(wait_until(lambda: abs(helix() - was) > 1e-3, 20))
+        self.assertAlmostEqual(self.insertion(), place, 5)
+        self.assertEqual(self.back(), 0)
+        self.press(False, self.device_button)
         self.assertTrue(wait_until(lambda: abs(self.insertion() - place) > 1e-3, 20))
 
     def test_3_an_arm_that_is_paused_drives_nothing(self):

@@ -30,15 +30,16 @@ struct TeleopInput {
   std::array<double, kJointCount> joints{};  ///< where the hand of the simulator has the joints [m], [rad]
   bool ready = false;                        ///< those are known, and the arm may be used (ENABLED and homed)
   bool clutch = false;                       ///< is pressed
+  bool device = false;                       ///< the button for the suturing device is pressed
   std::optional<double> gripper;             ///< angle [rad]
   std::optional<TissueResponse> tissue;      ///< the newest one; empty: nothing is touched
 };
 
 /// Everything that lasts from step to step.
 struct TeleopState {
-  std::array<double, kJointCount> joints{};           ///< commanded [m], [rad]
-  std::array<double, kHandCoordinates> hand{};        ///< coordinates [m], [rad]
-  std::array<JointScale, kScopeJointCount> scales{};  ///< joint = offset + scale * coordinate, while engaged
+  std::array<double, kJointCount> joints{};      ///< commanded [m], [rad]
+  std::array<double, kHandCoordinates> hand{};   ///< coordinates [m], [rad]
+  std::array<JointScale, kJointCount> scales{};  ///< joint = offset + scale * coordinate, of those that follow
   /// Observer and limiter of each scope joint's coordinate; idle where the mapping has none.
   std::array<PortState, kScopeJointCount> ports{};
   std::array<JointSpring, kScopeJointCount> springs{};  ///< that are rendered
@@ -46,7 +47,8 @@ struct TeleopState {
   std::optional<ArmSample> last;  ///< newest measurement; empty: none yet, or older than the mapping's timeout
   double tissue_time = -1e9;      ///< of the springs [s]
   double time = 0;                ///< of the last step [s]
-  bool engaged = false;           ///< the joints follow the hand
+  bool engaged = false;           ///< joints follow the hand
+  bool on_device = false;         ///< those of the suturing device; the scope stays
 };
 
 /// What a step sends.
@@ -54,7 +56,8 @@ struct TeleopOutput {
   std::array<double, kJointCount> joints{};          ///< commanded [m], [rad]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< in the mapping's frame [N]
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< in the mapping's frame [N m]
-  bool engaged = false;         ///< the joints follow the hand; false: they stay and the forces are 0
+  bool engaged = false;                              ///< joints follow the hand; false: they stay and the forces are 0
+  bool on_device = false;       ///< those of the suturing device; the scope stays and the forces are 0
   bool passivity_acts = false;  ///< on some coordinate the force of the tissue was lowered, or damping was added
   std::string sentence;         ///< one when something has changed that a person should know; else empty
 };
@@ -65,8 +68,10 @@ TeleopState startTeleop(const TeleopMapping& mapping, double now);
 /// One step: a function of its arguments. No clock, no graph, no memory but for sentences.
 ///   joint = where it was when the arm engaged + scale * motion of the hand since, within the limits of the joint.
 /// The arm engages when it may be used, measures, and the clutch is up; it lets go when one of these ends. Then forces
-/// are 0 and the joints stay. A force of the tissue at a joint becomes scale times that on the coordinate (virtual
-/// work) times force_scale; new springs do not jump, and without a message for 0.1 s they fade within 0.05 s.
+/// are 0 and the joints stay. While the button for the suturing device is pressed, that follows instead of the scope,
+/// without forces: the tissue answers to joints of the scope only. A force of the tissue at a joint becomes scale times
+/// that on the coordinate (virtual work) times force_scale; new springs do not jump, and without a message for 0.1 s
+/// they fade within 0.05 s.
 /// @param now  not before the last one [s]
 TeleopOutput step(const TeleopMapping& mapping, const ToolLimits& limits, double now, const TeleopInput& input,
                   TeleopState& state);

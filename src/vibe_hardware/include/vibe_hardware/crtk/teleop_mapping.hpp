@@ -15,11 +15,11 @@ namespace vibe::hardware {
 enum HandCoordinate : int { HandX, HandY, HandZ, HandRoll, HandPitch, HandYaw };
 constexpr int kHandCoordinates = 6;  ///< length of arrays indexed by HandCoordinate
 
-/// How a coordinate of the hand moves a joint of the scope.
+/// How a coordinate of the hand moves a joint of the scope or of its suturing device.
 struct HandJoint {
   int coordinate = -1;  ///< HandCoordinate; -1: the joint stays where it is
   double scale = 0;     ///< joint per coordinate [m/m], [m/rad], [rad/m] or [rad/rad], not 0; its sign is the direction
-  PortConfig port;      ///< of the coordinate
+  PortConfig port;      ///< of the coordinate; with a joint of the suturing device there are no forces
 };
 
 /// A button of sensor_msgs/Joy on some topic, as CRTK drivers publish pedals and buttons.
@@ -45,14 +45,16 @@ enum class ForceFrame {
 struct TeleopMapping {
   std::string name;                                    ///< of the arm, for messages
   Eigen::Matrix3d hand = Eigen::Matrix3d::Identity();  ///< axes of the hand's frame, as columns in the arm's base [1]
-  std::array<HandJoint, kScopeJointCount> joints;      ///< by vibe::Joint; each coordinate moves at most one of them
-  std::array<ArmButton, kButtonCount> buttons;         ///< by vibe::Button; an empty topic: nothing presses that button
-  ArmButton clutch;                                    ///< while it is pressed, the scope stays and the arm is free
-  std::optional<ArmGripper> gripper;                   ///< empty: the gripper moves nothing
-  double force_scale = 1;                              ///< of the forces of the tissue; 0: no forces [1]
-  std::string force_topic = "servo_cf";                ///< relative to the arm
-  ForceFrame force_frame = ForceFrame::Base;           ///< which axes the driver of the arm expects
-  double timeout = 0.1;  ///< without a measurement after which the arm lets go of the scope [s]
+  /// By vibe::Joint. Each coordinate moves at most one joint of the scope and one of the suturing device.
+  std::array<HandJoint, kJointCount> joints;
+  ArmButton device;  ///< while it is pressed, the arm moves the suturing device and the scope stays; no topic: never
+  std::array<ArmButton, kButtonCount> buttons;  ///< by vibe::Button; an empty topic: nothing presses that button
+  ArmButton clutch;                             ///< while it is pressed, the scope stays and the arm is free
+  std::optional<ArmGripper> gripper;            ///< empty: the gripper moves nothing
+  double force_scale = 1;                       ///< of the forces of the tissue; 0: no forces [1]
+  std::string force_topic = "servo_cf";         ///< relative to the arm
+  ForceFrame force_frame = ForceFrame::Base;    ///< which axes the driver of the arm expects
+  double timeout = 0.1;                         ///< without a measurement after which the arm lets go of the scope [s]
 };
 
 /// Reads a mapping file.
