@@ -81,7 +81,7 @@ def development_paragraph(packages, dependencies):
         if not alone:
             needed.add("{} (= ${{binary:Version}})".format(debian_name(package.name)))
     needed = {name for name in needed if not name.startswith(DEVELOPMENT)}
-    return paragraph(DEVELOPMENT, {"${misc:Depends}", "${python3:Depends}", "catkin", *needed},
+    return paragraph(DEVELOPMENT, {"${misc:Depends}", "${python3:Depends}", "catkin", "g++", "make", *needed},
                      "endoscopic suturing simulated: headers",
                      "What packages need that build on those of ViBE for ROS: headers, static libraries, CMake files, and "
                      "what tests share.")

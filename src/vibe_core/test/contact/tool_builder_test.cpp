@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <random>
+#include <regex>
 
 #include "vibe_testing/expect_error.hpp"
 #include "vibe_testing/scope_fixture.hpp"
@@ -67,15 +68,14 @@ class BadUrdf : public testing::TestWithParam<int> {
     const std::string cap_bar =
         "<geometry><cylinder radius=\"0.0079\" length=\"0.0041\"/></geometry>\n    </collision>";
     return {
-        {"Empty", "", "scope.urdf: this is not a valid URDF (Error document empty); correct that element.", ""},
+        {"Empty", "", "scope.urdf: this is not a valid URDF (Error); correct that element.", ""},
         {"NotXml", "insertion: 3", "scope.urdf: this is not a valid URDF (", ""},
         {"CutOff", good.substr(0, good.find("<parent link=\"ring_4\"/>")),
-         "scope.urdf:LINE: the XML of this URDF is broken here (Error reading end tag); close what is open and quote "
-         "every "
-         "value.",
+         "scope.urdf:LINE: the XML of this URDF is broken here (Error); close what is open and quote every value.",
          "<joint name=\"tip_left_right_4\""},
         {"Unquoted", replaced(good, "velocity=\"0.15\"", "velocity=\"0.15"),
-         "scope.urdf:LINE: the XML of this URDF is broken here (Error reading Attributes)", "velocity=\"0.15"},
+         "scope.urdf:LINE: the XML of this URDF is broken here (Error); close what is open and quote every value.",
+         "velocity=\"0.15"},
         {"WrongEndTag", replaced(good, "</collision>", "</colision>"),
          "scope.urdf:LINE: the XML of this URDF is broken here (", "<collision"},
         {"NotANumber", replaced(good, "lower=\"0\" upper=\"0.3\"", "lower=\"0\" upper=\"0,3\""),
@@ -163,9 +163,11 @@ TEST_P(BadUrdf, IsRefusedInOneSentence) {
   const Bad bad = all()[GetParam()];
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
-  const std::string message = errorOf(bad.text);
+  std::string message = errorOf(bad.text);
   EXPECT_EQ(testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr(), "") << "prints nothing";
   expectSentence(message);
+  // what an XML library says is that of its version
+  message = std::regex_replace(message, std::regex("\\(Error.*\\);"), "(Error);");
   std::string expected = bad.message;
   if (!bad.line_of.empty()) expected = replaced(expected, "LINE", std::to_string(lineOf(bad.text, bad.line_of)));
   EXPECT_EQ(message.substr(0, expected.size()), expected) << message;
