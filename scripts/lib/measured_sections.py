@@ -14,6 +14,7 @@ SESSION_TEXT = "first_session.txt"  # what the first session printed, which firs
 STOMACH = "package://vibe_core/scenes/stomach.yaml"
 SCENES = {  # variants of the default scene: a text that follows its line, or (line to remove, None)
     "rigid": ("  compliance: {}", None),
+    "small": (None, "geometry: {particles: 1000}\n"),
     "coarse": (None, "geometry: {particles: 900}\ngas: {flow_limit: 30 L/min}\n"),
     "shape_matching": (None, "tissue: {model: shape_matching, young_modulus: 100 kPa, self_contact: false}\n"),
 }
@@ -58,6 +59,7 @@ def contact_parts():
     yield Part("pressed_rigid", ("vibe_contact", "states", "pressed", "--scene", "{rigid}", *rates), 2)
     words = ("vibe_contact", "states", "free", "pressed", "--rate", "1020", "--iterations", "1", "--no-reference")
     yield Part("steps_1_ms", words, 1)
+    yield Part("steps_1_ms_small", (*words, "--scene", "{small}"), 0.3)
 
 
 def hard_parts():

@@ -17,6 +17,9 @@ from .graph import Graph, GraphError
 from .vision import Vision
 
 SETTLE = 1.0  # for the recorder to receive what the simulator sent last [s]
+# For the trainee to answer [s]: on a machine that is much too busy it plans for longer than the simulator would wait by
+# itself, and a simulator that has paused waits for good. Whether it is alive is watched here.
+DRIVER_PATIENCE = 600.0
 RECORDER_PATIENCE = 600.0  # for the recorder to write what it holds in memory [s]
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)  # that end a program
 
@@ -74,6 +77,8 @@ class Session:
         put("/sim_node/time_source", "sim" if simulated else "wall")
         put("/sim_node/fast", arguments.fast)
         put("/sim_node/lockstep", simulated)
+        if simulated:
+            put("/sim_node/lockstep_timeout", DRIVER_PATIENCE)
         put("/sim_node/await_recorder", True)
         put("/sim_node/duration", arguments.duration)
         put("/sim_node/summary_file", self.summary)
