@@ -12,7 +12,6 @@ namespace {
 constexpr double kMinBlur = 0.25, kMaxBlur = 3.5;  // of the optics [px]
 constexpr double kMinSleeveMotion = 0.5;  // replaces shorter ones, and their variance is taken off the blur [px]
 constexpr double kRim = 0.88;             // of the radius: beyond, the print is seen too obliquely
-constexpr double kMeanRise = 0.85;        // of the radius: of what is seen above the axis
 constexpr double kNoticeableBend = 0.01;  // of the motion [px]
 constexpr double kLongestBend = 0.7 * (BlurredLine::kMargin - MovingLine::kMaxHalfMotion);  // tables end there [px]
 constexpr float kMaxSine = 0.97F;                 // of the angle around the rod: keeps derivatives finite
@@ -147,8 +146,7 @@ SleevePattern::View SleevePattern::viewOf(const MarkerPose& pose, double motion_
   const double motion = std::max(motion_length, kMinSleeveMotion), blur = std::clamp(pose.blur, kMinBlur, kMaxBlur);
   const double variance = blur * blur + kPixelVariance - (motion * motion - motion_length * motion_length) / 12;
   view.half_motion = static_cast<float>(motion / 2 / scale);
-  const double nearer = 1 - kMeanRise * radius_ * view.bend;
-  view.variance = static_cast<float>(nearer * nearer * variance / (scale * scale));
+  view.variance = static_cast<float>(variance / (scale * scale));
   view.by_blur = static_cast<float>(2 * blur / variance);
   return view;
 }

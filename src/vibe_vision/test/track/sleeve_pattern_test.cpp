@@ -10,7 +10,7 @@ namespace vibe::vision::sleeve_pattern_test {
 namespace {
 
 constexpr double kPixelsPerMetre = 10000;
-const MarkerView kView{4600, -150, 120}, kWideView{900, -150, 120};
+const MarkerView kView{4600, -150, 120}, kWideView{1100, -183, 147};
 
 struct Case {
   const char* name;
