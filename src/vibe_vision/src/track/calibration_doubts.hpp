@@ -19,6 +19,16 @@ struct Distortions {
   /// to its radius. A bent sheet is foreshortened towards its ends, with the cube of the distance. What an aspect or
   /// a size explains, and what all directions share, as a print with much ink, does not count.
   Distortion bend;
+  /// By how much the ends of the marker are nearer to the camera than its middle is, against the design, growing with
+  /// the square of the distance [px]. It shows where the camera looks at the marker from the side.
+  Distortion relief;
+};
+
+/// From where a marker is seen.
+struct Sight {
+  Eigen::Vector2d down;  ///< direction of the image's rows, along and across the axis
+  double slope = 0;      ///< of the line of sight against the marker's normal, along the axis
+  double per_pixel = 0;  ///< change of it [1/px]
 };
 
 /// Collects over many frames what speaks against camera and calibration although the marker is tracked.
@@ -28,12 +38,25 @@ class CalibrationDoubts {
   explicit CalibrationDoubts(double rows) : rows_(rows) { reset(); }
   void reset();
   void addBend(const Distortion& bend);
+  /// @param size  of the marker, from its middle [px]. @param slope  of the line of sight, as Sight::slope
+  /// @param uneven  by how much other faults of the model may move the ends against the middle [px]
+  void addRelief(const Distortion& relief, double size, double slope, double uneven);
   /// @param speed  along the axis [px/s]
   void addShear(const Distortion& shear, double speed);
   /// Of a marker around a rod. @param tilt  that the fit found besides, in the image [rad]
   void addShear(const Distortion& shear, double speed, double tilt, double rotation);
   /// @param log_scale  of the marker against its calibrated size. @param log_gamma  of the response against that given
   void addFit(double log_scale, double log_gamma);
+
+  /// What pictures tell of the time between rows, which all markers of a camera share: information [1/s^2] and its
+  /// product with the mean [1/s].
+  struct RowTime {
+    double information = 0, sum = 0;
+  };
+  /// Of this marker alone, whatever the tilt of its print may be.
+  RowTime rowTimeSeen() const;
+  /// What the other markers tell.
+  void addRowTime(const RowTime& others);
 
   Doubt doubt() const;
   /// Standard deviation of the place at a speed if the rows of an image are not exposed at the same time [px].
@@ -45,15 +68,27 @@ class CalibrationDoubts {
   static constexpr int kUnknowns = 4;  ///< time between rows [s]; cosine, sine and mean of the tilt of a sleeve [rad]
   using Vector = Eigen::Matrix<double, kUnknowns, 1>;
   using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+  /// What is likely if some of the faults are possible.
+  struct Explanation {
+    Vector mean = Vector::Zero();
+    Matrix covariance = Matrix::Zero();
+    double chi_squared = 0;  ///< that it explains
+  };
+  Explanation explain(bool shutter, bool askew) const;
+  bool isBent() const;
   void add(const Vector& by, double value, double variance);
   void solve();
-  bool isAskew() const;
-  double rowTime() const;  ///< between two rows; 0 unless it is significant [s]
 
   double rows_;
-  Matrix information_, covariance_;  ///< of the unknowns, without and with what is likely before any picture
-  Vector sums_, mean_;
+  Matrix information_;  ///< of the unknowns
+  Vector sums_;
+  RowTime others_;
+  double row_deviation_ = 0;  ///< of the time between rows, whatever else may be wrong [s]
+  double row_time_ = 0;       ///< [s]; 0: all rows are exposed at the same time
+  bool askew_ = false;
   double bend_weight_ = 0, bend_sum_ = 0;
+  double relief_weight_ = 0, relief_sum_ = 0;  ///< relative to the size
+  double relief_bias_ = 0;                     ///< what other faults of the model add to relief_sum_
   double log_scale_ = 0, log_gamma_ = 0;
   int fits_ = 0;
 };

@@ -40,7 +40,8 @@ constexpr double kSameMotion = 0.2, kSameBend = 0.03;  // during the exposure, b
 constexpr int kFirstLooks = 16, kLookEvery = 4;        // frames; to look for a shear costs as much as a step of the fit
 constexpr double kTellingSpeed = 0.05;                 // from which a picture would be sheared [m/s]
 constexpr double kUncheckedShift = 2.5e-4;             // standard deviation that is worth a doubt [m]
-constexpr double kSearchDoubt = 0.1;                   // about size, tilt and blur that a search found
+constexpr double kUneven = 0.028;  // bars apart, by optics that blur not as a Gaussian, per square of the blur [1/px]
+constexpr double kSearchDoubt = 0.1;  // about size, tilt and blur that a search found
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double bandHalfWidth(const MarkerPattern& pattern, const InstrumentConfig& config) {
@@ -58,6 +59,7 @@ double exposureShift(double exposure) {
 InstrumentTracker::InstrumentTracker(const VisionConfig& config, const InstrumentConfig& instrument,
                                      std::unique_ptr<MarkerPattern> pattern)
     : config_(instrument),
+      view_(markerView(config.camera, instrument.axis)),
       min_contrast_(config.gates.min_contrast),
       fitter_(std::move(pattern), config.noise, rodRadius(instrument)),
       map_(config.camera, instrument.axis,
@@ -163,6 +165,7 @@ bool InstrumentTracker::follow(const Frame& frame, const Prediction& prediction)
   if (reason_ != LostReason::None) return false;
   accept(frame, fit, prediction, false);
   lookForDistortions(frame, prior, fit);
+  stateDoubts(frame);
   return true;
 }
 
@@ -173,23 +176,35 @@ void InstrumentTracker::lookForDistortions(const Frame& frame, const FitPrior& p
   const double speed = slide_.predict(frame.stamp).mean[1] * scale;
   if (fit.visible < kGoodLook || std::abs(speed) < kTellingSpeed * scale) return;
   if (++looks_ > kFirstLooks && looks_ % kLookEvery != 0) return;
-  const Eigen::Vector2d direction = config_.axis.direction;
-  const Distortions found =
-      fitter_.distortions(fit, prior, unknown_.prior(last_slide_), {direction.y(), direction.x()});
+  const FitPrior unlearnt = unknown_.prior(last_slide_);
+  const Sight sight = sightAt(fit);
+  const Distortions found = fitter_.distortions(fit, prior, unlearnt, sight);
+  const double uneven = fitter_.shows(kRotation) ? kUneven * square(fit.x[kBlur]) : 0;
   doubts_.addBend(found.bend);
+  doubts_.addRelief(found.relief, fitter_.pattern().rim(), sight.slope, uneven);
   if (fitter_.shows(kRotation))
     doubts_.addShear(found.shear, speed, fit.x[kTilt], fit.x[kRotation]);
   else
     doubts_.addShear(found.shear, speed);
 }
 
+Sight InstrumentTracker::sightAt(const MarkerFit& fit) const {
+  const Eigen::Vector2d direction = config_.axis.direction;
+  const double slant = fitter_.shows(kRotation) ? fit.x[kSlant] : slow_.nominal(last_slide_)[kSlant];
+  const double slope = (fit.x[kAlong] - view_.principal_along) / view_.focal_length;
+  return {{direction.y(), direction.x()}, std::sin(slant) + std::cos(slant) * slope, 1 / view_.focal_length};
+}
+
 /// As long as nobody knows whether all rows are exposed at the same time, what moves fast may be elsewhere.
-Doubt InstrumentTracker::doubtAt(const Frame& frame) const {
+void InstrumentTracker::stateDoubts(const Frame& frame) {
   const Doubt doubt = doubts_.doubt();
   const MotionFilter::State state = slide_.predict(frame.stamp);
+  const double scale = pixelsPerMetre(config_.axis, last_slide_);
+  measurement_.along_variance += square(doubts_.shutterError(state.mean[1] * scale, frame.sensor_height));
+  measurement_.covariance(0, 0) = measurement_.along_variance / square(scale);
   const double fastest = std::abs(state.mean[1]) + std::sqrt(state.covariance(1, 1));
   const bool known = doubts_.unknownShutterError(fastest, frame.sensor_height) < kUncheckedShift;
-  return known || doubt == Doubt::Shutter ? doubt : Doubt::Unchecked;
+  measurement_.doubt = known || doubt == Doubt::Shutter ? doubt : Doubt::Unchecked;
 }
 
 /// Where the marker is now tells its speed during the exposure better than what was predicted.
@@ -232,6 +247,7 @@ bool InstrumentTracker::searchNearby(const Frame& frame, const Prediction& predi
   if (gates_.judge(fit, slow_.nominal(slide)) != LostReason::None || fit.visible < kNearbyVisible) return false;
   if (!isNear(fit, prediction)) return false;
   accept(frame, fit, prediction, true);
+  stateDoubts(frame);
   return true;
 }
 
@@ -264,6 +280,7 @@ bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& predic
   }
   accept(frame, best, prediction, true);
   if (is_last && prediction.known) lookForDistortions(frame, searchPrior(last_slide_), best);
+  stateDoubts(frame);
   return true;
 }
 
@@ -328,12 +345,8 @@ void InstrumentTracker::accept(const Frame& frame, const MarkerFit& fit, const P
   }
   updateFilters(frame.stamp, fit, scale, jumps_ >= kJumpsToBelieve || !prediction.known);
   toMiddle(frame, fit, scale);
-  measurement_.along_variance +=
-      square(doubts_.shutterError(slide_.predict(frame.stamp).mean[1] * scale, frame.sensor_height));
   measurement_.slide = slideOf(config_.axis, measurement_.along);
-  measurement_.covariance(0, 0) = measurement_.along_variance / square(scale);
   describe(fit);
-  measurement_.doubt = doubtAt(frame);
   if (fit.visible > kGoodLook) slow_.update(fit.x, fit.covariance, measurement_.slide, reacquired ? kSearchDoubt : 0);
   jumps_ = lost_frames_ = 0;
 }

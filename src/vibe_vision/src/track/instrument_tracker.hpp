@@ -17,6 +17,7 @@ class InstrumentTracker {
   /// There is no usable frame.
   const Measurement& lose(LostReason reason);
   const Measurement& measurement() const { return measurement_; }
+  CalibrationDoubts& doubts() { return doubts_; }
   void reset();
 
  private:
@@ -31,7 +32,8 @@ class InstrumentTracker {
   FitVector startAt(double slide, const FitPrior& prior, const Prediction& prediction) const;
   bool follow(const Frame& frame, const Prediction& prediction);
   void lookForDistortions(const Frame& frame, const FitPrior& prior, const MarkerFit& fit);
-  Doubt doubtAt(const Frame& frame) const;
+  Sight sightAt(const MarkerFit& fit) const;
+  void stateDoubts(const Frame& frame);
   void correctMotion(const Frame& frame, const FitPrior& prior, MarkerFit& fit);
   bool search(const Frame& frame, const Prediction& prediction);
   bool searchNearby(const Frame& frame, const Prediction& prediction);
@@ -49,6 +51,7 @@ class InstrumentTracker {
   void updateFilters(double stamp, const MarkerFit& fit, double scale, bool restart);
 
   InstrumentConfig config_;
+  MarkerView view_;
   double min_contrast_;
   MarkerFitter fitter_;
   AxisMap map_;

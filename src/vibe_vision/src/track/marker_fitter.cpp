@@ -95,11 +95,11 @@ void MarkerFitter::repeat(MarkerFit& fit, const FitPrior& prior, const MarkerMot
 }
 
 Distortions MarkerFitter::distortions(const MarkerFit& fit, const FitPrior& prior, const FitPrior& unlearnt,
-                                      const Eigen::Vector2d& down) {
+                                      const Sight& sight) {
   useHalf();
   fit_.evaluate(fit.x, pixels_);
   const FitStep step = fit_.step(fit.x, prior, pixels_, {});
-  return step.valid ? fit_.distortions(fit.x, prior, unlearnt, pixels_, down) : Distortions{};
+  return step.valid ? fit_.distortions(fit.x, prior, unlearnt, pixels_, sight) : Distortions{};
 }
 
 MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,

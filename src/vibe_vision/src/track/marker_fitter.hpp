@@ -38,10 +38,8 @@ class MarkerFitter {
                    const MarkerMotion& motion, double uncertainty);
   /// The last fit again, with what it told of the motion.
   void repeat(MarkerFit& fit, const FitPrior& prior, const MarkerMotion& motion);
-  /// Of the picture in the last fit. @param down  direction of the image's rows, along and across the axis
-  /// @param unlearnt  the prior before any picture
-  Distortions distortions(const MarkerFit& fit, const FitPrior& prior, const FitPrior& unlearnt,
-                          const Eigen::Vector2d& down);
+  /// Of the picture in the last fit. @param unlearnt  the prior before any picture
+  Distortions distortions(const MarkerFit& fit, const FitPrior& prior, const FitPrior& unlearnt, const Sight& sight);
   /// From a candidate of the search: from coarse to fine, with any rotation.
   /// @param known_rotation  start.rotation is a prediction
   /// @param reach  from the start, within which the marker is [px]; 0: the search knows it well

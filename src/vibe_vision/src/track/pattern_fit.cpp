@@ -282,10 +282,10 @@ void PatternFit::learnLight(const FitVector& x, const PixelBlock& pixels, RodLig
 }
 
 Distortions PatternFit::distortions(const FitVector& x, const FitPrior& prior, const FitPrior& unlearnt,
-                                    const PixelBlock& pixels, const Eigen::Vector2d& down) {
+                                    const PixelBlock& pixels, const Sight& sight) {
   const auto contrast = static_cast<float>(x[kContrast]);
   const auto x0 = static_cast<float>(x[kAlong]), y0 = static_cast<float>(x[kLateral]);
-  const auto down_x = static_cast<float>(down.x()), down_y = static_cast<float>(down.y());
+  const auto down_x = static_cast<float>(sight.down.x()), down_y = static_cast<float>(sight.down.y());
   const std::size_t count = pixels.padded();
   const float *by_along = values_.derivative[kAlong].data(), *by_lateral = values_.derivative[kLateral].data();
   float* column = equations_.column(columns_);
@@ -295,8 +295,14 @@ Distortions PatternFit::distortions(const FitVector& x, const FitPrior& prior, c
   }
   Distortions found;
   found.shear = distortion(x, prior, count);
-  if (pattern_.rim() == 0) return found;
   const auto per_area = static_cast<float>(1 / square(pattern_.rim() * std::exp(x[kLogScale])));
+  const auto slope = static_cast<float>(sight.slope), per_pixel = static_cast<float>(sight.per_pixel);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float u = pixels.along[i] - x0;
+    column[i] = lit_[i] * contrast * per_area * u * u * (slope + per_pixel * u) * by_along[i];
+  }
+  found.relief = distortion(x, unlearnt, count);
+  if (observed_[kRotation]) return found;
   for (std::size_t i = 0; i < count; ++i) {
     const float u = pixels.along[i] - x0, v = pixels.lateral[i] - y0;
     column[i] = lit_[i] * contrast * per_area * (v * v * v * by_lateral[i] - u * u * u * by_along[i]);

@@ -99,9 +99,8 @@ class PatternFit {
   double loss(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
   /// What the pixels of the last step(), which was at x with the same prior, tell of distortions beside all that it
   /// looked for. @param unlearnt  the prior before any picture: what a bend does to the first ones, it has taught
-  /// @param down  direction of the image's rows, along and across the axis
   Distortions distortions(const FitVector& x, const FitPrior& prior, const FitPrior& unlearnt, const PixelBlock& pixels,
-                          const Eigen::Vector2d& down);
+                          const Sight& sight);
   const PatternValues& values() const { return values_; }
   /// Learns how the light changes around a rod, from the pixels and weights of the last step.
   void learnLight(const FitVector& x, const PixelBlock& pixels, RodLight& light) const;

@@ -138,9 +138,11 @@ SleevePattern::View SleevePattern::viewOf(const MarkerPose& pose, double motion_
       Eigen::Vector2d(view_.principal_along - pose.along, view_.principal_lateral - pose.lateral);
   const Eigen::Vector2d slope = -principal / view_.focal_length;
   const double sine = std::sin(pose.slant), cosine = std::cos(pose.slant);
-  view.principal_x = static_cast<float>(principal.x() / scale);
-  view.across = static_cast<float>(slope.y() * cosine);
-  view.turn = static_cast<float>(std::atan(slope.y() / (cosine - slope.x() * sine)) - std::atan(slope.y() * cosine));
+  view.slope_along = static_cast<float>(slope.x());
+  view.slope_across = static_cast<float>(slope.y());
+  const Eigen::Vector2d camera = Eigen::Vector2d(cosine - slope.x() * sine, slope.y()).normalized();
+  view.turn_cosine = static_cast<float>(camera.x());
+  view.turn_sine = static_cast<float>(camera.y());
   const double motion = std::max(motion_length, kMinSleeveMotion), blur = std::clamp(pose.blur, kMinBlur, kMaxBlur);
   const double variance = blur * blur + kPixelVariance - (motion * motion - motion_length * motion_length) / 12;
   view.half_motion = static_cast<float>(motion / 2 / scale);
@@ -176,31 +178,35 @@ void SleevePattern::placePixels(const View& view, const PixelBlock& pixels, std:
   spread(view, part);
 }
 
-/// Where the line of sight of each pixel meets the rod. Of the angle phi around the rod and the place u along it, the
-/// picture shows x + t X = u cos(slant) + R cos(phi) sin(slant), where X is the depth of the place, t the slope of the
-/// line of sight; and likewise across.
+/// Where the line of sight of each pixel meets the rod. In the frame of the rod (along it, across it, and the normal of
+/// both that looks to the camera) the line has the direction q; it passes the axis at the distance `offset` times |q|
+/// and meets the surface `rise` before the depth of the centre.
 VIBE_LANES void SleevePattern::place(const View& pose, const float* __restrict along, const float* __restrict lateral,
                                      Part& __restrict part) const {
   const View view = pose;
   const auto radius = static_cast<float>(radius_), inverse_radius = 1 / radius;
-  const float lift = view.across * view.slant_sine / (view.slant_cosine * view.slant_cosine);
   for (std::size_t i = 0; i < Part::kSize; ++i) {
     const float da = along[i] - view.along, dl = lateral[i] - view.lateral;
     const float x = (da * view.tilt_cosine + dl * view.tilt_sine) * view.inverse_scale;
     const float v = (dl * view.tilt_cosine - da * view.tilt_sine) * view.inverse_scale;
-    float sine = (v + lift * x) * inverse_radius;
-    float square = sine * sine;
-    square = square > kMaxSine * kMaxSine ? kMaxSine * kMaxSine : square;
-    const float height = radius * view.slant_cosine * std::sqrt(1 - square);
-    sine *= 1 + view.bend * (x * view.slant_sine - height);
-    sine = sine > kMaxSine ? kMaxSine : sine;
-    sine = sine < -kMaxSine ? -kMaxSine : sine;
-    const float size = std::abs(sine);
+    const float across = view.slope_across + view.bend * v, depth = view.slant_sine * x;
+    const float normal = view.slant_sine * (view.slope_along + view.bend * x) - view.slant_cosine;
+    const float length = across * across + normal * normal, inverse_length = 1 / length;
+    const float offset = v * normal - depth * across, square = offset * offset * inverse_length;
+    const float most = kMaxSine * kMaxSine * radius * radius;
+    const float chord = std::sqrt(length * (radius * radius - (square < most ? square : most)));
+    const float rise = (v * across + depth * normal + chord) * inverse_length;
+    const float sine = (v - rise * across) * inverse_radius, cosine = (depth - rise * normal) * inverse_radius;
+    float turned = sine * view.turn_cosine + cosine * view.turn_sine;
+    turned = turned > kMaxSine ? kMaxSine : turned;
+    turned = turned < -kMaxSine ? -kMaxSine : turned;
     part.x[i] = x;
     part.v[i] = v;
+    part.rise[i] = rise;
+    part.oblique[i] = radius / chord;
     part.sine[i] = sine;
-    part.cosine[i] = std::sqrt(1 - size * size);
-    part.phi[i] = std::copysign(arcSine(size, std::sqrt(1 - size)), sine) + view.turn - view.rotation;
+    part.cosine[i] = cosine;
+    part.phi[i] = std::copysign(arcSine(std::abs(turned), std::sqrt(1 - std::abs(turned))), turned) - view.rotation;
   }
 }
 
@@ -210,20 +216,18 @@ VIBE_LANES void SleevePattern::unroll(const View& pose, Part& __restrict part) c
   const auto radius = static_cast<float>(radius_), inverse_radius = 1 / radius;
   const float advance = pitch_ / kTurn, half_variance = 0.5F * view.variance;
   for (std::size_t i = 0; i < Part::kSize; ++i) {
-    const float x = part.x[i], sine = part.sine[i], cosine = part.cosine[i];
-    const float slope = view.bend * (x - view.principal_x);
-    const float across = view.slant_sine + view.slant_cosine * slope;
-    const float stretch = 1 / (view.slant_cosine - view.slant_sine * slope);
-    const float per_cosine = 1 / cosine, bow = across * stretch;
-    const float curve = half_variance * inverse_radius * per_cosine * per_cosine * per_cosine;
-    const float top = radius * (cosine + view.across * sine);  // of the rod above its axis, towards the camera
-    const float u = (x - top * across) * stretch + curve * bow;
+    const float x = part.x[i], sine = part.sine[i], cosine = part.cosine[i], oblique = part.oblique[i];
+    const float slope = view.slope_along + view.bend * x;
+    const float bow = view.slant_sine + view.slant_cosine * slope, normal = view.slant_sine * slope - view.slant_cosine;
+    const float stretch = view.slant_cosine + oblique * cosine * view.slant_sine * bow, steep = -oblique * normal;
+    const float curve = half_variance * inverse_radius * steep * steep * steep;
+    const float u = view.slant_cosine * x - part.rise[i] * bow + curve * bow * stretch;
     part.u[i] = u;
     part.w[i] = u - advance * (part.phi[i] + curve * sine * inverse_radius);
     part.stretch[i] = stretch;
-    part.lean[i] = bow * (sine * per_cosine - view.across);
-    part.turn[i] = advance * inverse_radius * per_cosine;
-    part.by_slant[i] = u * bow - top;
+    part.lean[i] = oblique * sine * bow;
+    part.turn[i] = advance * inverse_radius * steep;
+    part.by_slant[i] = u * bow - radius * cosine;
   }
 }
 
@@ -267,7 +271,7 @@ VIBE_LANES void SleevePattern::chain(const View& pose, std::size_t begin, const 
                                      PatternValues& values) const {
   const View view = pose;
   const float c = view.tilt_cosine * view.inverse_scale, s = view.tilt_sine * view.inverse_scale;
-  const float advance = pitch_ / kTurn;
+  const float advance = pitch_ / kTurn, swing = view.slant_cosine * view.slope_across;
   const auto out = [&](PoseIndex k) { return values.derivative[k].data() + begin; };
   float* __restrict along = out(kAlong), * __restrict lateral = out(kLateral), * __restrict rotation = out(kRotation);
   float* __restrict scale = out(kLogScale), * __restrict tilt = out(kTilt), * __restrict blur = out(kBlur);
@@ -281,7 +285,7 @@ VIBE_LANES void SleevePattern::chain(const View& pose, std::size_t begin, const 
     lateral[i] = s * by_x + c * by_v;
     rotation[i] = -advance * black_w;
     scale[i] = x * by_x + v * by_v + 2 * part.by_blur[i];
-    tilt[i] = x * by_v - v * by_x;
+    tilt[i] = x * by_v - v * by_x + swing * part.rise[i] * black_u;
     blur[i] = -view.by_blur * part.by_blur[i];
     slant[i] = -black_u * part.by_slant[i];
   }

@@ -19,6 +19,7 @@ class SleevePattern : public MarkerPattern {
   std::array<bool, kPoseParameters> observes() const override;
   Eigen::Vector2d window(const MarkerPose& pose, double motion) const override;
   Eigen::Vector2d maxWindow() const override;
+  double rim() const override { return half_length_; }
   void prepare(const MarkerPose& pose, const MarkerMotion& motion, bool rough = false) override;
   void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) override;
   void select(const MarkerPose& pose, double motion, PixelBlock& pixels) const override;
@@ -69,13 +70,12 @@ struct SleevePattern::View {
   float along, lateral, rotation;
   float tilt_cosine, tilt_sine, inverse_scale;
   float slant_cosine, slant_sine;
-  float bend;         ///< of the line of sight per pixel: 1 / focal length; also 1 / distance to the camera [1/px]
-  float principal_x;  ///< of the camera, along the tilted marker from its centre [px]
-  float across;       ///< slope of the line of sight to the centre, across the tilted marker
-  float turn;         ///< of the direction to the camera around the rod against the normal of the image [rad]
-  float half_motion;  ///< in pixels of the print, where the camera looks at it at a right angle
-  float variance;     ///< of optics and pixel in pixels of the print, less what a lengthened motion has
-  float by_blur;      ///< relative change of `variance` with the blur [1/px]
+  float bend;  ///< of the line of sight per pixel: 1 / focal length; also 1 / distance to the camera [1/px]
+  float slope_along, slope_across;  ///< of the line of sight to the centre, along and across the tilted marker
+  float turn_cosine, turn_sine;     ///< of the angle around the rod from the rod's normal to the camera
+  float half_motion;                ///< in pixels of the print, where the camera looks at it at a right angle
+  float variance;                   ///< of optics and pixel in pixels of the print, less what a lengthened motion has
+  float by_blur;                    ///< relative change of `variance` with the blur [1/px]
 };
 
 /// Some pixels. Lengths are in pixels of the print.
@@ -84,7 +84,9 @@ struct SleevePattern::Part {
   std::size_t size = kSize;
   alignas(64) float x[kSize], v[kSize];  ///< along and across in the picture
   alignas(64) float u[kSize], w[kSize];  ///< along the print, from its centre and from a black part's centre
-  alignas(64) float sine[kSize], cosine[kSize], phi[kSize];    ///< around the rod
+  alignas(64) float rise[kSize];         ///< by how much a place is nearer to the camera than the centre
+  alignas(64) float oblique[kSize];      ///< 1 / cosine of the line of sight against the surface, across the rod
+  alignas(64) float sine[kSize], cosine[kSize], phi[kSize];    ///< around the rod: from its normal; from the stripe
   alignas(64) float stretch[kSize], lean[kSize], turn[kSize];  ///< change of u along and across, of phi pitch / 2 pi
   alignas(64) float by_slant[kSize];                           ///< change of u
   alignas(64) float half_motion[kSize], stripe_half_motion[kSize];

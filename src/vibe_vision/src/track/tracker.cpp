@@ -46,7 +46,8 @@ const char* toText(Doubt doubt) {
              "with "
              "the rotation; glue it anew, its ends at right angles to the rod";
     case Doubt::Bent:
-      return "the marker is shortened towards two of its sides, as if it were bent; glue it on something flat";
+      return "the marker is bent or its ends stand off: a ring is shortened towards two of its sides, or the ends of a "
+             "marker are not as far from the camera as its middle; glue it anew, a ring on something flat";
     case Doubt::Response:
       return "the grey values do not grow with the light as configured: set camera.gamma to the camera's response, or "
              "switch its gamma correction off";
@@ -58,6 +59,20 @@ struct Tracker::Impl {
   VisionConfig config;
   std::vector<InstrumentTracker> instruments;
   Measurements measurements;
+
+  /// All markers are seen by one shutter.
+  void shareRowTimes() {
+    if (instruments.size() < 2) return;
+    CalibrationDoubts::RowTime all;
+    for (InstrumentTracker& instrument : instruments) {
+      const CalibrationDoubts::RowTime seen = instrument.doubts().rowTimeSeen();
+      all.information += seen.information, all.sum += seen.sum;
+    }
+    for (InstrumentTracker& instrument : instruments) {
+      const CalibrationDoubts::RowTime own = instrument.doubts().rowTimeSeen();
+      instrument.doubts().addRowTime({all.information - own.information, all.sum - own.sum});
+    }
+  }
 
   bool fits(const Frame& frame) const {
     const ImageView& image = frame.image;
@@ -83,6 +98,7 @@ Tracker::Tracker(Tracker&&) noexcept = default;
 Tracker& Tracker::operator=(Tracker&&) noexcept = default;
 
 const Measurements& Tracker::track(const Frame& frame) {
+  impl_->shareRowTimes();
   const bool none = frame.image.empty() || frame.image.data == nullptr;
   for (std::size_t i = 0; i < impl_->instruments.size(); ++i) {
     InstrumentTracker& instrument = impl_->instruments[i];

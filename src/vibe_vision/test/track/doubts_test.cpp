@@ -23,17 +23,20 @@ double placeAt(double time) {
 struct Fault {
   double row_time = 0;  ///< [s]
   double bend = 0;      ///< by how much the rim of the ring is nearer to its centre along the axis, of its radius
+  double relief = 0;    ///< by how much the rim of the ring is nearer to the camera than its centre, of its radius
 };
 
 /// A picture at rest as a camera shows it that moves, row by row. The stamp is that of row 0.
 std::vector<std::uint8_t> moved(const ImageView& still, double centre, double stamp, const Fault& fault) {
-  constexpr double kRadius = 20;  // of the ring [px]
+  constexpr double kRadius = 20, kFocalLength = 4600;  // of the ring, of the camera [px]
   std::vector<std::uint8_t> pixels;
   for (int y = 0; y < still.height; ++y)
     for (int x = 0; x < still.width; ++x) {
       const double to = x - placeAt(stamp + y * fault.row_time) - centre;
       const double bent = to * (1 + fault.bend * std::min(1.0, to * to / (kRadius * kRadius)));
-      const double from = std::clamp(centre + bent, 0.0, still.width - 2.0);
+      const double seen_from = (x - still.width / 2.0) / kFocalLength;
+      const double raised = bent - seen_from * fault.relief * std::min(to * to, 2 * kRadius * kRadius) / kRadius;
+      const double from = std::clamp(centre + raised, 0.0, still.width - 2.0);
       const auto i = static_cast<int>(from);
       const double f = from - i;
       pixels.push_back(static_cast<std::uint8_t>(std::lround((1 - f) * still.row(y)[i] + f * still.row(y)[i + 1])));
@@ -89,6 +92,30 @@ TEST(Doubts, ABentMarker) {
   EXPECT_GT(follow({0, 0.0067}).doubts[Doubt::Bent], 20);  // a sheet around something of 20 mm
 }
 
+/// A sheet that falls away from the camera to both sides does so wherever it is seen from; it shows at the side only.
+TEST(Doubts, AMarkerWhoseEndsAreNotAsFarAsItsMiddle) {
+  EXPECT_GT(follow({0, 0, -0.15}).doubts[Doubt::Bent], 10);
+  EXPECT_EQ(follow({0, 0, -0.01}).doubts[Doubt::Bent], 0);
+}
+
+/// Of a sleeve whose ends are moved by `shift` px in every frame, and by `relief` px per slope of the line of sight.
+/// @param uneven  such shifts that are usual [px]
+Doubt doubtOfEnds(double shift, double relief, double uneven) {
+  CalibrationDoubts doubts(1);
+  for (int k = 0; k < 20; ++k) {
+    const double slope = 0.015 + 0.02 * std::cos(0.3 * k);
+    doubts.addRelief({shift / slope + relief, 0.25 / (slope * slope * 1000)}, 50, slope, uneven);
+  }
+  return doubts.doubt();
+}
+
+TEST(Doubts, OpticsThatMoveTheBarsApartAreNoRelief) {
+  EXPECT_EQ(doubtOfEnds(0.04, 0, 0.02), Doubt::None);
+  EXPECT_EQ(doubtOfEnds(0.04, 0, 0), Doubt::Bent);
+  EXPECT_EQ(doubtOfEnds(0.01, 3, 0.01), Doubt::Bent);
+  EXPECT_EQ(doubtOfEnds(0.01, -3, 0.01), Doubt::Bent);
+}
+
 Doubt doubtAtRest(double scale) {
   SyntheticScene scene = ringScene("static");
   scene.instruments[0].scale = scale;
@@ -122,6 +149,23 @@ TEST(Doubts, ASleeveThatIsAskewIsNotARollingShutter) {
   EXPECT_EQ(doubtOfSleeve(0.1, 0.005, 0), Doubt::None);
   EXPECT_EQ(doubtOfSleeve(0.1, 0.035, 0), Doubt::Askew);
   EXPECT_EQ(doubtOfSleeve(0.1, 0.035, 1e-5), Doubt::Shutter);
+}
+
+/// A sleeve that is askew and turns so that its tilt follows its speed. @param sure  another marker has shown that all
+/// rows are exposed at the same time
+Doubt doubtOfTurningSleeve(bool sure) {
+  CalibrationDoubts doubts(1);
+  if (sure) doubts.addRowTime({1e14, 0});
+  for (int k = 0; k < 40; ++k) {
+    const double along = std::cos(0.2265 * k);
+    doubts.addShear({0.0175 * along, 1e-6}, 5e3 * along, 0, std::acos(-0.5 * along));
+  }
+  return doubts.doubt();
+}
+
+TEST(Doubts, TheShutterIsThatOfAllMarkers) {
+  EXPECT_EQ(doubtOfTurningSleeve(false), Doubt::Shutter);
+  EXPECT_EQ(doubtOfTurningSleeve(true), Doubt::Askew);
 }
 
 }  // namespace

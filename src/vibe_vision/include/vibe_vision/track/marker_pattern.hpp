@@ -88,8 +88,8 @@ class MarkerPattern {
   /// The largest window() that there can be.
   virtual Eigen::Vector2d maxWindow() const = 0;
 
-  /// Distance of a flat marker's outermost edge from its centre, in pixels of the pattern; 0: it is not flat.
-  virtual double rim() const { return 0; }
+  /// Distance of the outermost edge along the axis from the centre, in pixels of the pattern.
+  virtual double rim() const = 0;
 
   /// Makes ready for evaluations near a pose; once per frame. No allocation.
   /// @param rough  the picture may be wrong by a few percent in a few places: enough to find the marker

@@ -34,7 +34,7 @@ enum class Doubt {
   Shutter,    ///< the rows of an image are not exposed at the same time
   Unchecked,  ///< the marker may move fast, and too few frames have been seen to know whether they are
   Askew,      ///< a sleeve is askew on its rod
-  Bent,       ///< a flat marker is bent
+  Bent,       ///< a flat marker is bent, or the ends of a marker stand off
   Response    ///< the response of the camera is not the one that was given
 };
 const char* toText(Doubt doubt);  ///< a sentence for people, with possible causes; empty for None
