@@ -5,7 +5,8 @@ import { emulateHeadset, launch, leftOut, until, wait } from './checks.mjs';
 
 const [port, chromium, folder, seconds] = process.argv.slice(2);
 const kSettle = 6000; // folds and heat come later than the first picture [ms]
-// A page that draws for longer than 0.3 s is silent meanwhile, and released: while the hand moves, pictures are small [px].
+// A page that draws for longer than 0.3 s is silent meanwhile, and released: while the hand moves, pictures are small, and
+// the picture around the viewer hides the model [px].
 const kWide = { width: 1000, height: 500 }, kSmall = { width: 200, height: 100 }, kEdge = 320, kSmallEdge = 64;
 const browser = await launch(chromium), page = await browser.newPage();
 await page.setViewport(kWide);
@@ -49,11 +50,13 @@ await until(() => page.evaluate(() => window.vibe.stage.renderer.xr.isPresenting
 await wait(3000);
 told.eyes = await counts();
 await save('stereo_begin');
+const nextView = () => page.evaluate(() => window.vibe.headset().nextView());
 await size(kSmallEdge);
+await nextView();
 await page.setViewport(kSmall);
 await wait(1000);
 told.begin = await rest();
-// in by 60 mm, half of it out, with turns to both sides, and held for a second at the end
+// in by 45 mm and to the right, with some way back, and held for a while at the end
 told.hand = await page.evaluate(async (seconds) => {
   const { right } = window.device.controllers, pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms)), kAhead = -0.3;
   const hold = (way, turn) => {
@@ -66,8 +69,8 @@ told.hand = await page.evaluate(async (seconds) => {
   let way = 0, turn = 0;
   for (let begin = performance.now(), at = 0; at < 1; await pause(14)) {
     at = Math.min(1, (performance.now() - begin) / (1000 * seconds));
-    way = 0.045 * at + 0.015 * Math.sin(4 * Math.PI * at);
-    turn = 0.4 * at + 0.5 * Math.sin(6 * Math.PI * at);
+    way = 0.045 * at + 0.01 * Math.sin(4 * Math.PI * at);
+    turn = 0.8 * at + 0.1 * Math.sin(6 * Math.PI * at);
     hold(way, turn);
   }
   await pause(3000);
@@ -78,9 +81,11 @@ told.end = await rest();
 told.frames = await page.evaluate(() => window.vibe.headset().period);
 await size(kEdge);
 await page.setViewport(kWide);
+await nextView();
+await nextView();
 await wait(3000);
 await save('stereo_end');
-await page.evaluate(() => window.vibe.headset().nextView());
+await nextView();
 await wait(2000);
 await save('stereo_around');
 console.log(JSON.stringify(told));
