@@ -111,10 +111,10 @@ export class Drive {
   }
 
   private tick() {
-    if (!this.grant) return;
     const now = performance.now();
     this.onSend((now - this.ticked) / 1000);
     this.ticked = now;
+    if (!this.grant) return;
     this.readPad();
     if (!document.hidden) this.send(); // a page that nobody sees is silent, and the server lets go
   }
