@@ -32,6 +32,7 @@ def report(openings, shown):
     draw, age = numpy.array(shown["draw"]), numpy.array(shown["age"])
     print("{:.1f} pictures of {} px in a second".format(len(age) / shown["seconds"], shown["edge"]))
     print("  to draw one [ms]                   {}".format(spread(draw)))
+    print("  age of its state when it came [ms] {}".format(spread(shown["came"])))
     print("  age of its state when drawn [ms]   {}".format(spread(age)))
     print("  beyond drawing [ms]                {}".format(spread(age - draw)))
     print("  the same in frames of 60 Hz        {:.1f}".format(numpy.median(age - draw) / FRAME))

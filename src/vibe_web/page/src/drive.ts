@@ -27,12 +27,14 @@ export const emptyHand = (): Hand => ({ keys: new Set(), axes: new Array(kAxes).
 export class Drive {
   operator: OperatorText | null = null;
   onChange: () => void = () => {};
+  onSend: (seconds: number) => void = () => {}; // regularly, before it is told what hands hold
   readonly pointer = emptyHand();
   readonly headset = emptyHand();
   private keyboard = emptyHand();
   private pad = emptyHand();
   private grant: GrantText | null = null;
   private number = 0;
+  private ticked = 0; // [ms]
   private table: KeyTable | null = null;
 
   constructor(private stream: Stream) {
@@ -109,6 +111,9 @@ export class Drive {
   }
 
   private tick() {
+    const now = performance.now();
+    this.onSend((now - this.ticked) / 1000);
+    this.ticked = now;
     if (!this.grant) return;
     this.readPad();
     if (!document.hidden) this.send(); // a page that nobody sees is silent, and the server lets go

@@ -6,10 +6,11 @@ import {
 } from 'three';
 import { AutoExposure } from './exposure';
 import type { Lens, Source } from './messages';
-import { kEndoscopeLayer } from './organ';
+import { kEndoscopeLayer, type Organ } from './organ';
 import type { Robot } from './robot';
 import { castShadow } from './shadow';
 import { materialOf } from './shaders';
+import type { SutureView } from './sutures';
 
 const kBase = 0.004; // from the left lens to the right one, as in endoscope_camera [m]
 const kMeter = 32; // edge of the picture that measures the level [px]
@@ -20,6 +21,8 @@ function unseenShare({ field_of_view, whole, middle }: Lens): number {
   const edge = 0.85 * middle.half_width; // kFirstBlend
   return Math.max(0, edge - ((1 + edge * edge) * field_of_view) / kMeter) / whole.half_width;
 }
+
+interface Subject { scene: Scene; organ: Organ; robot: Robot; sutures: SutureView }
 
 const degrees = (halfWidth: number) => (2 * Math.atan(halfWidth) * 180) / Math.PI;
 
@@ -36,7 +39,7 @@ export class EndoscopeView {
   private exposure: AutoExposure;
   private pixels = new Uint8Array(4 * kMeter * kMeter);
 
-  constructor(private renderer: WebGLRenderer, private lens: Lens, private mucosa: RawShaderMaterial) {
+  constructor(private renderer: WebGLRenderer, private lens: Lens, private subject: Subject) {
     const type = renderer.extensions.has('EXT_color_buffer_float') && renderer.extensions.has('OES_texture_float_linear') ? FloatType : HalfFloatType;
     const plane = ({ size }: Source) => new WebGLRenderTarget(size, size, { type, minFilter: LinearFilter, magFilter: LinearFilter });
     this.whole = plane(lens.whole);
@@ -74,19 +77,19 @@ export class EndoscopeView {
   }
 
   /** Draws into `target` what the lens at this frame (z ahead, x right, y down) sees at this time [s], and into `right` what a second one beside it does. */
-  draw(scene: Scene, frame: Object3D, robot: Robot, time: number, stereo: boolean) {
+  draw(frame: Object3D, time: number, stereo: boolean) {
     const { renderer } = this;
     const wasXr = renderer.xr.enabled;
     renderer.xr.enabled = false;
     frame.updateWorldMatrix(true, false);
-    scene.updateMatrixWorld();
-    this.drawEye(scene, frame, robot, 0);
+    this.subject.scene.updateMatrixWorld();
+    this.drawEye(frame, 0);
     do {
       this.bend(this.target, this.lens.size);
       this.exposure.see(this.level(), time);
     } while (this.exposure.isLost);
     if (stereo) {
-      this.drawEye(scene, frame, robot, kBase);
+      this.drawEye(frame, kBase);
       this.bend(this.right, this.lens.size);
     }
     renderer.setRenderTarget(null);
@@ -94,24 +97,24 @@ export class EndoscopeView {
   }
 
   /** The plane pictures of a lens that stands `aside` to the right. */
-  private drawEye(scene: Scene, frame: Object3D, robot: Robot, aside: number) {
-    const { camera } = this;
+  private drawEye(frame: Object3D, aside: number) {
+    const { camera, subject } = this;
     frame.matrixWorld.decompose(camera.position, camera.quaternion, camera.scale);
     camera.rotateX(Math.PI);
     camera.translateX(aside);
     camera.updateMatrixWorld();
-    const { capsules: numbers, capsule_count: count } = this.mucosa.uniforms;
-    count.value = castShadow(robot.capsules, camera, numbers.value);
-    this.drawPlane(scene, robot, this.whole, this.lens.whole.half_width, unseenShare(this.lens));
-    if (this.lens.middle.size > 0) this.drawPlane(scene, robot, this.middle, this.lens.middle.half_width, 0);
+    const { capsules: numbers, capsule_count: count } = subject.organ.mucosa.uniforms;
+    count.value = castShadow(subject.robot.capsules, camera, numbers.value);
+    this.drawPlane(this.whole, this.lens.whole.half_width, unseenShare(this.lens));
+    if (this.lens.middle.size > 0) this.drawPlane(this.middle, this.lens.middle.half_width, 0);
   }
 
-  private drawPlane(scene: Scene, robot: Robot, target: WebGLRenderTarget, halfWidth: number, unseen: number) {
+  private drawPlane(target: WebGLRenderTarget, halfWidth: number, unseen: number) {
+    const { scene, organ, robot, sutures } = this.subject;
     this.camera.fov = degrees(halfWidth);
     this.camera.updateProjectionMatrix();
-    robot.lookFrom(this.camera);
-    this.mucosa.uniforms.unseen.value = unseen;
-    this.mucosa.uniforms.window.value.set(target.width, target.height);
+    for (const each of [organ, robot, sutures]) each.lookFrom(this.camera, unseen);
+    organ.mucosa.uniforms.window.value.set(target.width, target.height);
     this.renderer.setRenderTarget(target);
     this.renderer.setClearColor(0, 1);
     this.renderer.clear();

@@ -127,7 +127,9 @@ export class Headset {
   private around: Pair;
   private patient = patient();
   private grips: Grip[] = [];
-  private last = 0;
+  private last = 0; // [ms]
+  private period = 0.011; // of the headset's frames [s]
+  private moved = [0, 0]; // by the hand that holds the handle, in times of a key, and not yet told [s]
   private placed = false;
   private view = 0;
   force = 0; // [N]
@@ -147,6 +149,7 @@ export class Headset {
     this.room.visible = false;
     stage.scene.add(this.room);
     for (const k of [0, 1]) this.addGrip(xr, k);
+    drive.onSend = (seconds) => this.tellMoved(seconds);
     xr.addEventListener('sessionstart', () => this.begin());
     xr.addEventListener('sessionend', () => this.end());
   }
@@ -196,6 +199,7 @@ export class Headset {
     this.stage.scene.add(this.stage.body);
     this.drive.headset.keys.clear();
     this.drive.headset.axes.fill(0);
+    this.moved.fill(0);
     this.stage.dirty = true;
   }
 
@@ -220,11 +224,12 @@ export class Headset {
 
   /** Called for each frame of the headset. */
   draw() {
-    const { stage } = this, now = performance.now(), seconds = Math.min(0.1, (now - this.last) / 1000) || 0.011;
+    const { stage } = this, now = performance.now();
+    this.period = (now - this.last) / 1000;
     this.last = now;
     if (!this.placed) this.recentre();
     stage.body.position.copy(stage.organ.centre).negate(); // the model stands where its middle is
-    this.readHands(seconds);
+    this.readHands();
     stage.renderer.info.reset();
     this.model.visible = true; // the endoscope is in it, and its light falls off with true distances
     this.model.scale.setScalar(1);
@@ -239,27 +244,38 @@ export class Headset {
     stage.renderer.clear();
     stage.renderer.render(stage.scene, stage.camera);
     stage.counts = { calls: stage.renderer.info.render.calls, triangles: stage.renderer.info.render.triangles };
+    stage.drawMs = performance.now() - now;
   }
 
-  private readHands(seconds: number) {
+  private readHands() {
     const { axes, keys } = this.drive.headset;
-    axes.fill(0);
+    axes.fill(0, 2); // but insertion and rotation
     keys.clear();
     for (const grip of this.grips) {
-      if (grip.held) this.moveHandle(grip, seconds, axes);
+      if (grip.held) this.moveHandle(grip);
       this.readPad(grip, axes, keys);
     }
+    if (!this.grips.some(({ held }) => held)) this.moved.fill(0);
   }
 
-  private moveHandle(grip: Grip, seconds: number, axes: number[]) {
+  private moveHandle(grip: Grip) {
     const ahead = new Vector3(0, 0, -1).applyQuaternion(grip.turn);
     const along = grip.space.position.clone().sub(grip.place).dot(ahead);
     const turned = grip.turn.clone().invert().multiply(grip.space.quaternion);
     const roll = 2 * Math.atan2(-turned.z, turned.w);
-    axes[0] += along / seconds / kInsertion;
-    axes[1] += Math.atan2(Math.sin(roll), Math.cos(roll)) / seconds / kRotation;
+    this.moved[0] += along / kInsertion;
+    this.moved[1] += Math.atan2(Math.sin(roll), Math.cos(roll)) / kRotation;
     grip.place.copy(grip.space.position);
     grip.turn.copy(grip.space.quaternion);
+  }
+
+  /** All of the way counts, told in steps of this time; where frames come more rarely, spread until the next one. */
+  private tellMoved(seconds: number) {
+    const share = Math.min(1, seconds / this.period);
+    this.moved.forEach((time, joint) => {
+      this.drive.headset.axes[joint] = (share * time) / seconds;
+      this.moved[joint] -= share * time;
+    });
   }
 
   // Without a hand at the handle the buttons are those of the room.

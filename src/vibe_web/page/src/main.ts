@@ -9,24 +9,25 @@ import { Stage } from './stage';
 import { Stream } from './stream';
 
 const kRate = 60; // frames asked for [Hz]
-const kOtherTime = 10000; // [ms]
+const kOtherTime = 10000, kSlow = 1000 / 60; // [ms]
 const options = new URLSearchParams(location.hash.slice(1));
 
 const askPattern = () => fetch('pattern').then((answer) => (answer.ok ? answer.arrayBuffer() : null), () => null);
 const pattern = askPattern(); // the largest part is asked for first; a server that has just begun may not have it yet
 const canvas = element<HTMLCanvasElement>('canvas');
-const stage = new Stage(canvas, Number(options.get('size') ?? 0));
 const stream = new Stream(options.get('token') ?? '', Number(options.get('rate') ?? kRate), (open, text) => {
   panel.status(text);
-  if (!open) drive.lost();
+  if (open) undrawn = 0;
+  else drive.lost();
   panel.showDriving();
 });
+const stage = new Stage(canvas, Number(options.get('size') ?? 0)); // which takes long, while the stream opens
 const drive = new Drive(stream);
 const panel = new Panel(stream, drive);
 const video = new VideoRecorder(canvas);
 let scene: SceneText | null = null, headset: Headset | null = null, frame: Frame | null = null, complete = false;
 let drawnAt = 0; // the last frame [ms]
-let undrawn = 0; // frames that have come since the last picture
+let undrawn = 0; // frames that have come, and of which the server does not know that they are drawn
 
 /** For tests and for the curious: what has been received and drawn. */
 const stats = { frames: 0, drawn: 0, firstPicture: 0, latencies: [] as number[], received: () => stream.received };
@@ -53,6 +54,7 @@ stream.on(Kind.Frame, (bytes) => {
   frame = readFrame(bytes);
   stats.frames++;
   undrawn++;
+  if (!document.hidden && !stage.renderer.xr.isPresenting) draw(); // an animation frame is up to one of the screen later
 });
 
 /** What is shown besides places. */
@@ -84,7 +86,7 @@ element('video').onclick = () => {
   element('video').setAttribute('aria-pressed', String(video.running));
 };
 
-stage.renderer.setAnimationLoop(() => {
+function draw() {
   const shown = frame;
   if (shown) {
     frame = null;
@@ -95,15 +97,23 @@ stage.renderer.setAnimationLoop(() => {
   }
   if (stage.renderer.xr.isPresenting) headset?.draw();
   else stage.draw();
-  if (undrawn > 0) stream.send(Uint8Array.of(7, Math.min(255, undrawn))); // then the server sends more
-  undrawn = 0;
+  tellDrawn();
   if (!shown || !complete) return;
   stats.drawn++;
   stats.firstPicture ||= performance.now();
   drawnAt = performance.now();
   stats.latencies.push(stream.now - 1000 * shown.time);
   if (stats.latencies.length > 600) stats.latencies.shift();
-});
+}
+stage.renderer.setAnimationLoop(draw);
+
+/** Then the server sends more: two frames may be on their way, but to a page that is slow only one, which else would wait here. */
+function tellDrawn() {
+  const kept = stage.drawMs > kSlow ? 1 : 0, told = Math.min(255, undrawn - kept);
+  if (told <= 0) return;
+  stream.send(Uint8Array.of(7, told));
+  undrawn -= told;
+}
 
 setInterval(() => {
   const last = stats.latencies.slice(-15).sort((a, b) => a - b), delay = last[last.length >> 1];

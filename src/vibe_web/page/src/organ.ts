@@ -3,9 +3,10 @@
 import {
   BackSide, BufferAttribute, BufferGeometry, Data3DTexture, DynamicDrawUsage, FrontSide, Group, InterleavedBuffer,
   InterleavedBufferAttribute, LinearFilter, LinearMipmapNearestFilter, Mesh, RepeatWrapping, RGBAFormat, UnsignedByteType,
-  Vector2, Vector3, type RawShaderMaterial,
+  Vector2, Vector3, type Camera, type RawShaderMaterial,
 } from 'three';
 import type { Frame, Heat, Topology } from './messages';
+import { SeenTriangles } from './seen';
 import { kReach, materialOf, smoke } from './shaders';
 
 export const kPlainLayer = 3, kEndoscopeLayer = 4; // 1 and 2 are what only the left and the right eye of a headset see
@@ -35,7 +36,8 @@ export class Organ {
   private geometry = new BufferGeometry();
   particles = new Float32Array(0); // their places
   private normals = new Float32Array(0);
-  private meshes: Mesh[];
+  private plain: Mesh[];
+  private natural: SeenTriangles;
 
   constructor() {
     this.mucosa = materialOf({
@@ -47,14 +49,14 @@ export class Organ {
         pattern_shift: { value: new Vector3() }, capsules: { value: new Float32Array(96) }, capsule_count: { value: 0 },
       },
     });
-    this.meshes = [tissueMaterial(true), tissueMaterial(false), this.mucosa].map((material, k) => {
-      const mesh = new Mesh(this.geometry, material);
-      mesh.layers.set(k < 2 ? kPlainLayer : kEndoscopeLayer);
+    this.plain = [true, false].map((inside) => new Mesh(this.geometry, tissueMaterial(inside)));
+    this.plain[1].renderOrder = 10; // what is transparent last
+    this.natural = new SeenTriangles(new Mesh(this.geometry, this.mucosa));
+    for (const mesh of [...this.plain, this.natural.mesh]) {
+      mesh.layers.set(mesh === this.natural.mesh ? kEndoscopeLayer : kPlainLayer);
       mesh.frustumCulled = false;
-      mesh.renderOrder = k === 1 ? 10 : 0; // what is transparent last
       this.root.add(mesh);
-      return mesh;
-    });
+    }
   }
 
   setPattern(bytes: Uint8Array, size: number) {
@@ -72,7 +74,6 @@ export class Organ {
   setTopology(topology: Topology) {
     this.topology = topology;
     this.revision = topology.revision;
-    for (const mesh of this.meshes) mesh.geometry.dispose();
     const count = topology.vertices, geometry = new BufferGeometry();
     const moving = (size: number) => new BufferAttribute(new Float32Array(size * count), size).setUsage(DynamicDrawUsage);
     geometry.setIndex(new BufferAttribute(topology.triangles, 1));
@@ -88,8 +89,12 @@ export class Organ {
     this.geometry = geometry;
     const coarse = new BufferGeometry(); // from outside the particles' own mesh is fine enough: it has a quarter of the triangles
     coarse.attributes = geometry.attributes;
-    coarse.setIndex(particlesComeFirst(topology) ? new BufferAttribute(topology.particleTriangles, 1) : geometry.index);
-    this.meshes.forEach((mesh, k) => (mesh.geometry = k < 2 ? coarse : geometry));
+    coarse.setIndex(particlesComeFirst(topology) ? new BufferAttribute(topology.particleTriangles, 1) : new BufferAttribute(topology.triangles, 1));
+    for (const mesh of this.plain) {
+      mesh.geometry.dispose();
+      mesh.geometry = coarse;
+    }
+    this.natural.show(geometry);
     this.particles = new Float32Array(3 * topology.particles);
     this.normals = new Float32Array(3 * topology.particles);
   }
@@ -101,6 +106,12 @@ export class Organ {
     this.centre.set(...([0, 1, 2].map((k) => lowest[k] + 32767 * step[k]) as [number, number, number]));
     this.findNormals(this.topology.particleTriangles);
     this.moveVertices(this.topology);
+  }
+
+  /** @param unseen  share of half the picture within which nothing of it is shown */
+  lookFrom(camera: Camera, unseen: number) {
+    this.mucosa.uniforms.unseen.value = unseen;
+    this.natural.lookFrom(camera, unseen);
   }
 
   setFolds(bytes: ArrayBuffer, tallest: number) {

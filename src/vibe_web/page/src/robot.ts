@@ -1,8 +1,8 @@
 // The endoscope with its suturing device: the tree of its joints, and its parts.
 
 import {
-  Box3, BoxGeometry, BufferGeometry, Color, CylinderGeometry, Float32BufferAttribute, FrontSide, Frustum, Group, Matrix4, Mesh, MeshPhongMaterial,
-  Quaternion, Skeleton, SkinnedMesh, SphereGeometry, Vector3, type Bone, type Camera, type Object3D,
+  Box3, BoxGeometry, BufferAttribute, BufferGeometry, Color, CylinderGeometry, FrontSide, Frustum, Group, Matrix4, Mesh, MeshPhongMaterial,
+  Quaternion, Skeleton, SkinnedMesh, Sphere, SphereGeometry, Vector3, type Bone, type Camera, type Object3D,
 } from 'three';
 import { MTLLoader } from 'three/addons/loaders/MTLLoader.js';
 import { OBJLoader } from 'three/addons/loaders/OBJLoader.js';
@@ -10,6 +10,7 @@ import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import type { Link, SceneText, Visual } from './messages';
 import { kEndoscopeLayer, kPlainLayer } from './organ';
 import type { Capsule } from './shadow';
+import { SeenTriangles } from './seen';
 import { kReach, materialOf, smoke } from './shaders';
 
 const kColour = new Color(0.6, 0.6, 0.62), kShine = 0.5, kSharpness = 40;
@@ -22,8 +23,10 @@ interface Range { frame: Object3D; box: Box3; start: number; count: number } // 
 /** The part with what its vertices have to know: their bone, and how they shine. */
 function boneOf({ geometry, material }: Placed, bone: number): BufferGeometry {
   const count = geometry.getAttribute('position').count, { r, g, b } = material.color;
-  const repeated = (numbers: number[]) => Array.from({ length: count }, () => numbers).flat();
-  const put = (name: string, numbers: number[]) => geometry.setAttribute(name, new Float32BufferAttribute(repeated(numbers), numbers.length));
+  const put = (name: string, numbers: number[]) => {
+    const size = numbers.length, repeated = Float32Array.from({ length: size * count }, (_, k) => numbers[k % size]);
+    geometry.setAttribute(name, new BufferAttribute(repeated, size));
+  };
   put('color', [r, g, b]);
   put('skinIndex', [bone, 0, 0, 0]);
   put('skinWeight', [1, 0, 0, 0]);
@@ -59,7 +62,7 @@ export class Robot {
   private meshes = new Map<string, Promise<Part[]>>();
   private known = '';
   private ranges: Range[] = [];
-  private seen = new BufferGeometry(); // of what the endoscope sees
+  private seen = new SeenTriangles(new Mesh()); // by the endoscope
 
   /** Takes over what has changed: the parts are loaded once. */
   setScene(scene: SceneText) {
@@ -137,36 +140,35 @@ export class Robot {
 
   /** All links as the bones of one body, which is drawn at once: from outside, and as the endoscope sees it. */
   private addBody(parts: Placed[]) {
-    const depth = (frame: Object3D | null): number => (frame ? 1 + depth(frame.parent) : 0);
-    const frames = [...new Set(parts.map(({ frame }) => frame))].sort((a, b) => depth(a) - depth(b));
+    const frames = [...new Set(parts.map(({ frame }) => frame))];
     for (const { geometry } of parts) geometry.computeBoundingBox();
-    // from the hand to the tip, which is where x points
-    parts.sort((a, b) => frames.indexOf(a.frame) - frames.indexOf(b.frame) || a.geometry.boundingBox!.max.x - b.geometry.boundingBox!.max.x);
     const geometry = mergeGeometries(parts.map((part) => boneOf(part, frames.indexOf(part.frame))))!;
     const seen = new BufferGeometry();
     seen.attributes = { ...geometry.attributes, part_colour: geometry.getAttribute('color') };
     this.ranges = rangesOf(parts);
-    this.seen = seen;
     const skeleton = new Skeleton(frames as Bone[], frames.map(() => new Matrix4()));
     const plain = new MeshPhongMaterial({ vertexColors: true, specular: 0x555555, shininess: kSharpness });
     const lit = materialOf({
       vertex: 'surface.vert', fragment: 'instrument.frag', side: FrontSide, parts: ['colour', 'shine', 'sharpness'],
       uniforms: { smoke, reach: { value: kReach } },
     });
-    for (const mesh of [new SkinnedMesh(geometry, plain), new SkinnedMesh(seen, lit)]) {
+    const meshes = [new SkinnedMesh(geometry, plain), new SkinnedMesh(seen, lit)];
+    this.seen = new SeenTriangles(meshes[1]);
+    this.seen.show(seen);
+    for (const mesh of meshes) {
       mesh.bind(skeleton, new Matrix4());
       mesh.frustumCulled = false;
+      mesh.boundingSphere = new Sphere(); // else three.js looks for it, long
       mesh.layers.set(mesh.material === plain ? kPlainLayer : kEndoscopeLayer);
       this.root.add(mesh);
     }
   }
 
-  /** Leaves out the links at both ends of the chain that the endoscope's picture does not hold. */
-  lookFrom(camera: Camera) {
+  /** @param unseen  share of half the picture within which nothing of it is shown */
+  lookFrom(camera: Camera, unseen: number) {
     const view = new Frustum().setFromProjectionMatrix(camera.projectionMatrix), toView = new Matrix4();
     const inView = this.ranges.filter(({ frame, box }) => view.intersectsBox(box.clone().applyMatrix4(toView.multiplyMatrices(camera.matrixWorldInverse, frame.matrixWorld))));
-    const first = inView[0]?.start ?? 0, last = inView[inView.length - 1];
-    this.seen.setDrawRange(first, last ? last.start + last.count - first : 0);
+    this.seen.lookFrom(camera, unseen, inView.map(({ frame, start, count }) => ({ start, count, frame: frame.matrixWorld })));
   }
 
   /** The frame above that moves: links that are fixed to it share its meshes. Moves `placed` into it. */

@@ -88,7 +88,7 @@ export class Stage {
     const part = this.size / this.lens.size;
     const scaled = (source: Lens['whole']) => ({ ...source, size: Math.round(source.size * part) });
     this.endoscope?.dispose();
-    this.endoscope = new EndoscopeView(this.renderer, { ...this.lens, size: this.size, whole: scaled(this.lens.whole), middle: scaled(this.lens.middle) }, this.organ.mucosa);
+    this.endoscope = new EndoscopeView(this.renderer, { ...this.lens, size: this.size, whole: scaled(this.lens.whole), middle: scaled(this.lens.middle) }, this);
     this.picture.material.map = this.endoscope.target.texture;
     this.picture.material.needsUpdate = true;
     this.drawnTime = NaN;
@@ -144,7 +144,7 @@ export class Stage {
   drawEndoscope(stereo = false) {
     if (!this.endoscope || !this.robot.has(kLensFrame) || this.drawnTime === this.time) return;
     const begin = performance.now();
-    this.endoscope.draw(this.scene, this.robot.frame(kLensFrame), this.robot, this.time, stereo);
+    this.endoscope.draw(this.robot.frame(kLensFrame), this.time, stereo);
     this.drawnTime = this.time;
     this.meanMs += 0.2 * (performance.now() - begin - this.meanMs);
     if (!this.fixedSize && ++this.ofThisSize >= kPatience) this.chooseSize();
@@ -159,7 +159,7 @@ export class Stage {
   }
 
   draw() {
-    if (!this.dirty) return;
+    if (!this.dirty || this.framed < 0) return;
     this.dirty = false;
     const begin = performance.now(), { renderer } = this;
     renderer.info.reset();

@@ -2,9 +2,10 @@
 // the endoscope sees them, the shapes of vibe_graphics, which the server sends.
 
 import { BufferAttribute, BufferGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial, Vector3 } from 'three';
-import { CylinderGeometry, SphereGeometry, type Material } from 'three';
+import { CylinderGeometry, SphereGeometry, type Camera, type Material } from 'three';
 import type { Shape as SentShape, Sutures } from './messages';
 import { kEndoscopeLayer, kPlainLayer } from './organ';
+import { SeenTriangles } from './seen';
 import { kReach, materialOf, smoke } from './shaders';
 
 const kThread = 0.16e-3; // radius of 2-0 polypropylene [m]
@@ -114,12 +115,17 @@ export class SutureView {
   private pools: Follower | null = null; // blood, by the wall
   private line = new Float32Array(0); // of all threads, as last sent
   private plain = this.mesh(kPlainLayer, new MeshBasicMaterial({ vertexColors: true }));
-  private natural = this.mesh(kEndoscopeLayer, materialOf({
+  private natural = new SeenTriangles(this.mesh(kEndoscopeLayer, materialOf({
     vertex: 'surface.vert', fragment: 'suture.frag', side: DoubleSide, uniforms: { reach: { value: kReach }, smoke },
-  }));
-  private blood = this.mesh(kEndoscopeLayer, materialOf({
+  })));
+  private blood = new SeenTriangles(this.mesh(kEndoscopeLayer, materialOf({
     vertex: 'surface.vert', fragment: 'blood.frag', side: DoubleSide, transparent: true, uniforms: { reach: { value: kReach }, smoke },
-  }));
+  })));
+
+  /** @param unseen  share of half the picture within which nothing of it is shown */
+  lookFrom(camera: Camera, unseen: number) {
+    for (const each of [this.natural, this.blood]) each.lookFrom(camera, unseen);
+  }
 
   private mesh(layer: number, material: Material): Mesh {
     const mesh = new Mesh(new BufferGeometry(), material);
@@ -131,25 +137,27 @@ export class SutureView {
   }
 
   set(sutures: Sutures) {
-    replace(this.plain, this.shapeOf(sutures).geometry());
+    this.plain.geometry.dispose();
+    this.plain.geometry = this.shapeOf(sutures).geometry();
+    this.plain.visible = this.plain.geometry.index!.count > 0;
     this.line = Float32Array.from(sutures.sets.flatMap((set) => set.threads.flatMap(({ points }) => Array.from(points))));
-    this.threads?.move(this.natural, this.line); // else another shape will come
+    this.threads?.move(this.natural.mesh, this.line); // else another shape will come
   }
 
   setThreads(shape: SentShape) {
-    replace(this.natural, geometryOf(shape));
+    this.natural.show(geometryOf(shape));
     this.threads = new Follower(shape.places, shape.points);
-    this.threads.move(this.natural, this.line);
+    this.threads.move(this.natural.mesh, this.line);
   }
 
   /** @param wall  places of its particles now */
   setBlood(shape: SentShape, wall: Float32Array) {
-    replace(this.blood, geometryOf(shape));
+    this.blood.show(geometryOf(shape));
     this.pools = shape.places.length > 0 && wall.length > 0 ? new Follower(shape.places, wall.slice()) : null;
   }
 
   moveBlood(wall: Float32Array) {
-    this.pools?.move(this.blood, wall);
+    this.pools?.move(this.blood.mesh, wall);
   }
 
   private shapeOf(sutures: Sutures): Shape {
@@ -181,10 +189,4 @@ function geometryOf({ places, triangles, colours, normals }: SentShape): BufferG
   geometry.setAttribute('texcoord0', new BufferAttribute(new Float32Array(places.length), 3));
   geometry.setIndex(new BufferAttribute(triangles, 1));
   return geometry;
-}
-
-function replace(mesh: Mesh, geometry: BufferGeometry) {
-  mesh.geometry.dispose();
-  mesh.geometry = geometry;
-  mesh.visible = geometry.index!.count > 0;
 }

@@ -3,8 +3,7 @@
 
 import { readFileSync, readdirSync, statSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { fileURLToPath } from 'node:url';
-import { check, expect, launch, until, wait } from './checks.mjs';
+import { check, emulateHeadset, expect, launch, leftOut, until, wait } from './checks.mjs';
 
 const [port, chromium, folder] = process.argv.slice(2);
 const find = createRequire(import.meta.url);
@@ -13,13 +12,13 @@ const kPicture = 240; // edge of the endoscope's picture [px]
 const browser = await launch(chromium);
 
 const errors = [];
-async function openPage(prepare = async () => {}) {
+async function openPage(prepare = async () => {}, rate = 15) {
   const page = await browser.newPage();
   await page.setViewport({ width: 800, height: 600 });
   page.on('pageerror', (error) => errors.push(String(error)));
   page.on('console', (message) => message.type() === 'error' && errors.push(message.text()));
   await prepare(page);
-  await page.goto(`http://localhost:${port}/#size=${kPicture}&rate=15`);
+  await page.goto(`http://localhost:${port}/#size=${kPicture}&rate=${rate}`);
   await until(() => page.evaluate(() => window.vibe?.stats.drawn > 2), 'a picture of the organ', 120);
   return page;
 }
@@ -75,6 +74,12 @@ await check('the endoscope sees a round, lit and exposed picture', async () => {
   expect(seen.corner === 0, `corners at ${seen.corner}`);
   expect(seen.mean > 50 && seen.mean < 200 && seen.deviation > 10, JSON.stringify(seen));
   return seen;
+});
+
+await check('what is left out of the picture is not in it', async () => {
+  const found = await leftOut(page);
+  expect(found.differ === 0 && found.control > 0, JSON.stringify(found));
+  return found;
 });
 
 await check('nothing was wrong in the console', async () => expect(errors.length === 0, errors.join('\n')));
@@ -137,7 +142,7 @@ await check('a gamepad drives', async () => {
 });
 
 await check('a page that hangs lets go', async () => {
-  const begin = await rest(page), watcher = await openPage();
+  const begin = await rest(page), watcher = await openPage(async () => {}, 2); // which draws little, and answers soon
   await page.bringToFront();
   await page.keyboard.down('w');
   await until(async () => (await insertion(page)) > begin, 'motion');
@@ -151,16 +156,7 @@ await check('a page that hangs lets go', async () => {
 });
 
 await check('a headset enters, drives with the handle and sees in stereo', async () => {
-  const iwer = readFileSync(fileURLToPath(new URL('../node_modules/iwer/build/iwer.min.js', import.meta.url)), 'utf8');
-  page = await openPage(async (fresh) => {
-    await fresh.evaluateOnNewDocument(iwer);
-    await fresh.evaluateOnNewDocument(() => {
-      window.device = new window.IWER.XRDevice(window.IWER.metaQuest3);
-      window.device.installRuntime();
-      window.device.stereoEnabled = true;
-      window.device.position.set(0, 1.6, 0);
-    });
-  });
+  page = await openPage(emulateHeadset);
   await takeControl(page);
   await page.click('#headset');
   await until(() => page.evaluate(() => window.vibe.stage.renderer.xr.isPresenting), 'a headset');

@@ -1,5 +1,7 @@
 // What the tests of the page share: each check prints one line of JSON, which web_test.py reads.
 
+import { readFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
 import puppeteer from 'puppeteer-core';
 
 /** Chromium without a display and without a graphics card. */
@@ -35,3 +37,44 @@ export async function check(name, body) {
 export function expect(condition, what) {
   if (!condition) throw new Error(what);
 }
+
+/** A headset that is none (Meta's iwer): before the page is opened. */
+export async function emulateHeadset(page) {
+  await page.evaluateOnNewDocument(readFileSync(fileURLToPath(new URL('../node_modules/iwer/build/iwer.min.js', import.meta.url)), 'utf8'));
+  await page.evaluateOnNewDocument(() => {
+    window.device = new window.IWER.XRDevice(window.IWER.metaQuest3);
+    window.device.installRuntime();
+    window.device.stereoEnabled = true;
+    window.device.position.set(0, 1.6, 0);
+  });
+}
+
+/**
+ * Draws the endoscope's picture of this state, turned and bent in several ways: as always, with all triangles, and with
+ * too many left out; returns the bytes in which the first two differ, and at least the last two.
+ */
+export const leftOut = (page) => page.evaluate(() => {
+  const { stage } = window.vibe, { robot } = stage, seen = Object.getPrototypeOf(stage.organ.natural), { findSides } = seen;
+  const joints = robot.names.map((name) => robot.positions.get(name));
+  const draw = (sides) => {
+    seen.findSides = sides;
+    stage.refresh();
+    stage.drawEndoscope();
+    return stage.pictureBytes().bytes;
+  };
+  const differing = (one, other) => one.reduce((sum, byte, k) => sum + (byte !== other[k]), 0);
+  let differ = 0, control = Infinity;
+  for (const by of [[0, 0, 0], [0.9, 0.3, 0], [2, -0.2, 0.3], [-1, 0, -0.4]]) {
+    robot.setJoints(joints.map((joint, k) => joint + (by[k - 1] ?? 0)));
+    const usual = draw(findSides), all = draw(function () { this.sides.fill(0); });
+    differ += differing(usual, all);
+    control = Math.min(control, differing(all, draw(function (part, matrix, unseen) {
+      for (const k of [0, 4, 8, 12]) matrix.elements[k] *= 1.25; // as if the picture were narrower
+      findSides.call(this, part, matrix, unseen);
+    })));
+  }
+  seen.findSides = findSides;
+  robot.setJoints(joints);
+  stage.refresh();
+  return { differ, control };
+});

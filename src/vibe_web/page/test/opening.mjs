@@ -7,14 +7,21 @@ const [port, chromium, times, seconds] = process.argv.slice(2);
 const kKinds = { 1: 'scene', 2: 'topology', 3: 'frame', 4: 'folds' };
 const browser = await launch(chromium);
 
-/** Notes when the first message of each kind comes. */
+/** Notes when the first message of each kind comes, and how old each frame then is. */
 function noteFirst() {
   window.first = {};
+  window.came = new Map();
   const Plain = window.WebSocket;
   window.WebSocket = class extends Plain {
     constructor(address) {
       super(address);
-      this.addEventListener('message', ({ data }) => (window.first[new Uint8Array(data, 0, 1)[0]] ??= performance.now()));
+      this.addEventListener('message', ({ data }) => {
+        const now = performance.now(), kind = new Uint8Array(data, 0, 1)[0];
+        window.first[kind] ??= now;
+        if (kind !== 3) return;
+        const time = new DataView(data).getFloat64(8, true);
+        window.came.set(time, performance.timeOrigin + now - 1000 * time);
+      });
     }
   };
 }
@@ -36,10 +43,10 @@ const timesOf = (page) => page.evaluate((kinds) => {
   return all;
 }, kKinds);
 
-/** Of pictures that are finished: the time to draw each, and how old its state was then [ms]. */
+/** Of pictures that are finished: the time to draw each, how old its state was then, and when it came [ms]. */
 const agesOf = (page) => page.evaluate(() => {
   const { stage } = window.vibe, draw = stage.draw.bind(stage), gl = stage.renderer.getContext();
-  const found = (window.found = { edge: 0, draw: [], age: [], begin: performance.now() });
+  const found = (window.found = { edge: 0, draw: [], age: [], came: [], begin: performance.now() });
   stage.draw = () => {
     if (!stage.dirty) return;
     const begin = performance.now();
@@ -49,6 +56,7 @@ const agesOf = (page) => page.evaluate(() => {
     found.edge = stage.endoscope.target.width;
     found.draw.push(end - begin);
     found.age.push(performance.timeOrigin + end - 1000 * stage.time);
+    found.came.push(window.came.get(stage.time));
   };
 });
 

@@ -68,13 +68,20 @@ class Client : public std::enable_shared_from_this<Client<Stream>> {
   }
 
   void offer(Kind kind, SharedBytes bytes) {
+    if (kind == Kind::Frame) came_ = Clock::now();
     waiting_[static_cast<std::size_t>(kind)] = std::move(bytes);
     pump();
   }
 
   bool isDue(std::size_t kind) const {
     if (kind != static_cast<std::size_t>(Kind::Frame)) return static_cast<bool>(waiting_[kind]);
-    return waiting_[kind] && Clock::now() >= next_frame_ && !isBehind();
+    return waiting_[kind] && Clock::now() >= frameDue() && !isBehind();
+  }
+
+  /// A frame that has waited for its page is soon followed by a newer one; it is sent only if that does not come.
+  Clock::time_point frameDue() const {
+    const bool fresh = Clock::now() - came_ < period_ / 2;
+    return fresh ? next_frame_ : std::max(next_frame_, came_ + period_ * 5 / 4);
   }
 
   /// A page that is slow to draw would show older and older frames from the queues of its browser.
@@ -105,7 +112,7 @@ class Client : public std::enable_shared_from_this<Client<Stream>> {
   }
 
   void wakeForFrame() {
-    timer_.expires_at(next_frame_);
+    timer_.expires_at(frameDue());
     timer_.async_wait([weak = this->weak_from_this()](Error error) {
       const auto self = weak.lock();
       if (!error && self) self->pump();
@@ -173,7 +180,7 @@ class Client : public std::enable_shared_from_this<Client<Stream>> {
   int undrawn_ = 0;     // frames sent and not drawn
   std::size_t last_kind_ = 0;
   std::chrono::nanoseconds period_{1'000'000'000 / 60};
-  Clock::time_point next_frame_{};
+  Clock::time_point next_frame_{}, came_{};
   Allowance allowance_;
 };
 

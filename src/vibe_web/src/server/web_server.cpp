@@ -81,7 +81,8 @@ class WebServer::Core {
 
   void accept() {
     acceptor_.async_accept([this](Error error, asio::ip::tcp::socket socket) {
-      if (error) return acceptLater();  // no more files, for instance
+      if (error) return acceptLater();                          // no more files, for instance
+      socket.set_option(asio::ip::tcp::no_delay(true), error);  // a frame waits for nothing that was sent before
       if (shared_->connections < kMaxConnections) begin(std::move(socket));
       accept();
     });
