@@ -61,11 +61,13 @@ class ColumnCache {
 
 /// Product of two sparse vectors: both consist of whole runs; those on the common part of the paths are the same runs.
 Eigen::Matrix3f product(const HalfColumns& a, const HalfColumns& b);
-/// Products with a dense vector. All at once, because each is a sum in which every term waits for the one before; and
-/// their paths have much in common.
-constexpr int kProducts = 4;
-void productsOf(const std::array<const HalfColumns*, kProducts>& columns, const float* y, Eigen::Vector3f* out);
+/// Product with a dense vector.
 Eigen::Vector3f product(const HalfColumns& a, const float* y);
+constexpr int kProducts = 4;
+/// The same of several at once, with the same bits. Alone, each is a sum in which every term waits for the one before;
+/// together they share what their paths have in common.
+/// @param out  kProducts of them
+void productsOf(const std::array<const HalfColumns*, kProducts>& columns, const float* y, Eigen::Vector3f* out);
 /// Adds the columns times c to a dense vector.
 void addProduct(const HalfColumns& a, const Eigen::Vector3f& c, float* y);
 /// Adds weight times the columns b to a.

@@ -1,18 +1,9 @@
+#include "solver/contact_problem.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include "common/kernel_path.hpp"
-#include "solver/contact_problem.hpp"
-
 namespace vibe {
-
-DenseRowKernels denseRowKernelsSse2();
-DenseRowKernels denseRowKernelsAvx2();
-
-DenseRowKernels denseRowKernels() {
-  const bool wide = kernelPath() == KernelPath::Avx2 || kernelPath() == KernelPath::Avx512;
-  return wide ? denseRowKernelsAvx2() : denseRowKernelsSse2();
-}
 
 void DenseLu::resize(int n) {
   n_ = n;

@@ -1,19 +1,12 @@
 #pragma once
 #include <cstddef>
 
-#include <xsimd/xsimd.hpp>
-
 #include "common/kernel_path.hpp"
+#include "common/unfused_sets.hpp"
 #include "solver/dense_row_kernel.hpp"
 
 namespace vibe {
 namespace {
-
-// not KernelSets: no operation is fused
-struct DenseRowSets {
-  using Sse2 = xsimd::sse2;
-  using Avx2 = xsimd::avx2;
-};
 
 template <class Arch>
 struct DenseRows {
@@ -88,7 +81,7 @@ struct DenseRows {
 }  // namespace
 
 DenseRowKernels VIBE_KERNEL(denseRowKernels)() {
-  using Rows = DenseRows<DenseRowSets::VIBE_KERNEL_SET>;
+  using Rows = DenseRows<UnfusedSets::VIBE_KERNEL_SET>;
   return {Rows::subtractRows, Rows::eliminateFour};
 }
 

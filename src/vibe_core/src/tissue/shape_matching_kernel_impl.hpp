@@ -1,17 +1,10 @@
 #pragma once
-#include <xsimd/xsimd.hpp>
-
 #include "common/kernel_path.hpp"
+#include "common/unfused_sets.hpp"
 #include "tissue/shape_matching_kernel.hpp"
 
 namespace vibe {
 namespace {
-
-// not KernelSets: no operation is fused
-struct ShapeMatchingSets {
-  using Sse2 = xsimd::sse2;
-  using Avx2 = xsimd::avx2;
-};
 
 template <class Arch>
 struct Kernel {
@@ -203,7 +196,7 @@ struct Kernel {
 }  // namespace
 
 void VIBE_KERNEL(sweepClusters)(const ClusterSweep& sweep, int first_group, int last_group) {
-  Kernel<ShapeMatchingSets::VIBE_KERNEL_SET>::sweep(sweep, first_group, last_group);
+  Kernel<UnfusedSets::VIBE_KERNEL_SET>::sweep(sweep, first_group, last_group);
 }
 
 }  // namespace vibe
