@@ -20,6 +20,9 @@ constexpr double kMarginOfOne = 2;
 // Elastic energy of an extrapolated guess over that of the last step, above which the guess is dropped. Design choice:
 // a guess along a smooth motion changes the energy by a few percent per step [1].
 constexpr double kGuessGrowth = 2;
+// First direction from the predicted positions over the predicted motion, above which the step starts from the present
+// positions. Design choice: half; where the motion goes on as it was, it is a few hundredths to a third [1].
+constexpr double kMisled = 0.5;
 // Steps with backward Euler after a step that did not arrive. Design choice: a sixth of a second at 60 Hz, in which
 // backward Euler damps what made the step fail.
 constexpr int kFallbackSteps = 10;
@@ -169,6 +172,7 @@ StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMe
     plan_->schedule.provide(body_, loads, memory, scratch);
   }
   ++memory.steps;
+  scratch.solved = false;
   scratch.spent = 0;
   scratch.elastic_energy = memory.elastic_energy;
   scratch.usual_length = memory.usual_length;
@@ -177,8 +181,9 @@ StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMe
 
 StepOutcome ImplicitStepper::stepAgain(MotionView motion, BodyLoads& loads, StepperMemory& memory,
                                        StepperWorkspace& scratch) const {
+  scratch.solved = scratch.motion_length > 0 && memory.fallback == 0 && !extrapolates(false);
   memory.elastic_energy = scratch.elastic_energy;
-  memory.usual_length = scratch.usual_length;
+  if (!scratch.solved) memory.usual_length = scratch.usual_length;
   return advance(motion, loads, memory, scratch);
 }
 
@@ -208,13 +213,14 @@ void ImplicitStepper::correctStored(StepperMemory& memory, const StepperWorkspac
   work.numerical -= memory.elastic_energy - foreseen;
 }
 
-// A single iteration does not move far and starts from the inertial prediction. With more iterations a step starts from
-// the present positions: the error of the last step is in velocity and acceleration, and would grow.
+// A single iteration does not move far and starts from the inertial prediction. With more iterations, the error that
+// the last step has left is small beside a large motion only, see predict().
 bool ImplicitStepper::extrapolates(bool fallback) const {
   return !fallback && settings_.iterations == 1;
 }
 
-void ImplicitStepper::guess(const MotionView& motion, bool fallback, StepperWorkspace& scratch) const {
+// @returns the length of the motion that is foreseen [m]; 0: none is
+double ImplicitStepper::guess(const MotionView& motion, bool fallback, StepperWorkspace& scratch) const {
   const TimeScheme& scheme = fallback ? plan_->fallback_scheme : plan_->scheme;
   const bool from_hat = extrapolates(fallback);
   for (int i = 0; i < body_.nodeCount(); ++i)
@@ -222,34 +228,65 @@ void ImplicitStepper::guess(const MotionView& motion, bool fallback, StepperWork
       const double x = motion.x[k][i];
       const double hat = body_.fixed[i] != 0 ? x : scheme.hat_z(x, motion.v[k][i], motion.a[k][i]);
       scratch.z_hat[4 * i + k] = hat;
-      scratch.z[4 * i + k] = from_hat ? hat : x;
+      if (!scratch.solved) scratch.z[4 * i + k] = from_hat ? hat : x;
     }
-  if (!from_hat && !fallback && plan_->free) moveRigidly(body_, motion, scheme, scratch);
+  if (scratch.solved) return scratch.motion_length;
+  if (from_hat || fallback) return 0;
+  if (!plan_->free) return predict(motion, scheme, scratch);
+  moveRigidly(body_, motion, scheme, scratch);
+  return 0;
+}
+
+// A large motion goes on with its velocity, and the step has to find only what changes it. The velocity has the error
+// that the last step has left, which its iterations have brought below a fiftieth of such a motion. Of a small one it
+// may be all, and would grow from step to step.
+double ImplicitStepper::predict(const MotionView& motion, const TimeScheme& scheme, StepperWorkspace& scratch) const {
+  const double ahead = scheme.part() * scheme.h;
+  double fastest2 = 0;
+  for (int i = 0; i < body_.nodeCount(); ++i) {
+    double speed2 = 0;
+    for (int k = 0; k < 3 && body_.fixed[i] == 0; ++k) speed2 += motion.v[k][i] * motion.v[k][i];
+    fastest2 = std::max(fastest2, speed2);
+  }
+  const double length = ahead * std::sqrt(fastest2);
+  if (!(length > plan_->safe_length)) return 0;
+  for (int i = 0; i < body_.nodeCount(); ++i)
+    for (int k = 0; k < 3 && body_.fixed[i] == 0; ++k) scratch.z[4 * i + k] += ahead * motion.v[k][i];
+  return length;
 }
 
 void ImplicitStepper::iterateStep(const MotionView& motion, BodyLoads& loads, StepperMemory& memory,
                                   StepperWorkspace& scratch, StepOutcome& outcome) const {
   const TimeScheme& scheme = outcome.fallback ? plan_->fallback_scheme : plan_->scheme;
-  guess(motion, outcome.fallback, scratch);
+  const double foreseen = guess(motion, outcome.fallback, scratch);
   buildRows(loads, motion, scratch);
   setStepTargets(loads, motion, scheme, memory.couplings, scratch);
   Potential potential(body_, loads, scheme.inertia, scratch, scheme.part());
   QuasiNewton newton(body_, potential, loads, scratch, std::min(plan_->safe_length, kUsualGrowth * memory.usual_length),
                      evaluationsLeft(outcome.fallback, scratch.spent));
   newton.start();
+  newton.judgeBy(foreseen);
+  const bool guessed = !scratch.solved && (foreseen > 0 || extrapolates(outcome.fallback));
   // a guess with far more energy may be tangled and lead to a tangled minimum: then start from the present positions
-  if (extrapolates(outcome.fallback) && !(scratch.last.elastic_value <= kGuessGrowth * memory.elastic_energy)) {
-    startFromHere(motion, scratch);
-    newton.start();
-  }
-  scratch.first = scratch.last;
+  if (guessed && !(scratch.last.elastic_value <= kGuessGrowth * memory.elastic_energy))
+    startFromHere(motion, newton, scratch);
+  if (!scratch.solved) scratch.first = scratch.last;
   {
     const InStage stage(scratch.stages, StepStage::Factor);
     scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
   }
   newton.setGas(foreseenVolume(loads.gas, motion, scheme, scratch));
+  if (guessed && newton.judgedBy() > 0) {
+    newton.aim();
+    if (!(newton.directionLength() < kMisled * foreseen)) {
+      startFromHere(motion, newton, scratch);
+      scratch.first = scratch.last;
+      newton.setGas(foreseenVolume(loads.gas, motion, scheme, scratch));
+    }
+  }
   iterate(newton, scratch, memory, outcome);
   outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton.value());
+  scratch.motion_length = outcome.arrived && !outcome.fallback ? newton.judgedBy() : 0;
   scratch.gas_stiffness = potential.gas().stiffness(scratch.last.volume);
 }
 
@@ -264,18 +301,17 @@ int ImplicitStepper::evaluationsLeft(bool fallback, int spent) const {
 void ImplicitStepper::iterate(QuasiNewton& newton, StepperWorkspace& scratch, StepperMemory& memory,
                               StepOutcome& outcome) const {
   const double longest = outcome.fallback ? kFallbackMaxMove * plan_->size : std::numeric_limits<double>::max();
-  double first_length = 0;
   bool done = false;
   while (!done && !outcome.converged && !newton.exhausted() && std::isfinite(outcome.last_move) &&
          (!newton.failed() || newton.startAgain())) {
     outcome.last_move = newton.iterate(longest, outcome.iterations + 1 < settings_.iterations);
-    if (outcome.iterations++ == 0) first_length = newton.directionLength();
-    if (outcome.iterations == kSatisfyConstraints && !newton.exhausted() && newton.satisfyConstraints())
+    if (++outcome.iterations == kSatisfyConstraints && !newton.exhausted() && newton.satisfyConstraints())
       continue;  // and on from there
     done = outcome.iterations >= settings_.iterations && newton.contracts();
     outcome.converged = newton.directionLength() < std::max(settings_.tolerance, newton.resolution());
   }
-  memory.usual_length += kUsualShare * (first_length - memory.usual_length);
+  const double first_length = newton.judgedBy();
+  if (!scratch.solved) memory.usual_length += kUsualShare * (first_length - memory.usual_length);
   const double enough = newton.failed()
                             ? std::max(kNearlyArrived * first_length, kPositionRoundings * newton.resolution())
                             : kArrived * first_length;
@@ -286,7 +322,13 @@ void ImplicitStepper::iterate(QuasiNewton& newton, StepperWorkspace& scratch, St
   outcome.solves = newton.solves();
 }
 
-void ImplicitStepper::startFromHere(const MotionView& motion, StepperWorkspace& scratch) const {
+void ImplicitStepper::startFromHere(const MotionView& motion, QuasiNewton& newton, StepperWorkspace& scratch) const {
+  toPresent(motion, scratch);
+  newton.start();
+  newton.judgeBy(0);
+}
+
+void ImplicitStepper::toPresent(const MotionView& motion, StepperWorkspace& scratch) const {
   for (int i = 0; i < body_.nodeCount(); ++i)
     for (int k = 0; k < 3; ++k) scratch.z[4 * i + k] = motion.x[k][i];
 }
@@ -295,7 +337,7 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
                                     int max_iterations) const {
   if (scratch.making) scratch.making->finish();
   scratch.factor_id = scratch.next_id = 0;
-  startFromHere(motion, scratch);
+  toPresent(motion, scratch);
   buildRows(loads, motion, scratch);
   setEquilibriumTargets(loads, scratch);
   Potential potential(body_, loads, 0, scratch);

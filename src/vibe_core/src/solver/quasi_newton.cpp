@@ -93,6 +93,7 @@ QuasiNewton::QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoad
 
 void QuasiNewton::start() {
   restart();
+  aimed_ = false;
   last_length_ = -1;
   value_ = evaluate(scratch_.z, scratch_.gradient);
 }
@@ -313,8 +314,20 @@ void QuasiNewton::keepPair(double part) {
   s.curvature[s.pairs++] = 1 / product;
 }
 
-double QuasiNewton::iterate(double max, bool verify) {
+// Where contacts slide or change, what the history knows of them may lead up. The factor alone leads down then.
+void QuasiNewton::aim() {
+  if (aimed_) return;
   findDirection();
+  if (scratch_.pairs > 0 && slope_ + lagrangianSlope(0) > potential_.noise()) {
+    restart();
+    findDirection();
+  }
+  aimed_ = true;
+}
+
+double QuasiNewton::iterate(double max, bool verify) {
+  aim();
+  aimed_ = false;
   if (!std::isfinite(direction_length_)) return direction_length_;
   return advance(max, verify);
 }

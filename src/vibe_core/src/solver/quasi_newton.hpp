@@ -19,8 +19,14 @@ class QuasiNewton {
   /// Eliminates the gas with the stiffness that it has at a foreseen volume. Where an insufflator's law turns out to
   /// have another, iterations change it.
   void setGas(double volume);
+  /// Convergence is judged by a length instead of that of the first direction; 0: by that one [m].
+  void judgeBy(double length) { first_length_ = length; }
+  /// That length, after the first direction [m].
+  double judgedBy() const { return first_length_; }
   /// Forgets the history; needed after a new factor.
   void restart() { scratch_.pairs = 0; }
+  /// Finds the direction that the next iterate takes, if it is not known yet.
+  void aim();
   /// One step: direction, then as much of it as lowers the energy.
   /// @param most    no node moves farther [m]
   /// @param verify  false: the end point is not evaluated if the move is safe, because it is short or
@@ -82,7 +88,7 @@ class QuasiNewton {
   double direction_length_ = 0, last_length_ = -1, before_length_ = -1;
   double slope_ = 0;
   double first_length_ = 0;
-  bool failed_ = false, contracts_ = false;
+  bool aimed_ = false, failed_ = false, contracts_ = false;
 };
 
 }  // namespace vibe

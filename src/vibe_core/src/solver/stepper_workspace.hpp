@@ -110,6 +110,8 @@ class StepperWorkspace {
   ThreadPool single;
   ThreadPool* pool = &single;                   // outlives what uses it
   double elastic_energy = 0, usual_length = 0;  // of the memory before the step [J], [m]
+  bool solved = false;                          // z is that of an earlier solve of the step
+  double motion_length = 0;  // by which the convergence of that solve was judged; 0: it may not be continued [m]
 };
 
 /// What a factor is about.

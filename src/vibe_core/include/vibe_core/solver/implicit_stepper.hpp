@@ -122,13 +122,15 @@ class ImplicitStepper {
   StepOutcome advance(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
   struct Plan;
   bool extrapolates(bool fallback) const;
-  void guess(const MotionView& motion, bool fallback, StepperWorkspace& scratch) const;
+  double guess(const MotionView& motion, bool fallback, StepperWorkspace& scratch) const;
+  double predict(const MotionView& motion, const TimeScheme& scheme, StepperWorkspace& scratch) const;
   static void correctStored(StepperMemory& memory, const StepperWorkspace& scratch, StepOutcome& outcome);
   void iterateStep(const MotionView& motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch,
                    StepOutcome& outcome) const;
   int evaluationsLeft(bool fallback, int spent) const;
   void iterate(QuasiNewton& newton, StepperWorkspace& scratch, StepperMemory& memory, StepOutcome& outcome) const;
-  void startFromHere(const MotionView& motion, StepperWorkspace& scratch) const;
+  void startFromHere(const MotionView& motion, QuasiNewton& newton, StepperWorkspace& scratch) const;
+  void toPresent(const MotionView& motion, StepperWorkspace& scratch) const;
   void refactorHere(const BodyLoads& loads, StepperWorkspace& scratch) const;
   void placeAtRest(const StepperWorkspace& scratch, const MotionView& motion) const;
 
