@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "check_calibration.hpp"
 #include "image_files.hpp"
 #include "program_options.hpp"
 #include "vibe_core/common/error.hpp"
@@ -21,10 +22,12 @@ constexpr double kDegree = M_PI / 180;
 constexpr std::size_t kMostImages = 60;  // of a free motion; more are left out evenly
 
 struct Options {
-  std::string config, output, images, stops, instrument, camera_file, camera_name, ros_file, kalibr_file;
+  std::string config, output, images, stops, instrument, camera_file, camera_name, ros_file, kalibr_file, address;
   std::string board = "9x6", square = "5 mm";
   double lowest_scale = 4, highest_scale = 25;        // [px/mm]
   double print_tolerance = 0.5, slant_tolerance = 5;  // [%], [deg]
+  double seconds = 60;
+  vision::SourceOptions source;
 };
 
 void addCommon(vibe::OptionList& line, Options& options) {
@@ -67,6 +70,16 @@ void addOptions(vibe::OptionList& lens, vibe::OptionList& axis, Options& options
               "Free motion: by how much the axis may be slanted against the sensor [deg]")
       .showDefault()
       .check(vibe::inRange(0.0, 45.0));
+}
+
+void addCheckOptions(vibe::OptionList& check, Options& options) {
+  check.option("--config", options.config, "YAML file of the rig, calibrated").required();
+  check.option("--source", options.address, "gige:ADDRESS, v4l2:/dev/video0, video:FILE or images:'DIR/*.png'")
+      .required();
+  check.option("--seconds", options.seconds, "Time to look [s]").check(vibe::finiteIn(0.1, 1e5)).showDefault();
+  check.option("--rate", options.source.rate, "Asked of a camera; of a recording without stamps [Hz]").showDefault();
+  check.option("--exposure", options.source.exposure, "Asked of a camera; of a recording that does not tell it [s]")
+      .showDefault();
 }
 
 void printWarnings(const std::vector<std::string>& warnings) {
@@ -257,25 +270,40 @@ int calibrateAxis(const Options& options) {
   return 0;
 }
 
+int checkCalibration(const Options& options) {
+  const vision::VisionConfig config = vision::VisionConfig::load(options.config);
+  vision::CalibrationCheck check(config);
+  const auto source = vision::openSource(options.address, options.source);
+  std::printf("Move each instrument slowly through its whole range several times, then fast; turn what turns.\n");
+  std::fflush(stdout);
+  vision::watchMotion(*source, config, options.seconds, check);
+  return vision::printCheck(config, check.result());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   vibe::CommandLine line(
-      "Calibrates a rig: 'intrinsics' the lens from a chessboard, 'axis' where an instrument slides; 'import' and "
-      "'export' exchange the lens with ROS and Kalibr.",
+      "Calibrates a rig: 'intrinsics' the lens from a chessboard, 'axis' where an instrument slides; 'check' tells\n"
+      "whether a calibration still holds; 'import' and 'export' exchange the lens with ROS and Kalibr.",
       "vibe_calibrate");
   Options options;
   vibe::OptionList lens =
       line.subcommand("intrinsics", "Lens from images of a chessboard (vibe_marker_sheet prints it)");
   vibe::OptionList axis =
       line.subcommand("axis", "Axis, direction and scale of an instrument from images of its motion");
+  vibe::OptionList check = line.subcommand(
+      "check",
+      "Whether a calibration holds, from a free motion; status 0: it does, 1: it does not, 3: not all was shown");
   vibe::OptionList import_lens = line.subcommand("import", "Lens from the calibration of another program");
   vibe::OptionList export_lens = line.subcommand("export", "Lens as a file for other programs");
   line.requireSubcommand();
   addOptions(lens, axis, options);
+  addCheckOptions(check, options);
   addFileOptions(import_lens, export_lens, options);
   return vision::runProgram(line, argc, argv, [&] {
     if (lens.isChosen()) return calibrateLens(options);
+    if (check.isChosen()) return checkCalibration(options);
     if (import_lens.isChosen()) return importLens(options);
     return export_lens.isChosen() ? exportLens(options) : calibrateAxis(options);
   });
