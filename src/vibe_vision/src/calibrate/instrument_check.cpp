@@ -1,6 +1,7 @@
 #include "calibrate/instrument_check.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "calibrate/fitting.hpp"
@@ -84,7 +85,7 @@ void InstrumentCheck::follow(const Measurement& m, double stamp) {
   const double dt = stamp - last_stamp_;
   const double speed = tracked_ > 0 && dt > 0 && dt < kOneMotion ? std::abs(m.slide - last_slide_) / dt : 0;
   ++tracked_;
-  ++doubts_.at(static_cast<std::size_t>(m.doubt));
+  ++doubts_[m.doubt];
   if (speed > kFast) ++fast_;
   if (m.doubt == Doubt::None) fastest_ = std::max(fastest_, speed);
   from_ = std::min(from_, m.slide), to_ = std::max(to_, m.slide);
@@ -120,9 +121,10 @@ CheckedInstrument InstrumentCheck::result() const {
 InstrumentCheck::Path InstrumentCheck::binned(double Look::*quantity, Places& bins) const {
   double low = kInfinity, high = -low;
   for (const Look& look : looks_) low = std::min(low, look.along), high = std::max(high, look.along);
+  const double length = std::max(high - low, 1.0);  // all at one place: in one bin
   std::array<std::vector<double>, kBins> places, values;
   for (const Look& look : looks_) {
-    const double share = (look.along - low) / (high - low);
+    const double share = (look.along - low) / length;
     const auto bin = static_cast<std::size_t>(std::clamp(share * kBins, 0.0, kBins - 1.0));
     places[bin].push_back(2 * share - 1);
     values[bin].push_back(look.*quantity);
@@ -174,9 +176,13 @@ void InstrumentCheck::addPath(const Course& path, double half, std::vector<Check
                              "the lens is another, if the guide is straight: calibrate the lens"));
 }
 
+std::uint64_t InstrumentCheck::framesWith(Doubt doubt) const {
+  const auto found = doubts_.find(doubt);
+  return found == doubts_.end() ? 0 : found->second;
+}
+
 double InstrumentCheck::share(Doubt doubt) const {
-  return tracked_ == 0 ? 0
-                       : static_cast<double>(doubts_[static_cast<std::size_t>(doubt)]) / static_cast<double>(tracked_);
+  return tracked_ == 0 ? 0 : static_cast<double>(framesWith(doubt)) / static_cast<double>(tracked_);
 }
 
 /// Doubts that a tracker names first, so that the others are not seen.
@@ -205,7 +211,7 @@ std::string InstrumentCheck::whyUnknown(Doubt doubt) const {
 CheckedQuantity InstrumentCheck::judgeDoubt(Doubt doubt, const std::string& wrong) const {
   CheckedQuantity q{toWord(doubt), Verdict::Holds, share(doubt), 0, kDoubtful, ""};
   const std::string frames =
-      std::to_string(doubts_[static_cast<std::size_t>(doubt)]) + " of " + std::to_string(tracked_) + " frames doubted";
+      std::to_string(framesWith(doubt)) + " of " + std::to_string(tracked_) + " frames doubted";
   const std::string unknown = whyUnknown(doubt);
   q.text = frames;
   if (q.value > kDoubtful && !wrong.empty() && (doubt == Doubt::Askew || doubt == Doubt::Bent)) {

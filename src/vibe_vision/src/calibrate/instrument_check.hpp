@@ -1,6 +1,6 @@
 #pragma once
-#include <array>
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,7 +43,7 @@ class InstrumentCheck {
   int height_;       // of the image, rows
   double lens_ = 0;  // where the axis is nearest to the lens' centre, along it [px]
   std::uint64_t frames_ = 0, tracked_ = 0, fast_ = 0;
-  std::array<std::uint64_t, 7> doubts_{};                   // by Doubt
+  std::map<Doubt, std::uint64_t> doubts_;                    // frames with each
   double fastest_ = 0;                                      // without a doubt [m/s]
   double from_ = kInfinity, to_ = -kInfinity;               // slides [m]
   double least_turn_ = kInfinity, most_turn_ = -kInfinity;  // [rad]
@@ -54,6 +54,7 @@ class InstrumentCheck {
   void addGeometry(std::vector<CheckedQuantity>& quantities) const;
   void addSizes(const Course& size, std::vector<CheckedQuantity>& quantities) const;
   void addPath(const Course& path, double half, std::vector<CheckedQuantity>& quantities) const;
+  std::uint64_t framesWith(Doubt doubt) const;
   double share(Doubt doubt) const;
   std::string hidden(Doubt doubt) const;
   std::string whyUnknown(Doubt doubt) const;

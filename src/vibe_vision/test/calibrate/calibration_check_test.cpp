@@ -112,6 +112,8 @@ TEST(CalibrationCheck, AMotionThatShowsLittleIsNoProof) {
   const auto result = check(nominalConfig(movingScene()), {pictures().begin(), pictures().begin() + 10});
   EXPECT_EQ(namesOf(Verdict::Wrong, result), Names());
   const Names unknown = namesOf(Verdict::Unknown, result);
+  // and one picture again and again
+  EXPECT_EQ(namesOf(Verdict::Wrong, check(nominalConfig(movingScene()), Pictures(3, pictures()[0]))), Names());
   for (const char* name : {"helix scale", "helix direction", "helix lens", "helix shutter", "needle_driver bent"})
     EXPECT_EQ(unknown.count(name), 1U) << name;
 }

@@ -19,19 +19,19 @@ enum class Verdict {
 /// One quantity of a calibration, as a motion shows it.
 struct CheckedQuantity {
   std::string name;  ///< "scale", "direction", "across", "perspective", "lens", "path", or the word of a Doubt
-  Verdict verdict = Verdict::Unknown;
-  double value = 0;      ///< against the calibration, in SI units; of a doubt the share of frames that have it
-  double deviation = 0;  ///< standard deviation of the value; of the shutter that of the time between rows [s]
-  double limit = 0;      ///< of the value, beyond which it is wrong
+  Verdict verdict = Verdict::Unknown;  ///< what came of it
+  double value = 0;      ///< against the calibration [SI]; of a doubt the share of frames that have it [1]
+  double deviation = 0;  ///< standard deviation of the value [SI]; of the shutter of its row time [s]
+  double limit = 0;      ///< of the value, beyond which it is wrong [SI]
   std::string text;      ///< value and deviation in words, and the remedy if it does not hold
 };
 
 /// What a motion says about one instrument.
 struct CheckedInstrument {
-  std::string name;
-  std::uint64_t frames = 0, tracked = 0;
-  double from = 0, to = 0;  ///< slides between which it moved [m]
-  std::vector<CheckedQuantity> quantities;
+  std::string name;                         ///< as configured
+  std::uint64_t frames = 0, tracked = 0;    ///< looked at, seen
+  double from = 0, to = 0;                  ///< slides between which it moved [m]
+  std::vector<CheckedQuantity> quantities;  ///< geometry first, then doubts
 };
 
 /// Tells from pictures of a free motion whether a calibration still holds. Pictures along the way are measured each by
