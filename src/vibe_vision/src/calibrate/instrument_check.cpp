@@ -210,8 +210,7 @@ std::string InstrumentCheck::whyUnknown(Doubt doubt) const {
 /// @param wrong  quantity of the geometry that is wrong: it makes a marker look askew or bent
 CheckedQuantity InstrumentCheck::judgeDoubt(Doubt doubt, const std::string& wrong) const {
   CheckedQuantity q{toWord(doubt), Verdict::Holds, share(doubt), 0, kDoubtful, ""};
-  const std::string frames =
-      std::to_string(framesWith(doubt)) + " of " + std::to_string(tracked_) + " frames doubted";
+  const std::string frames = std::to_string(framesWith(doubt)) + " of " + std::to_string(tracked_) + " frames doubted";
   const std::string unknown = whyUnknown(doubt);
   q.text = frames;
   if (q.value > kDoubtful && !wrong.empty() && (doubt == Doubt::Askew || doubt == Doubt::Bent)) {

@@ -43,7 +43,7 @@ class InstrumentCheck {
   int height_;       // of the image, rows
   double lens_ = 0;  // where the axis is nearest to the lens' centre, along it [px]
   std::uint64_t frames_ = 0, tracked_ = 0, fast_ = 0;
-  std::map<Doubt, std::uint64_t> doubts_;                    // frames with each
+  std::map<Doubt, std::uint64_t> doubts_;                   // frames with each
   double fastest_ = 0;                                      // without a doubt [m/s]
   double from_ = kInfinity, to_ = -kInfinity;               // slides [m]
   double least_turn_ = kInfinity, most_turn_ = -kInfinity;  // [rad]
