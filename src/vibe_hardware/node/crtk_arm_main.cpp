@@ -31,12 +31,17 @@ constexpr double kRate = 1000;          // of measurements [Hz]
 constexpr int kFineSteps = 5;           // of the mechanics between two measurements
 constexpr double kLargestForce = 10;    // what its motors make [N]
 constexpr std::uint32_t kQueue = 10;
+// Joints, of an arm that measures only those: away from the person, up, about the way away.
+const char* const kReach = "reach";
+const char* const kLift = "lift";
+const char* const kRoll = "roll";
 
 struct Parameters {
   double sway = 0;         // of the hand away from the person and back [m]
   double frequency = 0.5;  // [Hz]
   double start = 2;        // when the sway begins [s]
   double gripper = 0.5;    // its angle [rad]
+  bool joints = false;     // it measures only its joints
 };
 
 Parameters readParameters(const ros::NodeHandle& handle) {
@@ -46,6 +51,7 @@ Parameters readParameters(const ros::NodeHandle& handle) {
   reader.read("frequency", p.frequency, 0, 20, "Hz");
   reader.read("start", p.start, 0, 1000, "s");
   reader.read("gripper", p.gripper, -7, 7, "rad");
+  reader.read("joints", p.joints);
   reader.finish();
   return p;
 }
@@ -54,8 +60,12 @@ Parameters readParameters(const ros::NodeHandle& handle) {
 class Arm {
  public:
   Arm(ros::NodeHandle& handle, const Parameters& parameters) : parameters_(parameters) {
-    pose_ = handle.advertise<geometry_msgs::PoseStamped>("measured_cp", kQueue);
-    twist_ = handle.advertise<geometry_msgs::TwistStamped>("measured_cv", kQueue);
+    if (parameters.joints) {
+      joints_ = handle.advertise<sensor_msgs::JointState>("measured_js", kQueue);
+    } else {
+      pose_ = handle.advertise<geometry_msgs::PoseStamped>("measured_cp", kQueue);
+      twist_ = handle.advertise<geometry_msgs::TwistStamped>("measured_cv", kQueue);
+    }
     gripper_ = handle.advertise<sensor_msgs::JointState>("gripper/measured_js", kQueue);
     operating_ = handle.advertise<vibe_msgs::OperatingState>("operating_state", kQueue, true);
     for (const char* name : {"button1", "button2"}) {
@@ -69,6 +79,7 @@ class Arm {
     subscribers_ = {handle.subscribe("servo_cf", kQueue, &Arm::onForce, this, hints),
                     handle.subscribe("body/servo_cf", kQueue, &Arm::onBodyForce, this, hints),
                     handle.subscribe("body/set_cf_orientation_absolute", kQueue, &Arm::onAbsolute, this, hints),
+                    handle.subscribe("servo_jf", kQueue, &Arm::onEfforts, this, hints),
                     handle.subscribe("state_command", kQueue, &Arm::onCommand, this, hints)};
     publishState("ENABLED");
     timer_ = handle.createWallTimer(ros::WallDuration(1 / kRate), &Arm::tick, this);
@@ -83,7 +94,7 @@ class Arm {
   double time_ = 0;
   ros::WallTime begin_ = ros::WallTime::now();
   std::string operating_state_;
-  ros::Publisher pose_, twist_, gripper_, operating_;
+  ros::Publisher pose_, twist_, joints_, gripper_, operating_;
   std::vector<ros::Publisher> buttons_;
   std::vector<ros::Subscriber> subscribers_;
   ros::WallTimer timer_;
@@ -98,6 +109,15 @@ class Arm {
   void onForce(const geometry_msgs::WrenchStamped& m) { take(m.wrench, Eigen::Quaterniond::Identity()); }
   void onBodyForce(const geometry_msgs::WrenchStamped& m) {
     take(m.wrench, absolute_ ? Eigen::Quaterniond::Identity() : orientationOf(state_));
+  }
+  void onEfforts(const sensor_msgs::JointState& m) {
+    geometry_msgs::Wrench wrench;
+    for (std::size_t i = 0; i < m.name.size() && i < m.effort.size(); ++i) {
+      if (m.name[i] == kReach) wrench.force.z = -m.effort[i];
+      if (m.name[i] == kLift) wrench.force.y = m.effort[i];
+      if (m.name[i] == kRoll) wrench.torque.z = -m.effort[i];
+    }
+    take(wrench, Eigen::Quaterniond::Identity());
   }
   void onAbsolute(const std_msgs::Bool& message) { absolute_ = message.data != 0; }
 
@@ -137,6 +157,24 @@ class Arm {
     std_msgs::Header header;
     header.stamp = ros::Time::now();
     header.frame_id = "arm_base";
+    parameters_.joints ? publishJoints(header) : publishPose(header);
+    sensor_msgs::JointState gripper;
+    gripper.header = header;
+    gripper.name.emplace_back("gripper");
+    gripper.position.push_back(parameters_.gripper);
+    gripper_.publish(gripper);
+  }
+
+  void publishJoints(const std_msgs::Header& header) {
+    sensor_msgs::JointState joints;
+    joints.header = header;
+    joints.name = {kReach, kLift, kRoll};
+    joints.position = {-state_.position.z(), state_.position.y(), -state_.turn.z()};
+    joints.velocity = {-state_.velocity.z(), state_.velocity.y(), -state_.spin.z()};
+    joints_.publish(joints);
+  }
+
+  void publishPose(const std_msgs::Header& header) {
     geometry_msgs::PoseStamped pose;
     pose.header = header;
     pose.pose.position.x = state_.position.x();
@@ -157,11 +195,6 @@ class Arm {
     twist.twist.angular.y = state_.spin.y();
     twist.twist.angular.z = state_.spin.z();
     twist_.publish(twist);
-    sensor_msgs::JointState gripper;
-    gripper.header = header;
-    gripper.name.emplace_back("gripper");
-    gripper.position.push_back(parameters_.gripper);
-    gripper_.publish(gripper);
   }
 };
 

@@ -19,6 +19,8 @@ constexpr double kForcePeriod = 0.005;      // without measurements the arm gets
 constexpr double kJointInterval = 0.004;    // between commands to the scope, at least [s]
 constexpr double kArmButtonInterval = 0.1;  // between messages that change nothing [s]
 constexpr double kOldest = 0.5;             // a measurement that claims to be older has the stamp of another clock [s]
+constexpr double kLookInterval = 10;        // between looks for an arm that is silent [s]
+constexpr double kFirstLook = 2;            // after it began to be silent [s]
 constexpr std::uint32_t kArmQueue = 10;
 
 /// Values of a message in the order of vibe::Joint from `first` on. @return whether all are there and finite
@@ -77,11 +79,12 @@ CrtkTeleopNode::CrtkTeleopNode(ros::NodeHandle handle, const CrtkParameters& par
       state_(startTeleop(mapping_, ros::WallTime::now().toSec())),
       updater_(handle) {
   checkClock();
+  next_look_ = ros::WallTime::now().toSec() + kFirstLook;
   advertise(handle);
   subscribe(handle);
   updater_.setHardwareID("none");
   updater_.add("crtk_teleop", this, &CrtkTeleopNode::fillDiagnostics);
-  ROS_INFO_STREAM("Mapping '" << mapping_.name << "'; waiting for " << nameOf("measured_cp") << ".");
+  ROS_INFO_STREAM("Mapping '" << mapping_.name << "'; waiting for " << measured() << ".");
   timer_ = handle.createWallTimer(ros::WallDuration(kForcePeriod), &CrtkTeleopNode::tick, this);
 }
 
@@ -96,12 +99,20 @@ std::string CrtkTeleopNode::nameOf(const std::string& topic) const {
   return topic.front() == '/' ? topic : parameters_.arm + "/" + topic;
 }
 
+std::string CrtkTeleopNode::measured() const {
+  return nameOf(mapping_.arm_joints.empty() ? "measured_cp" : "measured_js");
+}
+
 void CrtkTeleopNode::advertise(ros::NodeHandle& handle) {
   scope_ = handle.advertise<sensor_msgs::JointState>("scope/servo_jp", kArmQueue);
   if (mapping_.gripper || !mapping_.device.topic.empty())
     suturing_device_ = handle.advertise<sensor_msgs::JointState>("suturing_device/servo_jp", kArmQueue);
   button_publisher_ = handle.advertise<sensor_msgs::Joy>("scope/buttons", kArmQueue);
   if (mapping_.force_scale == 0) return;
+  if (!mapping_.arm_joints.empty()) {
+    force_ = handle.advertise<sensor_msgs::JointState>(nameOf(mapping_.force_topic), kArmQueue);
+    return;
+  }
   force_ = handle.advertise<geometry_msgs::WrenchStamped>(nameOf(mapping_.force_topic), kArmQueue);
   // what the drivers of dVRK and Force Dimension want to be told before they take forces
   std_msgs::Bool yes, no;
@@ -115,7 +126,8 @@ void CrtkTeleopNode::advertise(ros::NodeHandle& handle) {
 void CrtkTeleopNode::subscribe(ros::NodeHandle& handle) {
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   subscribers_ = {
-      handle.subscribe(nameOf("measured_cp"), kArmQueue, &CrtkTeleopNode::onPose, this, hints),
+      mapping_.arm_joints.empty() ? handle.subscribe(measured(), kArmQueue, &CrtkTeleopNode::onPose, this, hints)
+                                  : handle.subscribe(measured(), kArmQueue, &CrtkTeleopNode::onArmJoints, this, hints),
       handle.subscribe(nameOf("operating_state"), kArmQueue, &CrtkTeleopNode::onState, this, hints),
       handle.subscribe("scope/setpoint_js", kArmQueue, &CrtkTeleopNode::onScope, this, hints),
       handle.subscribe("suturing_device/measured_js", kArmQueue, &CrtkTeleopNode::onSuturingDevice, this, hints),
@@ -148,25 +160,75 @@ void CrtkTeleopNode::listenToButton(ros::NodeHandle& handle, const ArmButton& bu
 }
 
 void CrtkTeleopNode::onPose(const geometry_msgs::PoseStamped& message) {
-  const double now = ros::WallTime::now().toSec();
-  double time = message.header.stamp.toSec();
   if (message.header.stamp.isZero() || !isFinite(message.pose)) {  // CRTK: invalid
     ++invalid_;
     return;
   }
-  if (time > now || now - time > kOldest) {
-    ROS_WARN_STREAM_THROTTLE(10, "The stamps of " << nameOf("measured_cp") << " are " << time - now
-                                                  << " s off the clock of this computer, so the times of arrival are "
-                                                     "used; synchronise the clocks.");
-    time = now;
-  }
-  worst_age_ = std::max(worst_age_, now - time);
-  ++samples_;
-  base_frame_ = message.header.frame_id;
   const auto& p = message.pose.position;
   const auto& q = message.pose.orientation;
-  input_.sample = ArmSample{time, {p.x, p.y, p.z}, Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized()};
+  ArmSample sample;
+  sample.position = {p.x, p.y, p.z};
+  sample.orientation = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
+  takeSample(message.header, sample);
+}
+
+void CrtkTeleopNode::onArmJoints(const sensor_msgs::JointState& message) {
+  ArmSample sample;
+  for (std::size_t j = 0; j < mapping_.arm_joints.size(); ++j) {
+    const std::string& name = mapping_.arm_joints[j];
+    const auto found = std::find(message.name.begin(), message.name.end(), name);
+    const auto index = static_cast<std::size_t>(found - message.name.begin());
+    if (found == message.name.end()) {
+      std::string names;
+      for (const std::string& other : message.name) names += (names.empty() ? "" : ", ") + other;
+      ROS_WARN_STREAM_THROTTLE(10, "A message on " << measured() << " has no joint '" << name << "' but " << names
+                                                   << "; correct the mapping.");
+      return;
+    }
+    if (message.header.stamp.isZero() || index >= message.position.size() || !std::isfinite(message.position[index])) {
+      ++invalid_;
+      return;
+    }
+    sample.joints[j] = message.position[index];
+  }
+  takeSample(message.header, sample);
+}
+
+void CrtkTeleopNode::takeSample(const std_msgs::Header& header, ArmSample sample) {
+  const double now = ros::WallTime::now().toSec();
+  sample.time = header.stamp.toSec();
+  if (sample.time > now || now - sample.time > kOldest) {
+    ROS_WARN_STREAM_THROTTLE(10, "The stamps of " << measured() << " are " << sample.time - now
+                                                  << " s off the clock of this computer, so the times of arrival are "
+                                                     "used; synchronise the clocks.");
+    sample.time = now;
+  }
+  worst_age_ = std::max(worst_age_, now - sample.time);
+  ++samples_;
+  base_frame_ = header.frame_id;
+  input_.sample = sample;
   advance(now);
+}
+
+/// An arm that does not measure what the mapping names may measure something else.
+void CrtkTeleopNode::lookForTheArm(double now) {
+  if (state_.last) next_look_ = now + kFirstLook;
+  if (now < next_look_) return;
+  next_look_ = now + kLookInterval;
+  const bool by_joints = !mapping_.arm_joints.empty();
+  const std::string other = ros::names::resolve(nameOf(by_joints ? "measured_cp" : "measured_js"));
+  const std::string wanted = ros::names::resolve(measured());
+  ros::master::V_TopicInfo topics;
+  ros::master::getTopics(topics);
+  const auto has = [&topics](const std::string& name) {
+    return std::any_of(topics.begin(), topics.end(), [&name](const auto& topic) { return topic.name == name; });
+  };
+  if (has(wanted) || !has(other)) return;
+  ROS_WARN_STREAM("Nobody publishes " << wanted << ", but " << other << " is there: "
+                                      << (by_joints
+                                              ? "map this arm by its pose, with along and about."
+                                              : "this arm measures only its joints; map it by them, with slide and "
+                                                "turn and their names."));
 }
 
 void CrtkTeleopNode::onGripper(const sensor_msgs::JointState& message) {
@@ -206,6 +268,7 @@ void CrtkTeleopNode::onParameters(const vibe_msgs::HapticParameters& message) {
 void CrtkTeleopNode::tick(const ros::WallTimerEvent&) {
   updater_.update();
   const double now = ros::WallTime::now().toSec();
+  lookForTheArm(now);
   if (now - state_.time >= kForcePeriod) advance(now);
 }
 
@@ -228,6 +291,15 @@ void CrtkTeleopNode::advance(double now) {
 
 void CrtkTeleopNode::publishForce(const TeleopOutput& output, const ros::Time& stamp) {
   if (!force_) return;
+  if (!mapping_.arm_joints.empty()) {
+    sensor_msgs::JointState joints;
+    joints.header.stamp = stamp;
+    joints.name = mapping_.arm_joints;
+    joints.effort.assign(output.efforts.begin(),
+                         output.efforts.begin() + static_cast<std::ptrdiff_t>(joints.name.size()));
+    force_.publish(joints);
+    return;
+  }
   geometry_msgs::WrenchStamped message;
   message.header.stamp = stamp;
   message.header.frame_id = base_frame_;

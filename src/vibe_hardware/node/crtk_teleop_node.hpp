@@ -48,6 +48,7 @@ class CrtkTeleopNode {
   std::string arm_state_, base_frame_;
   double worst_age_ = 0;  // of a measurement at its arrival, since the last diagnostics [s]
   std::uint64_t samples_ = 0, samples_before_ = 0, invalid_ = 0;
+  double next_look_ = 0;                             // for an arm that is silent [s]
   double last_buttons_ = -1e9, last_joints_ = -1e9;  // published [s]
   std::array<std::uint8_t, kButtonCount> buttons_{}, sent_buttons_{};
 
@@ -60,8 +61,12 @@ class CrtkTeleopNode {
   void subscribe(ros::NodeHandle& handle);
   void listenToButton(ros::NodeHandle& handle, const ArmButton& button, std::function<void(bool)> pressed);
   std::string nameOf(const std::string& topic) const;
+  std::string measured() const;  // the topic
 
   void onPose(const geometry_msgs::PoseStamped& message);
+  void onArmJoints(const sensor_msgs::JointState& message);
+  void takeSample(const std_msgs::Header& header, ArmSample sample);
+  void lookForTheArm(double now);
   void onGripper(const sensor_msgs::JointState& message);
   void onState(const vibe_msgs::OperatingState& message);
   void onScope(const sensor_msgs::JointState& message);

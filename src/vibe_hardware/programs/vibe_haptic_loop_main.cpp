@@ -60,6 +60,7 @@ void print(const char* name, const HapticLoopResult& result) {
   std::printf("         %d sets, %d clamped, %d refused, passivity controller in %d ms; at most %.0f N/m, %.2f N s/m\n",
               result.parameter_sets, result.clamped, result.refused, result.passivity_acts, result.max_stiffness,
               result.max_damping);
+  if (result.thread_tension > 0) std::printf("         thread at %.2f N at the end\n", result.thread_tension);
 }
 
 void run(const Options& o) {

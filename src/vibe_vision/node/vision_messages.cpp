@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "vibe_vision/record/track_table.hpp"
+
 namespace vibe::vision {
 namespace {
 
@@ -81,6 +83,19 @@ vibe_msgs::InstrumentTrackArray makeTracks(const VisionConfig& config, const Fra
   message.wait = times.wait;
   message.track = times.track;
   message.publish = times.publish;
+  return message;
+}
+
+vibe_msgs::InstrumentDoubts makeDoubts(const VisionConfig& config, const Frame& frame, const Measurements& measurements,
+                                       const std::string& frame_id) {
+  vibe_msgs::InstrumentDoubts message;
+  message.header.stamp = toStamp(frame.stamp);
+  message.header.frame_id = frame_id;
+  message.frame_sequence = frame.sequence;
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    message.instruments.push_back(config.instruments[i].name);
+    message.doubts.emplace_back(measurements[i].tracked() ? toWord(measurements[i].doubt) : "");
+  }
   return message;
 }
 

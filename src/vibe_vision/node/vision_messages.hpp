@@ -3,6 +3,7 @@
 #include <sensor_msgs/CompressedImage.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/JointState.h>
+#include <vibe_msgs/InstrumentDoubts.h>
 #include <vibe_msgs/InstrumentTrackArray.h>
 
 #include <optional>
@@ -19,6 +20,10 @@ ros::Time toStamp(double time);  ///< @param time  Unix time [s], to the nearest
 vibe_msgs::InstrumentTrackArray makeTracks(const VisionConfig& config, const Frame& frame,
                                            const Measurements& measurements, const std::vector<JointSample>& samples,
                                            const std::string& frame_id, const StageTimes& times);
+
+/// For suturing_device/doubts, beside the message of makeTracks() for the same frame.
+vibe_msgs::InstrumentDoubts makeDoubts(const VisionConfig& config, const Frame& frame, const Measurements& measurements,
+                                       const std::string& frame_id);
 
 /// For suturing_device/input/joint_states: positions as measured, velocities as filtered. Nothing unless all
 /// instruments are tracked: a message has all joints, and none of them may be made up.

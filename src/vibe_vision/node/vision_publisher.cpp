@@ -56,6 +56,7 @@ VisionPublisher::VisionPublisher(ros::NodeHandle handle, const VisionConfig& con
   }
   tracking_ = handle.advertise<vibe_msgs::InstrumentTrackArray>(kTracking, kQueue);
   former_tracking_ = ros_utils::advertiseFormer<vibe_msgs::InstrumentTrackArray>(handle, kTracking, kQueue);
+  doubts_ = handle.advertise<vibe_msgs::InstrumentDoubts>("suturing_device/doubts", kQueue);
   if (parameters.publish_images) debug_ = transport_.advertise("debug_image", 1);
   if (parameters.fromTopic()) return;  // the camera's node publishes the other two
   camera_info_ = handle.advertise<sensor_msgs::CameraInfo>("camera_info", kQueue);
@@ -93,6 +94,7 @@ double VisionPublisher::publishTracks(const FrameResult& result) {
       makeTracks(config_, result.frame, result.measurements, result.samples, parameters_.frame_id, times);
   tracking_.publish(tracks);
   former_tracking_.publish(tracks);
+  doubts_.publish(makeDoubts(config_, result.frame, result.measurements, parameters_.frame_id));
   return times.publish;
 }
 

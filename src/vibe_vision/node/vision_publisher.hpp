@@ -27,7 +27,7 @@ class VisionPublisher {
 
   /// @param times  times of the frame; `publish` is filled. @return that time [s]
   double publish(const FrameResult& result);
-  /// Without an image: only suturing_device/tracking.
+  /// Without an image: only suturing_device/tracking and suturing_device/doubts.
   void publishSilence(const FrameResult& result);
   void reset() { held_.clear(); }
 
@@ -35,7 +35,7 @@ class VisionPublisher {
   VisionConfig config_;
   VisionParameters parameters_;
   image_transport::ImageTransport transport_;
-  ros::Publisher measured_, predicted_, tracking_, camera_info_;
+  ros::Publisher measured_, predicted_, tracking_, doubts_, camera_info_;
   ros::Publisher former_predicted_, former_tracking_;  // by their former names; empty: not published
   image_transport::Publisher image_, debug_;
   std::vector<double> held_;  // positions of all joints as published last, for hold_lost

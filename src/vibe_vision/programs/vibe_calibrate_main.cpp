@@ -1,16 +1,22 @@
 // vibe_calibrate: lens and axes of a rig from images, or the lens from files of other programs. No ROS.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
+#include "check_calibration.hpp"
 #include "image_files.hpp"
 #include "program_options.hpp"
+#include "take_boards.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/files.hpp"
 #include "vibe_vision/calibrate/axis_fit.hpp"
+#include "vibe_vision/calibrate/board_guide.hpp"
 #include "vibe_vision/calibrate/lens_calibration.hpp"
 #include "vibe_vision/calibrate/marker_finder.hpp"
 #include "vibe_vision/calibrate/stop_list.hpp"
+#include "vibe_vision/camera/capture.hpp"
 #include "vibe_vision/config/camera_files.hpp"
 
 namespace vision = vibe::vision;
@@ -21,15 +27,23 @@ constexpr double kDegree = M_PI / 180;
 constexpr std::size_t kMostImages = 60;  // of a free motion; more are left out evenly
 
 struct Options {
-  std::string config, output, images, stops, instrument, camera_file, camera_name, ros_file, kalibr_file;
+  std::string config, output, images, stops, instrument, camera_file, camera_name, ros_file, kalibr_file, address,
+      folder;
   std::string board = "9x6", square = "5 mm";
   double lowest_scale = 4, highest_scale = 25;        // [px/mm]
   double print_tolerance = 0.5, slant_tolerance = 5;  // [%], [deg]
+  double seconds = 60;
+  vision::SourceOptions source;
 };
 
 void addCommon(vibe::OptionList& line, Options& options) {
   line.option("--config", options.config, "YAML file of the rig; everything but the result is kept").required();
   line.option("--output", options.output, "Write the rig with the result to this YAML file").required();
+}
+
+void addBoardOptions(vibe::OptionList& line, Options& options) {
+  line.option("--board", options.board, "Inner corners of the chessboard").showDefault();
+  line.option("--square", options.square, "Measured side of a square").showDefault();
 }
 
 void addFileOptions(vibe::OptionList& import_lens, vibe::OptionList& export_lens, Options& options) {
@@ -45,8 +59,7 @@ void addFileOptions(vibe::OptionList& import_lens, vibe::OptionList& export_lens
 void addOptions(vibe::OptionList& lens, vibe::OptionList& axis, Options& options) {
   addCommon(lens, options);
   lens.option("--images", options.images, "Images of the chessboard, 'folder/*.png' in quotes").required();
-  lens.option("--board", options.board, "Inner corners of the chessboard").showDefault();
-  lens.option("--square", options.square, "Measured side of a square").showDefault();
+  addBoardOptions(lens, options);
   addCommon(axis, options);
   axis.option("--instrument", options.instrument, "Name of the instrument").required();
   vibe::OptionList input = axis.oneRequired("motion");
@@ -67,6 +80,17 @@ void addOptions(vibe::OptionList& lens, vibe::OptionList& axis, Options& options
               "Free motion: by how much the axis may be slanted against the sensor [deg]")
       .showDefault()
       .check(vibe::inRange(0.0, 45.0));
+}
+
+/// Of what looks at a camera or a recording for some time.
+void addSourceOptions(vibe::OptionList& line, Options& options) {
+  line.option("--config", options.config, "YAML file of the rig").required();
+  line.option("--source", options.address, "gige:ADDRESS, v4l2:/dev/video0, video:FILE or images:'DIR/*.png'")
+      .required();
+  line.option("--seconds", options.seconds, "Time to look [s]").check(vibe::finiteIn(0.1, 1e5)).showDefault();
+  line.option("--rate", options.source.rate, "Asked of a camera; of a recording without stamps [Hz]").showDefault();
+  line.option("--exposure", options.source.exposure, "Asked of a camera; of a recording that does not tell it [s]")
+      .showDefault();
 }
 
 void printWarnings(const std::vector<std::string>& warnings) {
@@ -97,20 +121,27 @@ void requireOneSize(const std::string& name, const vision::Frame& frame, const v
                     std::to_string(first.image.height) + "; take all with the same camera and region");
 }
 
+/// Says of each picture what it is good for, and at the end what is missing.
 std::vector<vision::BoardView> findBoards(const std::vector<std::string>& files, const vision::BoardSpec& board,
-                                          vision::Frame& first) {
+                                          double focal_length, vision::Frame& first) {
   std::vector<vision::BoardView> views;
+  std::optional<vision::BoardGuide> guide;
   for (const std::string& file : files) {
     const vision::Frame frame = vision::readGrey(file);
     if (first.image.empty()) first = frame;
     requireOneSize(file, frame, first);
-    if (const auto corners = vision::findBoard(frame.image, board)) {
-      views.push_back({file, *corners});
-    } else {
-      std::printf("%s: no whole chessboard of %dx%d inner corners; left out\n", file.c_str(), board.columns,
-                  board.rows);
+    if (!guide) guide.emplace(board, focal_length, first.image.width, first.image.height);
+    const vision::BoardPicture picture = guide->look(frame.image);
+    if (!picture.corners) {
+      std::printf("%s: left out, %s\n", file.c_str(), picture.problem.c_str());
+      continue;
     }
+    if (!picture.problem.empty()) std::printf("%s: used, but %s\n", file.c_str(), picture.problem.c_str());
+    if (!guide->isNew(*picture.corners)) std::printf("%s: shows the board as an earlier one does\n", file.c_str());
+    guide->take(*picture.corners);
+    views.push_back({file, *picture.corners});
   }
+  if (guide && !guide->missing().empty()) std::printf("Still missing: %s.\n", guide->missing().c_str());
   return views;
 }
 
@@ -135,7 +166,8 @@ int calibrateLens(const Options& options) {
   const vision::VisionConfig config = vision::VisionConfig::load(options.config, vision::AxisRule::Optional);
   const vision::BoardSpec board = vision::boardOption(options.board, options.square);
   vision::Frame first;
-  const std::vector<vision::BoardView> views = findBoards(vision::filesOf(options.images), board, first);
+  const std::vector<vision::BoardView> views =
+      findBoards(vision::filesOf(options.images), board, config.camera.fx, first);
   const vision::LensCalibration lens = vision::calibrateLens(views, board, first.image.width, first.image.height);
   printLens(lens);
   printWarnings(lens.warnings);
@@ -187,6 +219,22 @@ void sayWhatTakesTime(std::size_t images) {
   std::fflush(stdout);
 }
 
+/// Beyond the outermost stops an axis is a guess.
+void warnAboutRange(const vision::InstrumentConfig& instrument, const std::vector<vision::AxisStop>& stops) {
+  constexpr double kFar = 0.15;  // of the range
+  const auto [low, high] =
+      std::minmax_element(stops.begin(), stops.end(), [](const auto& a, const auto& b) { return a.slide < b.slide; });
+  const double far = kFar * (instrument.upper - instrument.lower);
+  const bool below = low->slide - instrument.lower > far, above = instrument.upper - high->slide > far;
+  if (!below && !above) return;
+  std::printf(
+      "Warning: the stops are between %.1f and %.1f mm, the range is from %.1f to %.1f mm; add stops near its %s.\n",
+      1e3 * low->slide, 1e3 * high->slide, 1e3 * instrument.lower, 1e3 * instrument.upper,
+      below && above ? "ends"
+      : below        ? "lower end"
+                     : "upper end");
+}
+
 vision::SlideAxis axisFromStops(const Options& options, const vision::VisionConfig& config, std::size_t instrument) {
   const std::vector<vision::StopImage> list = vision::loadStopList(options.stops);
   std::vector<vision::Frame> images;
@@ -212,6 +260,7 @@ vision::SlideAxis axisFromStops(const Options& options, const vision::VisionConf
   std::printf("residual %.3f px along (%.4f mm), %.3f px across\n", fit.rms_along, 1e3 * fit.axis.residual_rms,
               fit.rms_across);
   printWarnings(fit.warnings);
+  warnAboutRange(config.instruments[instrument], stops);
   requireSleeveForwards(located, fit.axis);
   return fit.axis;
 }
@@ -257,25 +306,69 @@ int calibrateAxis(const Options& options) {
   return 0;
 }
 
+/// A camera may be faster than a board is found: then the newest frame counts.
+int takeBoards(const Options& options) {
+  constexpr double kWait = 1;  // [s]
+  const vision::VisionConfig config = vision::VisionConfig::load(options.config, vision::AxisRule::Optional);
+  vision::BoardTaker taker(vision::boardOption(options.board, options.square), config.camera.fx, options.folder);
+  auto source = vision::openSource(options.address, options.source);
+  const bool recorded = options.address.rfind("video:", 0) == 0 || options.address.rfind("images:", 0) == 0;
+  std::optional<vision::Capture> capture;
+  if (!recorded) capture.emplace(std::move(source));
+  const auto next = [&](vision::Frame& frame) {
+    return capture ? capture->take(frame, kWait) : source->read(frame, kWait);
+  };
+  const auto say = [](const std::string& sentence) {
+    std::printf("%s\n", sentence.c_str());
+    std::fflush(stdout);
+  };
+  const bool complete = vision::takeBoards(next, options.seconds, taker, say);
+  say(complete ? "Nothing is missing: vibe_calibrate intrinsics --images '" + options.folder + "/*.png'"
+               : "Still missing: " + taker.missing() + ".");
+  return complete ? vision::kHolds : vision::kNotShown;
+}
+
+int checkCalibration(const Options& options) {
+  const vision::VisionConfig config = vision::VisionConfig::load(options.config);
+  vision::CalibrationCheck check(config);
+  const auto source = vision::openSource(options.address, options.source);
+  std::printf("Move each instrument slowly through its whole range several times, then fast; turn what turns.\n");
+  std::fflush(stdout);
+  vision::watchMotion(*source, config, options.seconds, check);
+  return vision::printCheck(config, check.result());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   vibe::CommandLine line(
-      "Calibrates a rig: 'intrinsics' the lens from a chessboard, 'axis' where an instrument slides; 'import' and "
-      "'export' exchange the lens with ROS and Kalibr.",
+      "Calibrates a rig: 'intrinsics' the lens from a chessboard, 'axis' where an instrument slides; 'boards' takes\n"
+      "its images, 'check' tells "
+      "whether a calibration still holds; 'import' and 'export' exchange the lens with ROS and Kalibr.",
       "vibe_calibrate");
   Options options;
   vibe::OptionList lens =
       line.subcommand("intrinsics", "Lens from images of a chessboard (vibe_marker_sheet prints it)");
+  vibe::OptionList boards = line.subcommand(
+      "boards", "Takes the images of a chessboard that is held before a camera, and says which are missing");
   vibe::OptionList axis =
       line.subcommand("axis", "Axis, direction and scale of an instrument from images of its motion");
+  vibe::OptionList check = line.subcommand(
+      "check",
+      "Whether a calibration holds, from a free motion; status 0: it does, 1: it does not, 3: not all was shown");
   vibe::OptionList import_lens = line.subcommand("import", "Lens from the calibration of another program");
   vibe::OptionList export_lens = line.subcommand("export", "Lens as a file for other programs");
   line.requireSubcommand();
   addOptions(lens, axis, options);
+  addSourceOptions(check, options);
+  addSourceOptions(boards, options);
+  addBoardOptions(boards, options);
+  boards.option("--folder", options.folder, "Where the pictures go").required();
   addFileOptions(import_lens, export_lens, options);
   return vision::runProgram(line, argc, argv, [&] {
     if (lens.isChosen()) return calibrateLens(options);
+    if (boards.isChosen()) return takeBoards(options);
+    if (check.isChosen()) return checkCalibration(options);
     if (import_lens.isChosen()) return importLens(options);
     return export_lens.isChosen() ? exportLens(options) : calibrateAxis(options);
   });

@@ -47,7 +47,9 @@ bool follow(const TeleopMapping& mapping, const ArmSample& sample, TeleopState& 
   const bool first = !state.last;
   const double dt = first ? 0 : sample.time - state.last->time;
   if (!first && !(dt > 0)) return true;  // an old one
-  if (!first) {
+  if (!first && !mapping.arm_joints.empty()) {
+    for (std::size_t i = 0; i < motion.size(); ++i) motion[i] = sample.joints[i] - state.last->joints[i];
+  } else if (!first) {
     const Eigen::Vector3d way = mapping.hand.transpose() * (sample.position - state.last->position);
     const Eigen::Vector3d turn = mapping.hand.transpose() * turnBetween(state.last->orientation, sample.orientation);
     for (int i = 0; i < 3; ++i) motion[i] = way[i], motion[i + 3] = turn[i];
@@ -150,6 +152,7 @@ void sendForces(const TeleopMapping& mapping, double now, TeleopState& state, Te
     const double sent =
         silent ? release(now, state.ports[j]) : command(joint.port, now, spring, damping, state.ports[j]);
     output.passivity_acts |= state.ports[j].acts;
+    output.efforts[static_cast<std::size_t>(joint.coordinate)] += sent;
     (joint.coordinate < HandRoll ? force : torque)[joint.coordinate % 3] += sent;
   }
   output.force = mapping.hand * force;

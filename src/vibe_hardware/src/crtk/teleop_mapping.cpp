@@ -33,11 +33,17 @@ class ArmReader {
   TeleopMapping read() {
     const Fields fields =
         mapOf(source_.root(), {"name", "hand", "joints", "arm", "forces", "clutch", "buttons", "gripper", "device"},
-              {"name", "hand", "joints"});
+              {"name", "joints"});
     mapping_.name = source_.text(fields.at("name"));
-    readHand(fields.at("hand"));
+    const auto hand = fields.find("hand");
+    if (hand != fields.end()) readHand(hand->second);
     if (fields.count("arm") > 0) readArm(fields.at("arm"));
     readJoints(fields.at("joints"), 0, kScopeJointCount);
+    if (mapping_.arm_joints.empty() && hand == fields.end())
+      source_.fail(source_.root(), "lacks the key 'hand'; add it below");
+    if (!mapping_.arm_joints.empty() && hand != fields.end())
+      source_.fail(hand->second,
+                   "is for an arm that measures a pose, and this one is mapped by its joints; leave it out");
     if (fields.count("forces") > 0) readForces(fields.at("forces"));
     if (fields.count("clutch") > 0) mapping_.clutch = readButton(fields.at("clutch"));
     if (fields.count("buttons") > 0) readButtons(fields.at("buttons"));
@@ -54,6 +60,7 @@ class ArmReader {
   TeleopMapping mapping_;
   PortConfig way_, turn_{};          // of coordinates along and about an axis
   std::map<int, std::string> used_;  // coordinates
+  bool any_pose_ = false;            // a motion of the hand moves a joint
 
   Fields mapOf(const YamlField& field, const std::vector<std::string>& known,
                const std::vector<std::string>& required) const {
@@ -124,12 +131,19 @@ class ArmReader {
   }
 
   void readJoint(const YamlField& field, int index, HandJoint& joint) {
-    const Fields fields = mapOf(field, {"along", "about", "scale"}, {"scale"});
-    if (fields.count("along") + fields.count("about") != 1)
-      source_.fail(field, "needs exactly one of along and about; write for example 'along: x'");
-    const bool along = fields.count("along") > 0;
-    const YamlField& axis = fields.at(along ? "along" : "about");
-    joint.coordinate = source_.choice(axis, {"x", "y", "z"}).front() - 'x' + (along ? HandX : HandRoll);
+    const Fields fields = mapOf(field, {"along", "about", "slide", "turn", "scale"}, {"scale"});
+    if (fields.size() != 2)
+      source_.fail(field, "needs exactly one of along, about, slide and turn; write for example 'along: x'");
+    const bool along = fields.count("along") + fields.count("slide") > 0;
+    const bool pose = fields.count("along") + fields.count("about") > 0;
+    any_pose_ |= pose;
+    const YamlField& axis = fields.at(pose ? (along ? "along" : "about") : (along ? "slide" : "turn"));
+    joint.coordinate =
+        pose ? source_.choice(axis, {"x", "y", "z"}).front() - 'x' + (along ? HandX : HandRoll) : armJoint(axis);
+    if (pose != mapping_.arm_joints.empty())
+      source_.fail(axis,
+                   "is a motion of the hand, and other joints are moved by joints of the arm; an arm is mapped by "
+                   "its pose or by its joints");
     const auto [other, is_new] = used_.emplace(joint.coordinate, field.path);
     if (!is_new) source_.fail(axis, "is used by " + other->second + " already; use each motion of the hand once");
     const std::string top = jointUnit(index), below = along ? "m" : "rad";
@@ -138,9 +152,27 @@ class ArmReader {
     joint.port = along ? way_ : turn_;
   }
 
+  /// Index of a joint of the arm that is named.
+  int armJoint(const YamlField& field) {
+    std::vector<std::string>& names = mapping_.arm_joints;
+    if (any_pose_)
+      source_.fail(field,
+                   "is a joint of the arm, and other joints are moved by its pose; an arm is mapped by its pose or "
+                   "by its joints");
+    const std::string name = source_.text(field);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) return static_cast<int>(found - names.begin());
+    if (names.size() == kHandCoordinates) source_.fail(field, "is a seventh joint of the arm; six can be used");
+    names.push_back(name);
+    mapping_.force_topic = "servo_jf";
+    return static_cast<int>(names.size()) - 1;
+  }
+
   void readForces(const YamlField& field) {
     const Fields fields = mapOf(field, {"topic", "axes", "scale"}, {});
     if (fields.count("topic") > 0) mapping_.force_topic = source_.text(fields.at("topic"));
+    if (fields.count("axes") > 0 && !mapping_.arm_joints.empty())
+      source_.fail(fields.at("axes"), "is for forces on a pose, and this arm is mapped by its joints; leave it out");
     if (fields.count("axes") > 0)
       mapping_.force_frame =
           source_.choice(fields.at("axes"), {"base", "body"}) == "body" ? ForceFrame::Body : ForceFrame::Base;

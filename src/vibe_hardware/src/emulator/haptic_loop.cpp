@@ -46,6 +46,8 @@ class Loop {
     result_.clamped = static_cast<int>(statistics.clamped);
     result_.refused = static_cast<int>(statistics.refused);
     result_.mismatched = static_cast<int>(statistics.mismatched);
+    for (const auto& suture : frames_.state().procedure.sutures)
+      for (const double tension : suture.tension) result_.thread_tension = std::max(result_.thread_tension, tension);
     return std::move(result_);
   }
 

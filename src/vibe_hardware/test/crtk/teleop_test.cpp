@@ -205,6 +205,31 @@ TEST(Teleop, AnArmThatIsSilentJumpsOrIsNotReadyGetsNoForce) {
   EXPECT_EQ(disabled.output.force.norm(), 0);
 }
 
+TEST(Teleop, AnArmThatMeasuresOnlyItsJointsDrivesAndFeels) {
+  Session s;
+  s.mapping = parseTeleopMapping(
+      "name: test\njoints:\n  insertion: {slide: rail, scale: -2}\n  rotation: {turn: wrist, scale: 0.5}\n"
+      "device: {button: {topic: b}, joints: {helix_rotation: {turn: wrist, scale: 3}}}\n",
+      "my_arm.yaml", toolLimits());
+  EXPECT_EQ(s.mapping.arm_joints, (std::vector<std::string>{"rail", "wrist"}));
+  EXPECT_EQ(s.mapping.force_topic, "servo_jf");
+  s.tick();
+  const auto move = [&s](double rail, double wrist) {
+    for (int i = 0; i < 100; ++i) s.arm.joints[0] += rail / 100, s.arm.joints[1] += wrist / 100, s.tick();
+  };
+  move(-0.01, 0.2);
+  EXPECT_NEAR(s.output.joints[Insertion], 0.02, 1e-9);
+  EXPECT_NEAR(s.output.joints[Rotation], 0.1, 1e-9);
+  for (int i = 0; i < 200; ++i) s.input.tissue = wallAt(s.time, 0.02, -1, 0), s.tick();
+  EXPECT_NEAR(s.output.efforts[0], 2, 1e-2);  // virtual work
+  EXPECT_EQ(s.output.efforts[1], 0);
+  s.input.device = true;
+  s.tick();
+  move(0, 0.1);
+  EXPECT_NEAR(s.output.joints[HelixRotation], 0.3, 1e-9);
+  EXPECT_NEAR(s.output.joints[Rotation], 0.1, 1e-9);
+}
+
 TEST(Teleop, EqualInputsGiveEqualOutputs) {
   Session a, b;
   for (int i = 0; i < 300; ++i)
@@ -276,6 +301,12 @@ TEST(TeleopMapping, MistakesAreNamedWithPlaceAndRemedy) {
   for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{
            {"name: a\nhand: {away: x, up: -x}\njoints:\n  insertion: {along: x, scale: 1}\n", "same axis"},
            {head + "joints: {}\n", "moves nothing"},
+           {"name: a\njoints:\n  insertion: {along: x, scale: 1}\n", "lacks the key 'hand'"},
+           {head + "joints:\n  insertion: {slide: rail, scale: 1}\n", "leave it out"},
+           {"name: a\njoints:\n  insertion: {slide: a, scale: 1}\n  rotation: {about: x, scale: 1}\n", "by its joints"},
+           {"name: a\njoints:\n  rotation: {about: x, scale: 1}\n  insertion: {slide: a, scale: 1}\n", "by its joints"},
+           {"name: a\njoints:\n  insertion: {slide: a, scale: 1}\n  rotation: {slide: a, scale: 1 rad/m}\n", "already"},
+           {"name: a\njoints:\n  insertion: {slide: a, scale: 1}\nforces: {axes: body}\n", "mapped by its joints"},
            {head + "joints:\n  insertion: {along: x}\n", "lacks the key 'scale'"},
            {head + "joints:\n  insertion: {along: x, about: y, scale: 1}\n", "exactly one"},
            {head + "joints:\n  insertion: {along: x, scale: 1}\n  rotation: {along: x, scale: 1 rad/m}\n", "already"},

@@ -107,6 +107,20 @@ class CrtkTest(unittest.TestCase):
         self.assertTrue(wait_until(lambda: "fallen silent" in self.node.output(), 20), self.node.output())
         self.assertEqual(self.back(), 0)
 
+    def test_6_an_arm_that_measures_only_its_joints(self):
+        """A mapping of a pose is told what to do; one of the joints drives and gets efforts."""
+        type(self).arm = Program("vibe_hardware", "crtk_arm", sway=SWAY, start=0, joints="true")
+        self.assertTrue(wait_until(lambda: "this arm measures only its joints" in self.node.output(), 20),
+                        self.node.output())
+        self.node.stop()
+        efforts = Recorder("arm/servo_jf", JointState)
+        type(self).node = Program("vibe_hardware", "crtk_teleop",
+                                  mapping="package://vibe_hardware/config/arms/joint_arm.yaml")
+        self.assertTrue(wait_until(lambda: "drives the scope" in self.node.output(), 20), self.node.output())
+        place = self.insertion()
+        self.assertTrue(wait_until(lambda: abs(self.insertion() - place) > 2e-3, 20))
+        self.assertTrue(efforts.waits_for(lambda m: m.name == ["reach", "roll", "lift"]))
+
 
 if __name__ == "__main__":
     rospy.init_node("crtk_test")

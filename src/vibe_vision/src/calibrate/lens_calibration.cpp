@@ -6,6 +6,7 @@
 #include <set>
 
 #include "calibrate/fitting.hpp"
+#include "calibrate/lens_limits.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::vision {
@@ -13,26 +14,11 @@ namespace {
 
 constexpr double kSignificant = 4;  // standard deviations; errors of neighbouring corners are not independent
 constexpr int kGridColumns = 8, kGridRows = 6;
-// Below these a calibration is doubtful: experience with chessboards, design choice.
-constexpr std::size_t kEnoughViews = 8;
-constexpr double kEnoughTilt = 15 * M_PI / 180;
+// As in lens_limits.hpp.
 constexpr double kEnoughCoverage = 0.6;
 constexpr double kLargeResidual = 0.5;  // [px]
 constexpr double kFocalUncertainty = 0.01;
 constexpr double kBadView = 3;  // times the median residual
-
-/// In millimetres: in metres, the equations are so badly scaled that OpenCV drops their weakest direction, and with it
-/// most of the uncertainty of the focal length.
-std::vector<cv::Point3f> boardPoints(const BoardSpec& board) {
-  const auto square = static_cast<float>(1e3 * board.square);
-  std::vector<cv::Point3f> points;
-  for (int row = 0; row < board.rows; ++row) {
-    for (int column = 0; column < board.columns; ++column) {
-      points.emplace_back(static_cast<float>(column) * square, static_cast<float>(row) * square, 0.0F);
-    }
-  }
-  return points;
-}
 
 /// One call of OpenCV and its results.
 struct Fit {
@@ -166,6 +152,17 @@ void checkViews(const std::vector<BoardView>& views, const BoardSpec& board) {
 }
 
 }  // namespace
+
+std::vector<cv::Point3f> boardPoints(const BoardSpec& board) {
+  const auto square = static_cast<float>(1e3 * board.square);
+  std::vector<cv::Point3f> points;
+  for (int row = 0; row < board.rows; ++row) {
+    for (int column = 0; column < board.columns; ++column) {
+      points.emplace_back(static_cast<float>(column) * square, static_cast<float>(row) * square, 0.0F);
+    }
+  }
+  return points;
+}
 
 LensCalibration calibrateLens(const std::vector<BoardView>& views, const BoardSpec& board, int width, int height) {
   checkViews(views, board);

@@ -117,6 +117,21 @@ TEST_F(VisionMessages, TracksOfALostInstrumentHaveNoNumbers) {
   EXPECT_EQ(helix.score, 0);
 }
 
+TEST_F(VisionMessages, DoubtsHaveTheWordsOfTheTable) {
+  Frame frame;
+  frame.stamp = kTime;
+  frame.sequence = 17;
+  both_[0].doubt = Doubt::Askew;
+  const auto message = makeDoubts(config_, frame, both_, "camera");
+  EXPECT_EQ(message.header.stamp, toStamp(kTime));
+  EXPECT_EQ(message.header.frame_id, "camera");
+  EXPECT_EQ(message.frame_sequence, 17u);
+  EXPECT_EQ(message.instruments, (std::vector<std::string>{"helix", "needle_driver"}));
+  EXPECT_EQ(message.doubts, (std::vector<std::string>{"askew", ""}));
+  both_[0].reason = LostReason::Occluded;  // what was doubted before says nothing of this frame
+  EXPECT_EQ(makeDoubts(config_, frame, both_, "camera").doubts, (std::vector<std::string>{"", ""}));
+}
+
 TEST_F(VisionMessages, NumbersOfReasonsAreThoseOfTheMessage) {
   using vibe_msgs::InstrumentTrack;
   EXPECT_EQ(static_cast<int>(LostReason::None), InstrumentTrack::TRACKED);

@@ -18,7 +18,7 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image, JointState
 from std_srvs.srv import Trigger
-from vibe_msgs.msg import InstrumentTrack, InstrumentTrackArray
+from vibe_msgs.msg import InstrumentDoubts, InstrumentTrack, InstrumentTrackArray
 from vibe_testing.diagnostics import Diagnostics
 from vibe_testing.program import Program
 from vibe_testing.recorder import Recorder
@@ -54,6 +54,7 @@ class VisionTest(unittest.TestCase):
     def setUpClass(cls):
         cls.scene = Scene("moving", FRAMES)
         cls.tracking = Recorder("suturing_device/tracking", InstrumentTrackArray)
+        cls.doubts = Recorder("suturing_device/doubts", InstrumentDoubts)
         cls.former = Recorder("overstitch/tracking", InstrumentTrackArray)
         cls.measured = Recorder("suturing_device/input/joint_states", JointState)
         cls.predicted = Recorder("suturing_device/predicted_js", JointState)
@@ -72,7 +73,8 @@ class VisionTest(unittest.TestCase):
     def tearDown(self):
         for program in self.programs:
             program.stop()
-        for recorder in (self.tracking, self.former, self.measured, self.predicted, self.camera_info, self.diagnostics):
+        for recorder in (self.tracking, self.doubts, self.former, self.measured, self.predicted, self.camera_info,
+                         self.diagnostics):
             recorder.clear()
 
     def start(self, name="vision_node", **parameters):
@@ -131,6 +133,7 @@ class VisionTest(unittest.TestCase):
         tracked = sum(track.tracked for m in tracks for track in m.instruments)
         self.assertGreater(tracked, 0.95 * 2 * len(tracks))
         self.assert_accurate(self.scene, tracks)
+        self.check_doubts(tracks)
         self.check_joints(tracks)
         self.check_prediction()
         self.check_camera_info(tracks)
@@ -150,6 +153,16 @@ class VisionTest(unittest.TestCase):
         frame = round((stamp - self.scene.stamps[0]) * RATE)
         tracked = self.tracked_frames
         return frame % FRAMES > 25 and all(frame - k in tracked for k in range(10))
+
+    def check_doubts(self, tracks):
+        """One message beside each of tracking, silent but for the first frames, which cannot know the shutter."""
+        doubts = {m.header.stamp.to_nsec(): m for m in self.doubts.messages}
+        beside = [doubts[m.header.stamp.to_nsec()] for m in tracks if m.header.stamp.to_nsec() in doubts]
+        self.assertGreater(len(beside), 0.9 * len(tracks))
+        words = [m.doubts for m in beside]
+        self.assertEqual({tuple(m.instruments) for m in beside}, {("helix", "needle_driver")})
+        self.assertLessEqual({word for pair in words for word in pair}, {"", "unchecked"})
+        self.assertGreater(words.count(["", ""]), 0.8 * len(words))
 
     def check_joints(self, tracks):
         by_stamp = {m.header.stamp.to_nsec(): m for m in tracks}

@@ -9,12 +9,13 @@
 
 namespace vibe::hardware {
 
-/// What an arm measures at one time: measured_cp.
+/// What an arm measures at one time: measured_cp, or measured_js.
 struct ArmSample {
   double time = 0;                                     ///< [s]
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< in the base [m]
   Eigen::Quaterniond orientation =
-      Eigen::Quaterniond::Identity();  ///< of the moving frame in the base; unit quaternion
+      Eigen::Quaterniond::Identity();             ///< of the moving frame in the base; unit quaternion
+  std::array<double, kHandCoordinates> joints{};  ///< by TeleopMapping::arm_joints, if it has any [m], [rad]
 };
 
 /// How the tissue answers to motions of the scope's joints, from haptic/parameters.
@@ -56,6 +57,7 @@ struct TeleopOutput {
   std::array<double, kJointCount> joints{};          ///< commanded [m], [rad]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< in the mapping's frame [N]
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< in the mapping's frame [N m]
+  std::array<double, kHandCoordinates> efforts{};    ///< of the arm's joints, by arm_joints [N], [N m]
   bool engaged = false;                              ///< joints follow the hand; false: they stay and the forces are 0
   bool on_device = false;       ///< those of the suturing device; the scope stays and the forces are 0
   bool passivity_acts = false;  ///< on some coordinate the force of the tissue was lowered, or damping was added

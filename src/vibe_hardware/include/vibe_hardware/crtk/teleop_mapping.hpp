@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_hardware/crtk/port_passivity.hpp"
@@ -11,13 +12,14 @@
 namespace vibe::hardware {
 
 /// Coordinates of the hand that holds the arm, along and about the axes of its own frame: x away from the person, y to
-/// the left, z up. They are the integrals of its linear and angular velocity, so that force times motion is power.
+/// the left, z up. They are the integrals of its linear and angular velocity, so that force times motion is power. Of
+/// an arm that measures only its joints, the coordinates are those of TeleopMapping::arm_joints instead.
 enum HandCoordinate : int { HandX, HandY, HandZ, HandRoll, HandPitch, HandYaw };
 constexpr int kHandCoordinates = 6;  ///< length of arrays indexed by HandCoordinate
 
 /// How a coordinate of the hand moves a joint of the scope or of its suturing device.
 struct HandJoint {
-  int coordinate = -1;  ///< HandCoordinate; -1: the joint stays where it is
+  int coordinate = -1;  ///< HandCoordinate, or index in arm_joints; -1: the joint stays where it is
   double scale = 0;     ///< joint per coordinate [m/m], [m/rad], [rad/m] or [rad/rad], not 0; its sign is the direction
   PortConfig port;      ///< of the coordinate; with a joint of the suturing device there are no forces
 };
@@ -44,6 +46,7 @@ enum class ForceFrame {
 /// How an arm with a CRTK interface drives the scope. Format: docs/hardware.md, "CRTK arms".
 struct TeleopMapping {
   std::string name;                                    ///< of the arm, for messages
+  std::vector<std::string> arm_joints;                 ///< of measured_js; empty: the arm measures measured_cp
   Eigen::Matrix3d hand = Eigen::Matrix3d::Identity();  ///< axes of the hand's frame, as columns in the arm's base [1]
   /// By vibe::Joint. Each coordinate moves at most one joint of the scope and one of the suturing device.
   std::array<HandJoint, kJointCount> joints;
@@ -52,7 +55,7 @@ struct TeleopMapping {
   ArmButton clutch;                             ///< while it is pressed, the scope stays and the arm is free
   std::optional<ArmGripper> gripper;            ///< empty: the gripper moves nothing
   double force_scale = 1;                       ///< of the forces of the tissue; 0: no forces [1]
-  std::string force_topic = "servo_cf";         ///< relative to the arm
+  std::string force_topic = "servo_cf";         ///< relative to the arm; with arm_joints servo_jf
   ForceFrame force_frame = ForceFrame::Base;    ///< which axes the driver of the arm expects
   double timeout = 0.1;                         ///< without a measurement after which the arm lets go of the scope [s]
 };

@@ -59,6 +59,7 @@ struct HapticLoopResult {
   int refused = 0;                            ///< sets, by the device
   int mismatched = 0;                         ///< sets that read back differently
   int passivity_acts = 0;                     ///< ticks in which the passivity controller acted
+  double thread_tension = 0;                  ///< of the threads at the end, the highest; 0 without any [N]
   double max_stiffness = 0, max_damping = 0;  ///< of the insertion, as the simulator asked for them [N/m], [N s/m]
 };
 
