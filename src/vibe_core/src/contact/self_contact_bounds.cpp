@@ -37,8 +37,8 @@ constexpr double kLead = 0.8;       // of a ball ahead of its vertex, in radii
 constexpr double kWide = 1.9;       // radius of a ball that is made smaller, over the one for its vertex now
 // Width of the cones. Design choice: walls whose normals differ by less than a right angle are not compared although
 // both cones are taken off the least cosine of walls that face each other [1].
-constexpr double kTurn = 0.1;
-constexpr double kCoarseTurn = 0.3;  // where cones cannot tell walls apart anyway
+constexpr double kTurn = 0.15;
+constexpr double kCoarseTurn = 0.4;  // where cones cannot tell walls apart anyway
 constexpr double kWideTurn = 1.5;    // of a cone that is made smaller in each step, in usual widths
 constexpr float kCosineRounding =
     1e-5F;                         // of a cosine in single precision: positions to 1e-8 m, edges of millimetres [1]

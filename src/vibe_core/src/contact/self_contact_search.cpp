@@ -15,6 +15,7 @@ namespace {
 constexpr double kListedOverAsked = 1.05, kTooFar = 0.3;
 // Entries of a list for which there is memory from the start. Design choice: those of a surface with a few folds.
 constexpr std::size_t kPerTriangle = 4;
+constexpr int kNotOwned = -1;
 constexpr float kRoundedDown = 1 - 1e-6F, kRoundedUp = 1 + 1e-6F;  // of a distance in single precision
 
 /// Distance between the parts of two triangles at one vertex that do not contain it [m].
@@ -47,6 +48,8 @@ SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const Settings& se
       bounds_(triangles_, tree_.parts(), settings.slack),
       vertex_off_(rest.vertices.size()),
       triangle_off_(triangles_.size()) {
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+    for (const int v : triangles_[t]) owned_.push_back(rings_.first(v) == static_cast<int>(t) ? v : kNotOwned);
   tree_.setWalls(walls_);
   for (std::vector<Near>* list : {&near_, &new_near_, &old_near_}) list->reserve(kPerTriangle * triangles_.size());
   for (std::vector<Meeting>* list : {&meetings_, &new_meetings_, &old_meetings_})
@@ -88,8 +91,9 @@ void SelfContactSearch::renewNear() {
 void SelfContactSearch::addNear(int owner, int triangle) {
   const auto& n = triangles_[triangle];
   const std::vector<Eigen::Vector3d>& at = bounds_.centre();
-  for (const int v : triangles_[owner]) {
-    if (rings_.first(v) != owner) continue;
+  for (int k = 3 * owner; k < 3 * owner + 3; ++k) {
+    const int v = owned_[k];
+    if (v == kNotOwned || tree_.isFartherThan(at[v], triangle, distance_ + bounds_.radius(v))) continue;
     const double distance = distance_ + bounds_.radius(v) + radius(triangle);
     const TriangleFoot foot = triangleFoot(at[v], at[n[0]], at[n[1]], at[n[2]]);
     if (!(foot.away.squaredNorm() < distance * distance)) continue;

@@ -70,6 +70,7 @@ class SelfContactSearch {
   const SurfaceWalls& walls_;
   double cosine_, floor_;
   VertexTriangles rings_;
+  std::vector<int> owned_;  // three per triangle: its vertices that belong to it, kNotOwned
   SelfContactTree tree_;
   SelfContactBounds bounds_;
   double distance_ = -1;  // for which near_ holds; < 0: both lists are to be made [m]

@@ -78,8 +78,16 @@ class SelfContactTree {
   bool isRough(int triangle) const { return around_[triangle].cosine < kRough; }
   /// All that may be within it [m].
   const Box& box(int triangle) const { return box_[triangle]; }
+  /// Whether a point is certainly farther than a distance from all that may be within a triangle [m].
+  bool isFartherThan(const Eigen::Vector3d& point, int triangle, double distance) const {
+    const Eigen::Array4f p(static_cast<float>(point[0]), static_cast<float>(point[1]), static_cast<float>(point[2]), 0);
+    const Eigen::Array4f off = (box_[triangle].low - p).max(p + box_[triangle].minus_high).max(0);
+    const float most = static_cast<float>(distance) + kPointRounding;
+    return (off * off).sum() > most * most;
+  }
 
  private:
+  static constexpr float kPointRounding = 1e-6F;  // above that of positions within metres in single precision [m]
   static constexpr float kRough = 0.82F;  // half of the largest angle between normals that do not face each other
   enum Change : char { kBox = 1, kOwn = 2, kAround = 4, kEverything = 7 };
   enum class Part { Skip, Changes, All };
@@ -150,12 +158,15 @@ class SelfContactTree {
   template <class Visit>
   void visitLeaves(int a, int b, char changes, bool all, float distance, const Visit& visit) const {
     const Node &one = nodes_[a], &other = nodes_[b];
-    for (int i = 0; i < one.count; ++i)
+    for (int i = 0; i < one.count; ++i) {
+      const int t = order_[one.first + i];
+      if (a != b && apart(box_[t], limits_[b].box, distance)) continue;
       for (int j = a == b ? i + 1 : 0; j < other.count; ++j) {
-        const int t = order_[one.first + i], u = order_[other.first + j];
+        const int u = order_[other.first + j];
         if (!all && ((changed_[t] | changed_[u]) & changes) == 0) continue;
         if (!apart(box_[t], box_[u], distance)) visit(std::min(t, u), std::max(t, u));
       }
+    }
   }
 
   std::vector<std::array<int, 3>> triangles_;

@@ -137,6 +137,7 @@ void SurfaceContacts::followPairs(const SurfacePath& path, double margin, std::s
     const double radius = tool_.radius(shape);
     const double floor =
         std::max(kDeepest * radius, kDeepestInWall * halfThickness(n, Eigen::Vector3d::Constant(1. / 3)));
+    if (staysApart(tool_, shape, path, n, floor, radius + max_half_thickness_ + margin)) continue;
     const Pair pair{t, approach(tool_, shape, path, n, floor)};
     if (pair.approach.fraction == 1 && pair.approach.nearest - radius - max_half_thickness_ > margin) continue;
     pair_of_[t] = static_cast<int>(pairs_.size());

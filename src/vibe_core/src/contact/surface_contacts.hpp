@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <vector>
 
+#include "contact/near_triangles.hpp"
 #include "contact/tool_approach.hpp"
 #include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/solver/body_loads.hpp"

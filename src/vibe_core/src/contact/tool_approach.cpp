@@ -14,8 +14,6 @@ namespace {
 
 // The box of a turning shape is larger than that of its ends. Design choice: covers turns of two radians [1].
 constexpr double kTurnMargin = 0.25;
-constexpr std::size_t kBallGroup = 16;  // balls of a group. Design choice: a patch about as wide as a shape [1]
-constexpr double kRounding = 1e-9;      // far above the rounding of a position in double precision [m]
 
 }  // namespace
 
@@ -141,6 +139,9 @@ constexpr int kApproachSteps = 40;      // steps towards a contact; each takes n
 constexpr double kApproachShare = 0.9;  // of the distance above the floor per step [1]
 constexpr double kKeptAtEnd = 0.1;      // of that distance at the start, at which an approach ends [1]
 constexpr double kAim = 0.5;            // of that, at which steps along straight lines aim [1]
+// Steps that are certain to be enough: each goes as far as the distance is above the aim, over the whole way.
+constexpr double kCertainSteps = 0.5 * kApproachSteps;
+constexpr double kRounding = 1e-9;  // far above that of a position in double precision [m]
 
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
@@ -208,6 +209,27 @@ ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path,
   return result;
 }
 
+bool staysApart(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle,
+                double floor, double least) {
+  if (!tool.hasSegment(shape)) return false;
+  const auto from = tool.segment(shape, 0), to = tool.segment(shape, 1);
+  const Triangle start = triangleAt(path, triangle, 0);
+  const Eigen::Vector3d centre = (start[0] + start[1] + start[2]) / 3;
+  const Eigen::Vector3d away = centre - nearestOnSegment(from[0], from[1], centre);
+  const double most = away.norm();  // of the distance at the start
+  const Eigen::Vector3d direction = away / most;
+  const double core_from = std::max(direction.dot(from[0]), direction.dot(from[1])),
+               core_to = std::max(direction.dot(to[0]), direction.dot(to[1]));
+  double apart = most, way2 = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector3d end = path.at(triangle[k], 1);
+    apart = std::min(apart, std::min(direction.dot(start[k]) - core_from, direction.dot(end) - core_to));
+    way2 = std::max(way2, (end - start[k]).squaredNorm());
+  }
+  const double kept = kKeptAtEnd * (most - floor), way = std::sqrt(way2) + tool.travel(shape);
+  return apart > least && apart > floor + kept + kRounding && (apart - floor - kAim * kept) * kCertainSteps > way;
+}
+
 std::vector<char> shapesOnTip(const ToolModel& tool) {
   std::vector<char> carried(static_cast<std::size_t>(tool.linkCount()), 0);
   carried[tool.linkIndex("scope_tip")] = 1;
@@ -216,82 +238,6 @@ std::vector<char> shapesOnTip(const ToolModel& tool) {
   std::vector<char> on_tip;
   for (const ToolShape& shape : tool.shapes()) on_tip.push_back(carried[shape.link]);
   return on_tip;
-}
-
-NearTriangles::NearTriangles(const SurfaceMesh& surface, const std::vector<char>& passable)
-    : outside_(surface.vertices.size()) {
-  for (const std::array<int, 3>& n : surface.triangles)
-    if (passable[n[0]] == 0 && passable[n[1]] == 0 && passable[n[2]] == 0) triangles_.push_back(n);
-}
-
-void NearTriangles::classify(const Eigen::AlignedBox3d& box, const SurfacePath& path) {
-  std::fill(outside_.begin(), outside_.end(), static_cast<unsigned char>(0));
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double low = box.min()[static_cast<int>(k)], high = box.max()[static_cast<int>(k)];
-    const double *const from = path.from[k], *const to = path.to[k];
-    const unsigned below = 1U << (2 * k), above = 2U << (2 * k);
-    for (std::size_t i = 0; i < outside_.size(); ++i) {
-      const unsigned is_below = static_cast<unsigned>(from[i] < low) & static_cast<unsigned>(to[i] < low);
-      const unsigned is_above = static_cast<unsigned>(from[i] > high) & static_cast<unsigned>(to[i] > high);
-      outside_[i] = static_cast<unsigned char>(outside_[i] | (is_below * below) | (is_above * above));
-    }
-  }
-}
-
-void NearTriangles::collectBalls(const SurfacePath& path) {
-  balls_.clear();
-  for (int t = 0; t < static_cast<int>(triangles_.size()); ++t) {
-    const auto& [a, b, c] = triangles_[t];
-    if ((outside_[a] & outside_[b] & outside_[c]) != 0) continue;
-    Ball ball{t, (path.start(a) + path.start(b) + path.start(c)) / 3, 0, 0};
-    for (const int v : {a, b, c}) {
-      const Eigen::Vector3d from = path.start(v);
-      ball.radius = std::max(ball.radius, (from - ball.centre).squaredNorm());
-      ball.move = std::max(ball.move, (path.at(v, 1) - from).squaredNorm());
-    }
-    ball.radius = std::sqrt(ball.radius), ball.move = std::sqrt(ball.move);
-    if (std::isfinite(ball.centre.sum() + ball.radius + ball.move)) balls_.push_back(ball);
-  }
-}
-
-void NearTriangles::find(const SweptTool& tool, const SurfacePath& path, double reach, std::vector<Pair>& found) {
-  found.clear();
-  Eigen::AlignedBox3d all = tool.box();
-  all.min().array() -= reach, all.max().array() += reach;
-  classify(all, path);
-  collectBalls(path);
-  groupBalls(reach);
-  for (int s = 0; s < tool.count(); ++s)
-    for (const Group& group : groups_)
-      if (group.box.intersects(tool.box(s))) findIn(group, tool, s, reach, found);
-}
-
-// Triangles that follow each other are mostly neighbours.
-void NearTriangles::groupBalls(double reach) {
-  groups_.clear();
-  for (std::size_t first = 0; first < balls_.size(); first += kBallGroup) {
-    Group group{first, std::min(first + kBallGroup, balls_.size()), {}};
-    for (std::size_t i = group.first; i < group.last; ++i) {
-      const Eigen::Vector3d near = Eigen::Vector3d::Constant(balls_[i].radius + balls_[i].move + reach + kRounding);
-      group.box.extend(balls_[i].centre - near);
-      group.box.extend(balls_[i].centre + near);
-    }
-    groups_.push_back(group);
-  }
-}
-
-void NearTriangles::findIn(const Group& group, const SweptTool& tool, int shape, double reach,
-                           std::vector<Pair>& found) const {
-  const Eigen::Vector3d low = tool.box(shape).min(), high = tool.box(shape).max();
-  const auto [a, b] = tool.segment(shape, 0);
-  const double grown = tool.radius(shape) + tool.travel(shape) + reach;
-  for (std::size_t i = group.first; i < group.last; ++i) {
-    const Ball& ball = balls_[i];
-    const double near = ball.radius + ball.move + reach;
-    if (((ball.centre - high).array() > near).any() || ((low - ball.centre).array() > near).any()) continue;
-    const double apart = tool.hasSegment(shape) ? (ball.centre - nearestOnSegment(a, b, ball.centre)).norm() : 0;
-    if (apart <= grown + ball.radius + ball.move) found.push_back({shape, ball.triangle});
-  }
 }
 
 }  // namespace vibe

@@ -7,7 +7,6 @@
 
 #include "contact/shape_distance.hpp"
 #include "vibe_core/contact/tool_model.hpp"
-#include "vibe_core/geometry/surface_mesh.hpp"
 
 namespace vibe {
 
@@ -98,47 +97,13 @@ ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path,
 ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle,
                       double floor, const TriangleGap& start);
 
+/// Whether a shape with a segment and a triangle certainly stay apart: a direction separates them at both ends of the
+/// step, and with that throughout.
+/// @returns false if approach() might not reach fraction 1, or `nearest` be no more than `least`
+bool staysApart(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle,
+                double floor, double least);
+
 /// Per shape: it sits on the tip of the scope or on what the tip carries, such as the suturing device.
 std::vector<char> shapesOnTip(const ToolModel& tool);
-
-/// Pairs of shapes and triangles whose ways through a step come near each other.
-class NearTriangles {
- public:
-  struct Pair {
-    int shape, triangle;
-  };
-
-  /// @param passable  per vertex: the tool passes through the triangles there
-  NearTriangles(const SurfaceMesh& surface, const std::vector<char>& passable);
-
-  /// Those that the tool cannot pass.
-  const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
-
-  /// All pairs of shapes and triangles() that may come nearer than `reach`, by shape, then triangle. A triangle with a
-  /// vertex that is not finite is left out.
-  void find(const SweptTool& tool, const SurfacePath& path, double reach, std::vector<Pair>& found);
-
- private:
-  /// Balls that follow each other in the list, and a box around them with their paths.
-  struct Group {
-    std::size_t first, last;
-    Eigen::AlignedBox3d box;
-  };
-  void classify(const Eigen::AlignedBox3d& box, const SurfacePath& path);
-  void collectBalls(const SurfacePath& path);
-  void groupBalls(double reach);
-  void findIn(const Group& group, const SweptTool& tool, int shape, double reach, std::vector<Pair>& found) const;
-
-  std::vector<std::array<int, 3>> triangles_;
-  std::vector<unsigned char> outside_;  // per vertex, a bit per side of the tool's box beyond which its path lies
-  /// A triangle in the tool's box: a ball that holds it at the start, and its longest path.
-  struct Ball {
-    int triangle;
-    Eigen::Vector3d centre;
-    double radius, move;
-  };
-  std::vector<Ball> balls_;
-  std::vector<Group> groups_;
-};
 
 }  // namespace vibe

@@ -120,8 +120,10 @@ bool ToolGuard::isDrawnIn(const NearTriangles::Pair& pair) const {
 double ToolGuard::freePart(const NearTriangles::Pair& pair, const SurfacePath& path) const {
   const std::array<int, 3>& n = near_.triangles()[pair.triangle];
   const double radius = tool_.radius(pair.shape);
-  const TriangleGap gap = tool_.gap(pair.shape, 0, {path.start(n[0]), path.start(n[1]), path.start(n[2])});
   const double thinnest = std::min({thickness_[n[0]], thickness_[n[1]], thickness_[n[2]]});
+  const double highest_floor = radius + kKeptThickness * thinnest;
+  if (staysApart(tool_, pair.shape, path, n, highest_floor, highest_floor)) return 1;
+  const TriangleGap gap = tool_.gap(pair.shape, 0, {path.start(n[0]), path.start(n[1]), path.start(n[2])});
   if (gap.distance == 0) return 1;  // they crossed before
   const double outside = gap.distance - radius, nearer = outside > kLeastThickness * thinnest ? kNearer : kHardlyNearer;
   const double floor =

@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "contact/near_triangles.hpp"
 #include "contact/tool_approach.hpp"
 #include "contact/tool_motion.hpp"
 #include "vibe_core/contact/tool_model.hpp"

@@ -202,19 +202,28 @@ void addProduct(const HalfColumns& a, const Eigen::Vector3f& c, float* y) {
 // Runs of both in ascending order; the same run has the same rows for every node.
 void addScaled(const HalfColumns& b, float weight, HalfColumns& a) {
   HalfColumns sum;
+  sum.begin.reserve(a.begin.size() + b.begin.size());
+  sum.count.reserve(a.count.size() + b.count.size());
+  sum.value.resize(a.value.size() + b.value.size());
   std::size_t i = 0, j = 0;
   const float *va = a.value.data(), *vb = b.value.data();
+  float* to = sum.value.data();
   while (i < a.begin.size() || j < b.begin.size()) {
     const bool from_a = j == b.begin.size() || (i < a.begin.size() && a.begin[i] <= b.begin[j]);
     const bool from_b = i == a.begin.size() || (j < b.begin.size() && b.begin[j] <= a.begin[i]);
-    const std::int32_t count = from_a ? a.count[i] : b.count[j];
+    const std::int32_t count = 3 * (from_a ? a.count[i] : b.count[j]);
     sum.begin.push_back(from_a ? a.begin[i] : b.begin[j]);
-    sum.count.push_back(count);
-    for (std::int32_t r = 0; r < 3 * count; ++r)
-      sum.value.push_back((from_a ? *va++ : 0.0F) + (from_b ? weight * *vb++ : 0.0F));
+    sum.count.push_back(count / 3);
+    if (from_a && from_b)
+      for (std::int32_t r = 0; r < count; ++r) to[r] = va[r] + weight * vb[r];
+    else
+      for (std::int32_t r = 0; r < count; ++r) to[r] = from_a ? va[r] + 0.0F : 0.0F + weight * vb[r];
+    to += count;
+    va += from_a ? count : 0, vb += from_b ? count : 0;
     i += from_a ? 1 : 0;
     j += from_b ? 1 : 0;
   }
+  sum.value.resize(static_cast<std::size_t>(to - sum.value.data()));
   std::swap(a, sum);
 }
 
