@@ -37,7 +37,7 @@ constexpr double kKnownRotation = 0.3;  // greatest deviation of a prediction th
 constexpr double kNear = 3;             // deviations of a prediction
 constexpr double kNearbyReach = 2.5;    // the same
 constexpr double kSameMotion = 0.2, kSameBend = 0.03;  // during the exposure, between prediction and fit [px]
-constexpr int kFirstLooks = 16, kLookEvery = 4;        // frames; to look for a shear costs as much as a step of the fit
+constexpr int kFirstLooks = 16, kLookEvery = 4;        // frames; to look for a shear costs half a step of the fit
 constexpr double kTellingSpeed = 0.05;                 // from which a picture would be sheared [m/s]
 constexpr double kUncheckedShift = 2.5e-4;             // standard deviation that is worth a doubt [m]
 constexpr double kUneven = 0.028;  // bars apart, by optics that blur not as a Gaussian, per square of the blur [1/px]
