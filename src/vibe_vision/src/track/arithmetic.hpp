@@ -12,6 +12,9 @@ namespace vibe::vision {
 using Four [[gnu::vector_size(16)]] = float;
 constexpr std::size_t kFourSize = 4;
 
+/// Two of them, anywhere in an array of floats; one register in a function with VIBE_LANES.
+using Eight [[gnu::vector_size(32), gnu::aligned(4), gnu::may_alias]] = float;
+
 inline Four loadFour(const float* p) {
   Four v;
   __builtin_memcpy(&v, p, sizeof v);

@@ -141,26 +141,30 @@ void AxisMap::gatherRow(const Frame& frame, const PixelWindow& rect, int y, int 
   const std::uint8_t* values = in_frame ? frame.image.row(v) : nullptr;
   const std::uint8_t* dead =
       any_saturated_ ? saturated_.data() + static_cast<std::ptrdiff_t>(y - rect.y) * rect.width : nullptr;
-  std::size_t n = pixels.count;
   const float *along = along_.data() + row.first - row.begin, *lateral = lateral_.data() + row.first - row.begin;
-  const auto add = [&](int x, float value, float weight) {
-    const float a = along[x], b = lateral[x];
-    pixels.along[n] = a, pixels.lateral[n] = b, pixels.value[n] = value, pixels.weight[n] = weight;
-    n += std::abs(a - centre_x) <= reach_x && std::abs(b - centre_y) <= reach_y ? 1 : 0;
+  const auto within = [&](int x) {
+    return std::abs(along[x] - centre_x) <= reach_x && std::abs(lateral[x] - centre_y) <= reach_y;
   };
-  const int room = static_cast<int>((pixels.capacity() - n) * 2);
-  const int stop = std::min(end, begin + room);
-  if (in_frame && dead == nullptr && begin >= frame.offset_x && end <= frame.offset_x + frame.image.width) {
-    for (int x = begin; x < stop; x += 2) add(x, static_cast<float>(values[x - frame.offset_x]), 1.F);
-  } else {
-    for (int x = begin; x < stop; x += 2) {
-      const int u = x - frame.offset_x;
-      const bool seen = in_frame && u >= 0 && u < frame.image.width;
-      add(x, seen ? static_cast<float>(values[u]) : 0.F,
-          seen && (dead == nullptr || dead[x - rect.x] == 0) ? 1.F : 0.F);
-    }
+  while (begin < end && !within(begin)) begin += 2;  // what is within is one piece of the row
+  int last = begin + (end - 1 - begin) / 2 * 2;
+  while (last > begin && !within(last)) last -= 2;
+  if (begin >= end) return;
+  const int room = static_cast<int>(pixels.capacity() - pixels.count), count = std::min((last - begin) / 2 + 1, room);
+  float *px = pixels.along.data() + pixels.count, *py = pixels.lateral.data() + pixels.count;
+  float *value = pixels.value.data() + pixels.count, *weight = pixels.weight.data() + pixels.count;
+  pixels.count += static_cast<std::size_t>(count);
+  for (int i = 0; i < count; ++i) px[i] = along[begin + 2 * i], py[i] = lateral[begin + 2 * i];
+  if (in_frame && dead == nullptr && begin >= frame.offset_x && last < frame.offset_x + frame.image.width) {
+    const std::uint8_t* seen = values + (begin - frame.offset_x);
+    for (int i = 0; i < count; ++i) value[i] = static_cast<float>(seen[2 * i]), weight[i] = 1;
+    return;
   }
-  pixels.count = n;
+  for (int i = 0; i < count; ++i) {
+    const int x = begin + 2 * i, u = x - frame.offset_x;
+    const bool seen = in_frame && u >= 0 && u < frame.image.width;
+    value[i] = seen ? static_cast<float>(values[u]) : 0;
+    weight[i] = seen && (dead == nullptr || dead[x - rect.x] == 0) ? 1.F : 0.F;
+  }
 }
 
 void AxisMap::readBand(const Frame& frame, double begin, double end, double half_width, AxisProfile& profile) const {
@@ -168,8 +172,10 @@ void AxisMap::readBand(const Frame& frame, double begin, double end, double half
   std::fill(profile.count.begin(), profile.count.end(), 0.F);
   profile.pixels = profile.saturated = 0;
   const PixelWindow rect = boundsOf({(begin + end) / 2, 0}, {(end - begin) / 2, half_width});
-  const auto low = static_cast<float>(begin), high = static_cast<float>(end), width = static_cast<float>(half_width);
-  const auto first = static_cast<float>(profile.first - 0.5), bins = static_cast<float>(profile.sum.size());
+  const auto first = static_cast<float>(profile.first - 0.5), width = static_cast<float>(half_width);
+  const float low = std::max(static_cast<float>(begin) - first, 0.F);
+  const float high = std::min(static_cast<float>(end) - first, static_cast<float>(profile.sum.size()));
+  float *sum = profile.sum.data(), *count = profile.count.data();
   const int top = std::max({rect.y, first_row_, frame.offset_y});
   const int bottom = std::min(
       {rect.y + rect.height, first_row_ + static_cast<int>(rows_.size()), frame.offset_y + frame.image.height});
@@ -178,18 +184,18 @@ void AxisMap::readBand(const Frame& frame, double begin, double end, double half
     const std::uint8_t* values = frame.image.row(y - frame.offset_y);
     const int from = std::max({rect.x, row.begin, frame.offset_x});
     const int to = std::min({rect.x + rect.width, row.end, frame.offset_x + frame.image.width});
+    const float *along = along_.data() + row.first - row.begin, *lateral = lateral_.data() + row.first - row.begin;
     for (int x = from; x < to; ++x) {
-      const float a = along_[row.first + (x - row.begin)], b = lateral_[row.first + (x - row.begin)];
-      const float bin = a - first;
-      if (!(a >= low && a <= high && std::abs(b) <= width && bin >= 0 && bin < bins)) continue;
+      const float bin = along[x] - first;
+      if (!(bin >= low && bin < high && std::abs(lateral[x]) <= width)) continue;
       const std::uint8_t value = values[x - frame.offset_x];
-      const auto i = static_cast<std::size_t>(bin);
-      profile.sum[i] += static_cast<float>(value);
-      profile.count[i] += 1;
-      ++profile.pixels;
-      profile.saturated += value >= kSaturated ? 1 : 0;
+      const int i = static_cast<int>(bin);
+      sum[i] += static_cast<float>(value);
+      count[i] += 1;
+      if (value >= kSaturated) ++profile.saturated;
     }
   }
+  for (const float n : profile.count) profile.pixels += static_cast<int>(n);
 }
 
 }  // namespace vibe::vision

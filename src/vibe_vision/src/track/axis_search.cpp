@@ -37,31 +37,46 @@ SearchTemplate::SearchTemplate(const MarkerPattern& pattern, double motion, doub
     for (int j = 0; j <= k; ++j)
       products(j, k) = products(k, j) = std::inner_product(p.begin(), p.end(), profiles_[j].begin(), 0.0, std::plus<>(),
                                                            [](double a, double b) { return a * b; });
-    p.resize((p.size() + kFourSize - 1) / kFourSize * kFourSize, 0);
+    p.resize((p.size() + kLanes - 1) / kLanes * kLanes, 0);
   }
   inverse_ = products.inverse();
 }
 
-SearchTemplate::Match SearchTemplate::match(const AxisSamples& samples, std::size_t place) const {
-  const std::size_t begin = place - static_cast<std::size_t>(half_), end = place + static_cast<std::size_t>(half_) + 1;
-  const double n = 2 * half_ + 1;
-  if (samples.seen(begin, end) < 2 * half_ + 1) return matchPart(samples, begin);
-  Four sums[3] = {};
-  const float* f = samples.data() + begin;
-  for (std::size_t i = 0; i < profiles_[0].size(); i += kFourSize) {
-    const Four value = loadFour(f + i);
-    sums[0] += value * loadFour(profiles_[0].data() + i);
-    if (count_ == 1) continue;
-    sums[1] += value * loadFour(profiles_[1].data() + i);
-    sums[2] += value * loadFour(profiles_[2].data() + i);
+namespace {
+
+/// Products of values with each profile. @param size  of the profiles, a multiple of kLanes
+VIBE_LANES void multiply(const float* values, const std::array<std::vector<float>, 3>& profiles, int count,
+                         double* products) {
+  const float *p = profiles[0].data(), *q = profiles[1].data(), *r = profiles[2].data();
+  const std::size_t size = profiles[0].size();
+  Eight sums[3] = {};
+  for (std::size_t i = 0; i < size; i += kLanes) {
+    const Eight value = *reinterpret_cast<const Eight*>(values + i);
+    sums[0] += value * *reinterpret_cast<const Eight*>(p + i);
+    if (count == 1) continue;
+    sums[1] += value * *reinterpret_cast<const Eight*>(q + i);
+    sums[2] += value * *reinterpret_cast<const Eight*>(r + i);
   }
-  const Eigen::Vector3d products(total(sums[0]), total(sums[1]), total(sums[2]));
-  const double sum = samples.sum(begin, end);
-  const Eigen::Vector3d parts = inverse_ * products;
-  return describe(parts, parts.dot(products), samples.squares(begin, end) - sum * sum / n);
+  for (int k = 0; k < count; ++k) {
+    const float* e = reinterpret_cast<const float*>(&sums[k]);
+    products[k] = total(loadFour(e) + loadFour(e + kFourSize));
+  }
 }
 
-SearchTemplate::Match SearchTemplate::matchPart(const AxisSamples& samples, std::size_t begin) const {
+}  // namespace
+
+SearchTemplate::Match SearchTemplate::match(const AxisSamples& samples, std::size_t place, double least) const {
+  const std::size_t begin = place - static_cast<std::size_t>(half_), end = place + static_cast<std::size_t>(half_) + 1;
+  const double n = 2 * half_ + 1;
+  if (samples.seen(begin, end) < 2 * half_ + 1) return matchPart(samples, begin, least);
+  Eigen::Vector3d products = Eigen::Vector3d::Zero();
+  multiply(samples.data() + begin, profiles_, count_, products.data());
+  const double sum = samples.sum(begin, end);
+  const Eigen::Vector3d parts = inverse_ * products;
+  return describe(parts, parts.dot(products), samples.squares(begin, end) - sum * sum / n, least);
+}
+
+SearchTemplate::Match SearchTemplate::matchPart(const AxisSamples& samples, std::size_t begin, double least) const {
   const std::size_t size = 2 * static_cast<std::size_t>(half_) + 1;
   if (2 * samples.seen(begin, begin + size) < static_cast<int>(size)) return {};
   Eigen::Matrix4d gram = Eigen::Matrix4d::Zero();
@@ -79,13 +94,14 @@ SearchTemplate::Match SearchTemplate::matchPart(const AxisSamples& samples, std:
   const double n = gram(3, 3), sum = products[3];
   gram.diagonal().array() += 1e-6 * n;
   const Eigen::Vector4d parts = gram.ldlt().solve(products);
-  return describe(parts.head<3>(), parts.dot(products) - sum * sum / n, squares - sum * sum / n);
+  return describe(parts.head<3>(), parts.dot(products) - sum * sum / n, squares - sum * sum / n, least);
 }
 
-SearchTemplate::Match SearchTemplate::describe(const Eigen::Vector3d& parts, double explained, double spread) const {
+SearchTemplate::Match SearchTemplate::describe(const Eigen::Vector3d& parts, double explained, double spread,
+                                               double least) const {
   Match match;
   match.contrast = parts[0];
-  if (spread <= 0 || explained <= 0 || parts[0] <= 0) return match;
+  if (spread <= 0 || explained <= least * least * spread || parts[0] <= 0) return match;
   match.correlation = std::sqrt(std::min(1.0, explained / spread));
   match.turn = std::hypot(parts[1], parts[2]) / parts[0];
   match.rotation = std::atan2(parts[2], parts[1]);
@@ -98,9 +114,10 @@ constexpr double kMotionStep = 4;  // between templates [px]
 constexpr int kMotions = 9;
 constexpr double kFirstMotion = 1;  // [px]
 constexpr double kScales[] = {0.93, 1, 1.075};
-constexpr double kMinCorrelation = 0.4;  // of a candidate
-constexpr double kMaxTurn = 1.7;         // what the rotation adds, relative to what it can add: noise and other things
-constexpr int kMinDistance = 4;          // between candidates [px]
+constexpr double kMinCorrelation = 0.4;     // of a candidate,
+constexpr double kLeastCorrelation = 0.25;  // of a place beside one
+constexpr double kMaxTurn = 1.7;  // what the rotation adds, relative to what it can add: noise and other things
+constexpr int kMinDistance = 4;   // between candidates [px]
 
 std::vector<SearchTemplate> makeTemplates(const MarkerPattern& pattern) {
   std::vector<SearchTemplate> templates;
@@ -138,7 +155,11 @@ const AxisSearch::Result& AxisSearch::run(const AxisMap& map, const Frame& frame
   const auto bins = static_cast<int>(samples_.size());
   const int from = std::clamp(static_cast<int>(std::floor(begin - first_)), reach_, bins - reach_);
   const int to = std::clamp(static_cast<int>(std::ceil(end - first_)) + 1, from, bins - reach_);
-  for (int i = from; i < to; ++i) best_[i] = bestAt(static_cast<std::size_t>(i), max_motion, min_contrast);
+  for (int i = from; i < to; i += 2) best_[i] = bestAt(static_cast<std::size_t>(i), max_motion, min_contrast);
+  for (int i = from + 1; i < to; i += 2) {  // only between places that look a little like it
+    const double around = std::max(best_[i - 1].score, i + 1 < to ? best_[i + 1].score : 0);
+    best_[i] = around > 0 ? bestAt(static_cast<std::size_t>(i), max_motion, min_contrast) : Candidate();
+  }
   for (int i = from; i < to; ++i) {
     const bool peak =
         (i == from || best_[i].score > best_[i - 1].score) && (i + 1 == to || best_[i].score >= best_[i + 1].score);
@@ -166,7 +187,7 @@ AxisSearch::Candidate AxisSearch::bestAt(std::size_t place, double max_motion, d
   best.along = first_ + static_cast<double>(place);
   for (const SearchTemplate& t : templates_) {
     if (t.motion() > max_motion + kMotionStep) break;
-    const SearchTemplate::Match match = t.match(samples_, place);
+    const SearchTemplate::Match match = t.match(samples_, place, std::max(best.score, kLeastCorrelation));
     if (match.correlation <= best.score || match.contrast < 0.4 * min_contrast || match.turn > kMaxTurn) continue;
     best.score = match.correlation, best.motion = t.motion(), best.scale = t.scale();
     best.rotation = match.rotation, best.shows_rotation = match.turn > 0;

@@ -49,11 +49,12 @@ class SearchTemplate {
     double rotation = 0;  ///< [rad]
   };
   /// @param place  of the middle. All under the template must be within the samples; at least half must be seen
-  Match match(const AxisSamples& samples, std::size_t place) const;
+  /// @param least  correlation: below it, there is no match
+  Match match(const AxisSamples& samples, std::size_t place, double least = 0) const;
 
  private:
-  Match describe(const Eigen::Vector3d& parts, double explained, double spread) const;
-  Match matchPart(const AxisSamples& samples, std::size_t begin) const;
+  Match describe(const Eigen::Vector3d& parts, double explained, double spread, double least) const;
+  Match matchPart(const AxisSamples& samples, std::size_t begin, double least) const;
 
   double motion_, scale_;
   int half_ = 0, count_ = 1;                           ///< profiles

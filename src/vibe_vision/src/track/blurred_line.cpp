@@ -10,7 +10,7 @@ namespace vibe::vision {
 
 namespace {
 
-constexpr double kStepReach = 6;  // standard deviations after which a step is over
+constexpr double kStepReach = BlurredLine::kReach;
 
 /// Adds a step from 0 to `sign` at distance 0, blurred. The area of a pixel has a negative fourth cumulant, -w^4 / 120,
 /// the first term of the Edgeworth series (Kendall's Advanced Theory of Statistics, volume 1, 6.18).
@@ -129,6 +129,9 @@ void MovingLine::compose(float low, float high, float half_motion, const MotionP
   levels_ = std::clamp(1 + static_cast<int>(std::ceil(range / (kVarianceStepRatio * low))), 2, max_levels_);
   step_ = range / static_cast<float>(levels_ - 1);
   half_motion_ = std::min(half_motion, kMaxHalfMotion);
+  const float nothing = std::max(line_.margin(high) - half_motion_ * 1.5F, 0.0F) * kPerPixel;
+  first_ = static_cast<std::size_t>(nothing);
+  last_ = size_ - 1 - first_;
   for (int level = 0; level < levels_; ++level)
     composeLevel(low_ + static_cast<float>(level) * step_, parts,
                  table_.data() + static_cast<std::size_t>(level) * size_ * kFourSize);
@@ -137,25 +140,34 @@ void MovingLine::compose(float low, float high, float half_motion, const MotionP
 void MovingLine::composeLevel(float variance, const MotionParts& parts, float* table) const {
   const BlurredLine::Level level = line_.levelOf(variance);
   const float more = variance - level.variance, mean = line_.mean();
-  std::fill_n(table, size_ * kFourSize, 0.0F);
   float before = 0, base = 1;
   for (int k = 0; k <= parts.count; ++k) {
     const float length = k < parts.count ? half_motion_ * (parts.place[k + 1] - parts.place[k]) : 0;
     const float weight = k < parts.count ? 1 / (length * static_cast<float>(parts.count)) : 0, w = weight - before;
     const Shift shift(-half_motion_ * parts.place[k], more);
     const Four factor{w, w, w, 0};
-    for (std::size_t i = 0; i < size_; ++i) {
-      const Four entry = loadFour(line_.entry(level, static_cast<int>(i) * kStride + shift.steps));
-      store(table + i * kFourSize, loadFour(table + i * kFourSize) + shift.of(entry) * factor);
-    }
     base -= w * shift.first[0];  // integrals are without the mean
+    const Four rest{k == parts.count ? mean * base : 0, 0, 0, 0};
+    const auto add = [&](std::size_t i, const float* entry) {
+      const Four sum = k == 0 ? Four{} : loadFour(table + i * kFourSize);
+      store(table + i * kFourSize, sum + shift.of(loadFour(entry)) * factor + rest);
+    };
+    const int begin = static_cast<int>(first_) * kStride + shift.steps;
+    const int end = static_cast<int>(last_) * kStride + shift.steps;
+    if (line_.has(begin) && line_.has(end)) {
+      const float* entry = line_.entry(level, begin);
+      for (std::size_t i = first_; i <= last_; ++i, entry += kStride * kFourSize) add(i, entry);
+    } else {
+      for (std::size_t i = first_; i <= last_; ++i)
+        add(i, line_.entry(level, static_cast<int>(i) * kStride + shift.steps));
+    }
     before = weight;
   }
-  for (std::size_t i = 0; i < size_; ++i) table[i * kFourSize] += mean * base;
 }
 
 VIBE_LANES void MovingLine::look(const Places& places, std::size_t count, const Result& result) const {
-  const float last = static_cast<float>(size_ - 1), per_step = 1 / step_, top = static_cast<float>(levels_ - 1);
+  const float first = static_cast<float>(first_), last = static_cast<float>(last_), per_step = 1 / step_,
+              top = static_cast<float>(levels_ - 1);
   const float square = half_motion_ * half_motion_, low = low_, step = step_, stride = static_cast<float>(size_);
   const BlurredLine::Wrap wrap = line_.wrap();
   alignas(16) float d[kPart], s[kPart];
@@ -163,7 +175,7 @@ VIBE_LANES void MovingLine::look(const Places& places, std::size_t count, const 
   const float* __restrict x = places.x, * __restrict variance = places.variance, * __restrict half = places.half_motion;
   for (std::size_t i = 0; i < count; ++i) {
     float place = wrap.at(x[i]) * kPerPixel;
-    place = place < 0 ? 0 : place;
+    place = place < first ? first : place;
     place = place > last ? last : place;
     // A longer motion is a blur with more variance.
     const float all = variance[i] + (half[i] * half[i] - square) * (1.0F / 3);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -24,6 +25,7 @@ class BlurredLine {
     float integral, value, slope, bend;
   };
   static constexpr float kMaxVariance = 25;  ///< [px^2]
+  static constexpr float kReach = 6;         ///< standard deviations after which an edge is over
 
   /// @param period  0: none
   /// @param min_variance  the smallest one that is asked for [px^2]
@@ -32,6 +34,10 @@ class BlurredLine {
 
   float mean() const { return mean_; }      ///< blackness of a periodic line
   float length() const { return length_; }  ///< of a period, or of what has tables [px]
+  /// From which on there is nothing, before and behind a line that is not periodic: [px] from the ends of its tables.
+  float margin(float variance) const {
+    return period_ > 0 ? 0 : kReach * (std::sqrt(kMaxVariance) - std::sqrt(variance));
+  }
 
   struct Level {
     std::size_t first;  ///< entry
@@ -51,6 +57,7 @@ class BlurredLine {
     place = place < 0 ? 0 : (place > last_ ? last_ : place);
     return &entries_[level.first + static_cast<std::size_t>(place)].integral;
   }
+  bool has(int place) const { return place + margin_ >= 0 && place + margin_ <= last_; }
   static constexpr int kMargin = 26;  ///< [px]
   /// Distance from the beginning of the line or period.
   struct Wrap {
@@ -137,7 +144,8 @@ class MovingLine {
 
   const BlurredLine& line_;
   int max_levels_, levels_ = 2;
-  std::size_t size_;  ///< entries of a level
+  std::size_t size_;                  ///< entries of a level
+  std::size_t first_ = 0, last_ = 0;  ///< entries; before and behind there is nothing
   float low_ = 0, step_ = 1, half_motion_ = 0;
   std::vector<float> table_;  ///< value, slope, second derivative, 0
 };

@@ -37,7 +37,7 @@ constexpr double kKnownRotation = 0.3;  // greatest deviation of a prediction th
 constexpr double kNear = 3;             // deviations of a prediction
 constexpr double kNearbyReach = 2.5;    // the same
 constexpr double kSameMotion = 0.2, kSameBend = 0.03;  // during the exposure, between prediction and fit [px]
-constexpr int kFirstLooks = 16, kLookEvery = 4;        // frames; to look for a shear costs as much as a step of the fit
+constexpr int kFirstLooks = 16, kLookEvery = 4;        // frames; to look for a shear costs half a step of the fit
 constexpr double kTellingSpeed = 0.05;                 // from which a picture would be sheared [m/s]
 constexpr double kUncheckedShift = 2.5e-4;             // standard deviation that is worth a doubt [m]
 constexpr double kUneven = 0.028;  // bars apart, by optics that blur not as a Gaussian, per square of the blur [1/px]
@@ -133,8 +133,10 @@ MarkerMotion InstrumentTracker::motionAt(const MotionFilter::State& slide, doubl
   return {slide.mean[1] * exposure * scale, slide.mean[2] * square(exposure) / 16 * scale};
 }
 
-double InstrumentTracker::fastestMotion(const Frame& frame) const {
-  return config_.motion.max_speed * frame.exposure * config_.axis.pixels_per_metre;
+MarkerMotion InstrumentTracker::fastestMotion(const Frame& frame) const {
+  const double scale = config_.axis.pixels_per_metre;
+  return {config_.motion.max_speed * frame.exposure * scale,
+          config_.motion.max_acceleration * square(frame.exposure) / 16 * scale};
 }
 
 /// What was learnt may be wrong if it finds nothing.
@@ -164,21 +166,21 @@ bool InstrumentTracker::follow(const Frame& frame, const Prediction& prediction)
   if (reason_ == LostReason::None && !isExpected(fit, prediction, frame.stamp)) reason_ = LostReason::Jump;
   if (reason_ != LostReason::None) return false;
   accept(frame, fit, prediction, false);
-  lookForDistortions(frame, prior, fit);
+  lookForDistortions(frame, fit);
   stateDoubts(frame);
   return true;
 }
 
 /// Rows that are exposed one after the other shear the picture of a marker that moves along them. In the first frames
 /// every picture is looked at. What covers a marker distorts it, too.
-void InstrumentTracker::lookForDistortions(const Frame& frame, const FitPrior& prior, const MarkerFit& fit) {
+void InstrumentTracker::lookForDistortions(const Frame& frame, const MarkerFit& fit) {
   const double scale = pixelsPerMetre(config_.axis, last_slide_);
   const double speed = slide_.predict(frame.stamp).mean[1] * scale;
   if (fit.visible < kGoodLook || std::abs(speed) < kTellingSpeed * scale) return;
   if (++looks_ > kFirstLooks && looks_ % kLookEvery != 0) return;
   const FitPrior unlearnt = unknown_.prior(last_slide_);
   const Sight sight = sightAt(fit);
-  const Distortions found = fitter_.distortions(fit, prior, unlearnt, sight);
+  const Distortions found = fitter_.distortions(unlearnt, sight);
   const double uneven = fitter_.shows(kRotation) ? kUneven * square(fit.x[kBlur]) : 0;
   doubts_.addBend(found.bend);
   doubts_.addRelief(found.relief, fitter_.pattern().rim(), sight.slope, uneven);
@@ -254,7 +256,7 @@ bool InstrumentTracker::searchNearby(const Frame& frame, const Prediction& predi
 bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& prediction, double begin, double end) {
   const double from = alongOf(config_.axis, std::max(begin, config_.lower));
   const double to = alongOf(config_.axis, std::min(end, config_.upper));
-  const double fastest = fastestMotion(frame);
+  const double fastest = fastestMotion(frame).length;
   const AxisSearch::Result& found = search_.run(map_, frame, from - kMargin, to + kMargin, fastest, min_contrast_);
   MarkerFit best;
   best.loss = 1e9;
@@ -279,7 +281,7 @@ bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& predic
     return false;
   }
   accept(frame, best, prediction, true);
-  if (is_last && prediction.known) lookForDistortions(frame, searchPrior(last_slide_), best);
+  if (is_last && prediction.known) lookForDistortions(frame, best);
   stateDoubts(frame);
   return true;
 }
@@ -287,7 +289,7 @@ bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& predic
 MarkerFit InstrumentTracker::tryCandidate(const Frame& frame, const Prediction& prediction,
                                           const AxisSearch::Candidate& candidate) {
   const double slide = slideOf(config_.axis, candidate.along);
-  const double fastest = fastestMotion(frame);
+  const MarkerMotion fastest = fastestMotion(frame);
   const bool known_rotation =
       prediction.known && rotation_.started() && prediction.rotation.deviation() < kKnownRotation;
   const FitPrior prior = searchPrior(slide);

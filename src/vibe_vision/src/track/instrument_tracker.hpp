@@ -31,13 +31,13 @@ class InstrumentTracker {
   MarkerMotion motionAt(const MotionFilter::State& slide, double exposure) const;
   FitVector startAt(double slide, const FitPrior& prior, const Prediction& prediction) const;
   bool follow(const Frame& frame, const Prediction& prediction);
-  void lookForDistortions(const Frame& frame, const FitPrior& prior, const MarkerFit& fit);
+  void lookForDistortions(const Frame& frame, const MarkerFit& fit);
   Sight sightAt(const MarkerFit& fit) const;
   void stateDoubts(const Frame& frame);
   void correctMotion(const Frame& frame, const FitPrior& prior, MarkerFit& fit);
   bool search(const Frame& frame, const Prediction& prediction);
   bool searchNearby(const Frame& frame, const Prediction& prediction);
-  double fastestMotion(const Frame& frame) const;  ///< [px]
+  MarkerMotion fastestMotion(const Frame& frame) const;
   bool searchRange(const Frame& frame, const Prediction& prediction, double begin, double end);
   MarkerFit tryCandidate(const Frame& frame, const Prediction& prediction, const AxisSearch::Candidate& candidate);
   FitPrior searchPrior(double slide) const;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "track/arithmetic.hpp"
+
 namespace vibe::vision {
 
 namespace {
@@ -12,16 +14,22 @@ namespace {
 constexpr std::size_t kMinPixels = 48;
 constexpr double kConverged = 0.03;         // a step after which the next would change nothing that matters [px]
 constexpr double kMaxStep = 3;              // [px]
+constexpr double kAligned = 0.2;            // the same of a step of the coarse alignment [px]
 constexpr double kMotionTrials[] = {2, 1};  // [px]
 constexpr double kTellingMotion = 6;        // from which what is seen where edges meet tells the motion [px]
 constexpr int kMotionRefinements = 10;      // trials of a motion,
 constexpr double kStrangeMotion = 1.5, kMotionDoubt = 4;  // misfit from which a predicted one is wrong, by up to [px]
 constexpr double kWorthRefining = 0.35;                   // loss of a pixel up to which it may be the marker
 constexpr double kMotionRefined = 0.2;                    // until a step is this short [px]
-constexpr double kMotionUncertainty = 0.3;                // of the edges while it is tried [px]
-constexpr double kMinUncertainty = 0.3;                   // of a prediction [px]
-constexpr double kCoarseBlur = 2.4, kMiddleBlur = 0.9;    // more than the camera's [px]
-constexpr double kSureGamma = 0.01;                       // standard deviation from which it is looked for no more
+constexpr double kLateralTrial = 1.5;                     // [px]
+constexpr int kLateralTrials = 6;
+constexpr double kBendStep = 0.1;                       // [px]
+constexpr double kGuessedLight = 0.05;                  // standard deviation of the light on a rod, after one frame
+constexpr double kMotionUncertainty = 0.3;              // of the edges while it is tried [px]
+constexpr double kLessUncertain = 5;                    // of that, from step to step
+constexpr double kMinUncertainty = 0.3;                 // of a prediction [px]
+constexpr double kCoarseBlur = 2.4, kMiddleBlur = 0.9;  // more than the camera's [px]
+constexpr double kSureGamma = 0.01;                     // standard deviation from which it is looked for no more
 constexpr double kLeastGamma = 0.8, kMostGamma = 3;
 constexpr double kUnknownGamma = 0.1;  // standard deviation from which a search tries another one,
 constexpr double kCommonGamma = 2.2;   // that of many cameras
@@ -36,10 +44,12 @@ constexpr double kHopeless = 0.8;      // loss of a pixel after the coarse align
 constexpr double kVeryHopeless = 0.8;  // before size and tilt are known
 constexpr double kPoor = 0.25;         // loss of a pixel from which the rotation may be wrong
 constexpr int kAlignSteps = 3;
-constexpr double kPrepareBlur = 0.05, kPrepareScale = 0.01;  // changes after which the picture is made anew [px], 1
-constexpr double kPlaceTrial = 1.5;                          // [px]
-constexpr double kSeenAsWhole = 0.9;                         // visible share of a marker that nothing covers
-constexpr double kCoverShift = 0.12, kCoverTurn = 0.02;      // by what covers a sleeve [px], [rad]
+// Changes after which the picture is made anew: of blur and motion [px], size, tilt and slant, of the place [px].
+constexpr double kPrepareBlur = 0.05, kPrepareMotion = 0.01, kPrepareScale = 0.01, kPrepareTurn = 0.02;
+constexpr double kPreparePlace = 4;
+constexpr double kPlaceTrial = 1.5;                      // [px]
+constexpr double kSeenAsWhole = 0.9;                     // visible share of a marker that nothing covers
+constexpr double kCoverShift = 0.12, kCoverTurn = 0.02;  // by what covers a sleeve [px], [rad]
 constexpr double kQuarterEnough = 0.9;  // seen share of a marker from which a quarter of the pixels show where it is
 constexpr int kFollowSteps = 12, kAcquireSteps = 14;  // a covered marker needs many
 // A fit that still moves that far [px] with step 1, 2, ... is on something else: markers are well below half of it.
@@ -69,14 +79,18 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
   fit.x = start;
   fit.motion = motion;
   if (!read(map, frame, fit)) return fit;
-  pattern_->prepare(poseOf(fit.x), motion);
+  prepare(fit);
   seen_ > kQuarterEnough ? useQuarter() : useHalf();
   fit_.evaluate(fit.x, pixels_);
   fit_.startLevels(pixels_, fit.x);
-  const FitStep step = fit_.step(fit.x, prior, pixels_, {std::max(uncertainty, kMinUncertainty), FitScope::Position});
+  for (const FitScope scope : {FitScope::Position, FitScope::All}) {
+    const double doubt = scope == FitScope::Position ? std::max(uncertainty, kMinUncertainty) : 0;
+    if (scope == FitScope::All) fit_.evaluate(fit.x, pixels_);
+    const FitStep step = fit_.step(fit.x, prior, pixels_, {doubt, scope});
+    if (!step.valid) return fit;
+    take(step, fit);
+  }
   useAll();
-  if (!step.valid) return fit;
-  take(step, fit);
   refine(fit, prior, 0, kFollowSteps);
   if (fit.valid && fit.misfit > kStrangeMotion && isMotionLong(fit))
     refineMotion(fit, prior, std::abs(motion.length) + kMotionDoubt);
@@ -84,6 +98,7 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
   if (light_.isRound() && fit.valid && fit.visible > kLearnVisible) {
     useQuarter();
     fit_.learnLight(fit.x, pixels_, light_);
+    useAll();
   }
   return fit;
 }
@@ -94,16 +109,10 @@ void MarkerFitter::repeat(MarkerFit& fit, const FitPrior& prior, const MarkerMot
   refine(fit, prior, 0, kFollowSteps);
 }
 
-Distortions MarkerFitter::distortions(const MarkerFit& fit, const FitPrior& prior, const FitPrior& unlearnt,
-                                      const Sight& sight) {
-  useHalf();
-  fit_.evaluate(fit.x, pixels_);
-  const FitStep step = fit_.step(fit.x, prior, pixels_, {});
-  return step.valid ? fit_.distortions(fit.x, prior, unlearnt, pixels_, sight) : Distortions{};
-}
-
 MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
-                                double motion, double max_motion, bool known_rotation, double reach) {
+                                double motion, const MarkerMotion& most, bool known_rotation, double reach) {
+  const double max_motion = most.length;
+  most_bend_ = most.bend;
   MarkerFit fit = acquireWithAnyResponse(map, frame, start, prior, motion, max_motion, known_rotation, reach);
   // Only now: another motion would also explain some of what a response does.
   const bool strange = light_.isRound() && fit.valid && fit.misfit > kStrangeMotion && !isMotionLong(fit);
@@ -138,14 +147,14 @@ MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const Fit
   fit.x[kBlur] = blur + (observed_[kRotation] ? kMiddleBlur : kCoarseBlur);
   const bool guess = !light_.known() || ++tries_ > kGuessAfter;
   if (!read(map, frame, fit, guess)) return fit;
-  useHalf();
+  observed_[kRotation] ? useHalf() : useQuarter();
   if (reach > 0) choosePlace(fit, reach);
   if (!align(fit, prior, FitScope::Position)) return fit;
   if (!observed_[kRotation] && fit.loss > kVeryHopeless) return fit;  // else the rotation may be wrong
   fit.x[kBlur] = blur + kMiddleBlur;
   if (observed_[kRotation] && (!known_rotation || fit.loss > kPoor)) chooseRotation(fit);
   if (!read(map, frame, fit)) return fit;
-  useHalf();
+  observed_[kRotation] ? useHalf() : useQuarter();
   if (!align(fit, prior, FitScope::Shape) || fit.loss > kHopeless) return fit;
   // The blur is not that of the prior if the camera is out of focus: edges along the motion tell it, and thin bars.
   if (!align(fit, prior, FitScope::All)) return fit;
@@ -160,9 +169,13 @@ MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const Fit
     refine(fit, prior, 0, kAcquireSteps);
     if (fit.valid) tries_ = 0;
   }
-  if (!isMotionLong(fit) || fit.visible < kLearnVisible) return fit;
-  learnLight(fit);
-  refineMotion(fit, prior, max_motion);
+  if (isMotionLong(fit) && fit.visible >= kLearnVisible) {
+    learnLight(fit);
+    refineMotion(fit, prior, max_motion);
+    if (fit.valid) chooseLateral(fit, prior);
+    if (fit.valid) solveBend(fit, prior);
+  }
+  if (fit.valid && fit.visible > kLearnSheen) doubtLight(fit);
   return fit;
 }
 
@@ -174,6 +187,7 @@ void MarkerFitter::learnLight(const MarkerFit& fit) {
 void MarkerFitter::forget() {
   light_.reset();
   seen_ = 0;
+  is_prepared_ = false;
 }
 
 /// From what is seen to what grows with the light.
@@ -196,6 +210,25 @@ void MarkerFitter::useGamma(double gamma) {
     if (light_.isRound()) pixels_.light[i] = std::pow(pixels_.light[i], power), pixels_.sheen[i] *= sheen;
   }
   gamma_ = gamma;
+}
+
+/// The pattern's picture, unless there is one for much the same.
+void MarkerFitter::prepare(const MarkerFit& fit, bool rough) {
+  const MarkerPose pose = poseOf(fit.x);
+  const MarkerPose& p = prepared_;
+  const MarkerMotion& m = prepared_motion_;
+  const bool same =
+      is_prepared_ && rough == prepared_rough_ && std::abs(fit.motion.length - m.length) < kPrepareMotion &&
+      std::abs(fit.motion.bend - m.bend) < kPrepareMotion && std::abs(pose.blur - p.blur) < kPrepareBlur &&
+      std::abs(pose.log_scale - p.log_scale) + std::abs(pose.log_aspect - p.log_aspect) < kPrepareScale &&
+      std::abs(pose.tilt - p.tilt) + std::abs(pose.slant - p.slant) < kPrepareTurn &&
+      std::abs(pose.along - p.along) < kPreparePlace;
+  if (same) return;
+  pattern_->prepare(pose, fit.motion, rough);
+  prepared_ = pose;
+  prepared_motion_ = fit.motion;
+  prepared_rough_ = rough;
+  is_prepared_ = true;
 }
 
 bool MarkerFitter::read(AxisMap& map, const Frame& frame, MarkerFit& fit, bool guess_light) {
@@ -225,7 +258,7 @@ void MarkerFitter::useAll() {
 
 /// A few steps with a picture that is more blurred than the camera's: its edges reach further.
 bool MarkerFitter::align(MarkerFit& fit, const FitPrior& prior, FitScope scope) {
-  pattern_->prepare(poseOf(fit.x), fit.motion, true);
+  prepare(fit, true);
   for (int i = 0; i < kAlignSteps; ++i) {
     fit_.evaluate(fit.x, pixels_);
     if (i == 0) fit_.startLevels(pixels_, fit.x);
@@ -233,6 +266,7 @@ bool MarkerFitter::align(MarkerFit& fit, const FitPrior& prior, FitScope scope) 
     if (!step.valid) return false;
     fit.loss = step.loss;
     take(step, fit);
+    if (lengthOf(step) < kAligned) break;
   }
   return true;
 }
@@ -243,7 +277,7 @@ void MarkerFitter::choosePlace(MarkerFit& fit, double reach) {
   FitVector best = start;
   const int steps = static_cast<int>(std::ceil(reach / kPlaceTrial));
   double least = 2;
-  pattern_->prepare(poseOf(fit.x), fit.motion, true);
+  prepare(fit, true);
   for (int k = -steps; k <= steps; ++k) {
     fit.x[kAlong] = start[kAlong] + k * kPlaceTrial;
     fit_.evaluate(fit.x, pixels_);
@@ -257,7 +291,7 @@ void MarkerFitter::choosePlace(MarkerFit& fit, double reach) {
 /// The rotation with the least loss; that of the start stays if no other is better.
 void MarkerFitter::chooseRotation(MarkerFit& fit) {
   FitVector best = fit.x;
-  pattern_->prepare(poseOf(fit.x), fit.motion, true);
+  prepare(fit, true);
   double least = fit.loss;
   for (double rotation : rotations_) {
     fit.x[kRotation] = rotation;
@@ -285,7 +319,7 @@ bool MarkerFitter::tryMotions(MarkerFit& fit, const FitPrior& prior, double max_
   for (int k = 0; k < 3; ++k) {
     MarkerFit trial = start;
     trial.motion = middle + (k - 1) * distance;
-    pattern_->prepare(poseOf(trial.x), trial.motion, middle < kTellingMotion);
+    prepare(trial, middle < kTellingMotion);
     for (int i = 0; i < (observed_[kRotation] ? 2 : 1); ++i) {
       fit_.evaluate(trial.x, pixels_);
       const FitScope scope = observed_[kRotation] ? FitScope::Shape : FitScope::All;
@@ -323,31 +357,78 @@ void MarkerFitter::refineMotion(MarkerFit& fit, const FitPrior& prior, double ma
   refine(fit, prior, 0, kAcquireSteps);
 }
 
+/// A Gauss-Newton step of the acceleration during the exposure, which a long motion shows.
+void MarkerFitter::solveBend(MarkerFit& fit, const FitPrior& prior) {
+  MarkerFit trial = fit;
+  trial.motion.bend += kBendStep;
+  prepare(trial);
+  const PatternFit::Nuisance found = fit_.nuisance(pixels_, kBendStep);
+  if (found.change.variance <= 0 || most_bend_ <= 0) return;
+  const double told = 1 / found.change.variance, known = 4 / square(most_bend_);
+  const double change = (told * found.change.value - known * fit.motion.bend) / (told + known);
+  fit.motion.bend += change;
+  fit.x += change * found.others;
+  refine(fit, prior, 0, kAcquireSteps);
+}
+
+/// Where a rod is across the axis and how it is turned look nearly the same: other places along that valley.
+void MarkerFitter::chooseLateral(MarkerFit& fit, const FitPrior& prior) {
+  double step = kLateralTrial;
+  for (int i = 0; i < kLateralTrials; ++i) {
+    MarkerFit trial = fit;
+    trial.x += step / fit.covariance(kLateral, kLateral) * fit.covariance.col(kLateral);
+    refine(trial, prior, 0, kAcquireSteps);
+    const bool better = trial.valid && trial.loss < fit.loss;
+    if (better) {
+      fit = trial;
+      learnLight(fit);
+    } else if (step < 0) {
+      break;
+    } else {
+      step = -step;
+    }
+  }
+  refine(fit, prior, 0, kAcquireSteps);
+}
+
 /// Steps with all parameters until they change no more.
 void MarkerFitter::refine(MarkerFit& fit, const FitPrior& prior, double uncertainty, int max_steps) {
-  pattern_->prepare(poseOf(fit.x), fit.motion);
   const double known = prior.information(kGamma, kGamma);
   // While a straight response explains the picture, another one would explain its other errors, and move the marker.
   const bool response = fit.x[kGamma] != 1 && known > 0 && known * kSureGamma * kSureGamma < 1;
   for (int i = 0; i < max_steps; ++i) {
+    prepare(fit);
     fit_.evaluate(fit.x, pixels_);
     const FitStep step = fit_.step(fit.x, prior, pixels_, {uncertainty, FitScope::All, response});
     if (!step.valid) return;
     const double last = uncertainty;
-    uncertainty = uncertainty > kConverged ? uncertainty / 3 : 0;
+    uncertainty = uncertainty > kConverged ? uncertainty / kLessUncertain : 0;
     take(step, fit);
-    fit.covariance = step.covariance * std::max(1.0, step.misfit);
     fit.misfit = step.misfit, fit.loss = step.loss, fit.visible = step.visible;
     fit.weaker_edges = step.weaker_edges;
-    if (observed_[kRotation]) doubtCovered(fit);
-    const double moved = std::max({std::abs(step.change[kAlong]), std::abs(step.change[kLateral]),
-                                   radius_ * std::abs(step.change[kRotation]), std::abs(step.change[kBlur]) / 2,
-                                   radius_ * std::abs(step.change[kLogScale]) / 2});
+    const double moved = lengthOf(step);
     fit.valid = moved < kConverged && last == 0;
-    if (fit.valid || moved > kWandering[std::min<std::size_t>(i, kWandering.size() - 1)]) return;
-    if (std::abs(step.change[kBlur]) > kPrepareBlur || std::abs(step.change[kLogScale]) > kPrepareScale)
-      pattern_->prepare(poseOf(fit.x), fit.motion);
+    if (fit.valid) return stateCovariance(fit);
+    if (moved > kWandering[std::min<std::size_t>(i, kWandering.size() - 1)]) return;
   }
+}
+
+/// By how much it moves edges [px].
+double MarkerFitter::lengthOf(const FitStep& step) const {
+  return std::max({std::abs(step.change[kAlong]), std::abs(step.change[kLateral]),
+                   radius_ * std::abs(step.change[kRotation]), std::abs(step.change[kBlur]) / 2,
+                   radius_ * std::abs(step.change[kLogScale]) / 2});
+}
+
+void MarkerFitter::stateCovariance(MarkerFit& fit) const {
+  fit.covariance = fit_.covariance() * std::max(1.0, fit.misfit);
+  if (observed_[kRotation]) doubtCovered(fit);
+}
+
+/// One frame hardly tells the light around a rod from its rotation and its place across the axis.
+void MarkerFitter::doubtLight(MarkerFit& fit) const {
+  fit.covariance = fit_.covariance(pixels_, light_, kGuessedLight) * std::max(1.0, fit.misfit);
+  doubtCovered(fit);
 }
 
 /// The picture of what covers a part of a sleeve draws the fit aside, which the noise does not tell.

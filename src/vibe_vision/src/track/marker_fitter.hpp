@@ -38,17 +38,21 @@ class MarkerFitter {
                    const MarkerMotion& motion, double uncertainty);
   /// The last fit again, with what it told of the motion.
   void repeat(MarkerFit& fit, const FitPrior& prior, const MarkerMotion& motion);
-  /// Of the picture in the last fit. @param unlearnt  the prior before any picture
-  Distortions distortions(const MarkerFit& fit, const FitPrior& prior, const FitPrior& unlearnt, const Sight& sight);
+  /// Of the picture in the last fit, which was valid. @param unlearnt  the prior before any picture
+  Distortions distortions(const FitPrior& unlearnt, const Sight& sight) {
+    return fit_.distortions(unlearnt, pixels_, sight);
+  }
   /// From a candidate of the search: from coarse to fine, with any rotation.
+  /// @param most  that the instrument can do
   /// @param known_rotation  start.rotation is a prediction
   /// @param reach  from the start, within which the marker is [px]; 0: the search knows it well
   MarkerFit acquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior, double motion,
-                    double max_motion, bool known_rotation, double reach = 0);
+                    const MarkerMotion& most, bool known_rotation, double reach = 0);
 
  private:
   bool read(AxisMap& map, const Frame& frame, MarkerFit& fit, bool guess_light = false);
   void linearise();
+  void prepare(const MarkerFit& fit, bool rough = false);
   void useGamma(double gamma);
   MarkerFit acquireWithAnyResponse(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
                                    double motion, double max_motion, bool known_rotation, double reach);
@@ -64,8 +68,13 @@ class MarkerFitter {
   void chooseMotion(MarkerFit& fit, const FitPrior& prior, double max_motion);
   static bool isMotionLong(const MarkerFit& fit);
   void refineMotion(MarkerFit& fit, const FitPrior& prior, double max_motion);
+  void solveBend(MarkerFit& fit, const FitPrior& prior);
+  void chooseLateral(MarkerFit& fit, const FitPrior& prior);
   bool tryMotions(MarkerFit& fit, const FitPrior& prior, double max_motion, double distance);
   void refine(MarkerFit& fit, const FitPrior& prior, double uncertainty, int max_steps);
+  double lengthOf(const FitStep& step) const;
+  void stateCovariance(MarkerFit& fit) const;
+  void doubtLight(MarkerFit& fit) const;
   static void doubtCovered(MarkerFit& fit);
   void take(const FitStep& step, MarkerFit& fit);
 
@@ -81,6 +90,10 @@ class MarkerFitter {
   double table_gamma_ = 0;           ///< of linear_
   std::array<float, 256> linear_{};  ///< grey values
   double seen_ = 0;                  ///< share of the marker that follow() saw the last time
+  MarkerPose prepared_;              ///< for which the pattern made its picture,
+  MarkerMotion prepared_motion_;
+  bool prepared_rough_ = false, is_prepared_ = false;
+  double most_bend_ = 0;  ///< of MarkerMotion, in acquire() [px]
   PatternFit fit_;
 };
 

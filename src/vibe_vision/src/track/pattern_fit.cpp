@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include "track/arithmetic.hpp"
 
 namespace vibe::vision {
@@ -14,7 +12,6 @@ namespace {
 
 constexpr std::size_t kRowsAtATime = 256;  // rows summed in single precision before they are added in double precision
 
-using Eight [[gnu::vector_size(32), gnu::aligned(4), gnu::may_alias]] = float;
 constexpr std::size_t kTogether = 4;  // columns
 
 /// Adds the products of column a with some others to `sums`, in the order of total() of arithmetic.hpp.
@@ -123,6 +120,7 @@ PatternFit::PatternFit(MarkerPattern& pattern, const PixelNoise& noise, std::siz
       rest_(factor_),
       information_(factor_),
       white_(factor_),
+      before_(factor_),
       lit_(factor_),
       equations_(capacity) {
   values_.allocate(capacity, observed_);
@@ -167,6 +165,7 @@ FitStep PatternFit::step(const FitVector& x, const FitPrior& prior, const PixelB
   result.loss = valid_ > 0 ? loss_ / valid_ : 1;
   const double freedom = weights_ / kMeanWeight - columns_;
   result.misfit = freedom > 0 ? squares_ / kMeanSquare / freedom : 0;
+  excess_ = std::max(1.0, result.misfit);
   return result;
 }
 
@@ -270,6 +269,28 @@ VIBE_LANES void PatternFit::fillColumns(const FitVector& x, const PixelBlock& pi
   }
 }
 
+FitMatrix PatternFit::covariance(const PixelBlock& pixels, const RodLight& light, double deviation) const {
+  using Lights = Eigen::Matrix<double, RodLight::kPlaces, RodLight::kPlaces>;
+  Lights lights = Lights::Identity() / square(deviation);
+  Eigen::Matrix<double, Eigen::Dynamic, RodLight::kPlaces, 0, kFitParameters> common(columns_, RodLight::kPlaces);
+  common.setZero();
+  const auto black = static_cast<float>(at_[kBlack]), contrast = static_cast<float>(at_[kContrast]);
+  for (std::size_t i = 0; i < pixels.count; ++i) {
+    const float p = light.placeOf(pixels.along[i], pixels.lateral[i]);
+    const int k = static_cast<int>(p);
+    const double b = p - static_cast<float>(k), a = 1 - b;
+    const double c = lit_[i] / pixels.light[i] * (black + contrast * values_.value[i]);
+    lights(k, k) += square(a * c), lights(k + 1, k + 1) += square(b * c);
+    lights(k, k + 1) += a * b * c * c, lights(k + 1, k) += a * b * c * c;
+    for (int j = 0; j < columns_; ++j) {
+      const double d = c * equations_.column(j)[i];
+      common(j, k) += a * d, common(j, k + 1) += b * d;
+    }
+  }
+  const FitSubmatrix h = factors_.reconstructedMatrix() - common * lights.ldlt().solve(common.transpose());
+  return spread(h.ldlt().solve(FitSubmatrix::Identity(columns_, columns_)) * kVarianceFactor);
+}
+
 void PatternFit::learnLight(const FitVector& x, const PixelBlock& pixels, RodLight& light) const {
   light.begin(poseOf(x));
   for (std::size_t i = 0; i < pixels.count; ++i) {
@@ -281,8 +302,8 @@ void PatternFit::learnLight(const FitVector& x, const PixelBlock& pixels, RodLig
   light.learn();
 }
 
-Distortions PatternFit::distortions(const FitVector& x, const FitPrior& prior, const FitPrior& unlearnt,
-                                    const PixelBlock& pixels, const Sight& sight) {
+Distortions PatternFit::distortions(const FitPrior& unlearnt, const PixelBlock& pixels, const Sight& sight) {
+  const FitVector& x = at_;
   const auto contrast = static_cast<float>(x[kContrast]);
   const auto x0 = static_cast<float>(x[kAlong]), y0 = static_cast<float>(x[kLateral]);
   const auto down_x = static_cast<float>(sight.down.x()), down_y = static_cast<float>(sight.down.y());
@@ -294,35 +315,53 @@ Distortions PatternFit::distortions(const FitVector& x, const FitPrior& prior, c
     column[i] = lit_[i] * contrast * rows * by_along[i];
   }
   Distortions found;
-  found.shear = distortion(x, prior, count);
+  found.shear = distortion(factors_, gradient_, count);
+  FitSubmatrix h;
+  FitSubvector g;
+  assemble(x, unlearnt, h, g);
+  const Eigen::LDLT<FitSubmatrix> factors(h);
   const auto per_area = static_cast<float>(1 / square(pattern_.rim() * std::exp(x[kLogScale])));
   const auto slope = static_cast<float>(sight.slope), per_pixel = static_cast<float>(sight.per_pixel);
   for (std::size_t i = 0; i < count; ++i) {
     const float u = pixels.along[i] - x0;
     column[i] = lit_[i] * contrast * per_area * u * u * (slope + per_pixel * u) * by_along[i];
   }
-  found.relief = distortion(x, unlearnt, count);
+  found.relief = distortion(factors, g, count);
   if (observed_[kRotation]) return found;
   for (std::size_t i = 0; i < count; ++i) {
     const float u = pixels.along[i] - x0, v = pixels.lateral[i] - y0;
     column[i] = lit_[i] * contrast * per_area * (v * v * v * by_lateral[i] - u * u * u * by_along[i]);
   }
-  found.bend = distortion(x, unlearnt, count);
+  found.bend = distortion(factors, g, count);
   return found;
 }
 
+PatternFit::Nuisance PatternFit::nuisance(const PixelBlock& pixels, double step) {
+  const std::size_t count = pixels.padded();
+  std::copy_n(values_.value.data(), count, before_.data());
+  evaluate(at_, pixels);
+  const auto factor = static_cast<float>(at_[kContrast] / step);
+  float* column = equations_.column(columns_);
+  for (std::size_t i = 0; i < count; ++i) column[i] = lit_[i] * factor * (values_.value[i] - before_[i]);
+  Nuisance result;
+  result.change = distortion(factors_, gradient_, count);
+  FitSubvector common(columns_);
+  for (int a = 0; a < columns_; ++a) common[a] = dot(equations_.column(a), column, count);
+  const FitSubvector others = factors_.solve(common);
+  for (int a = 0; a < columns_; ++a) result.others[parameter_[a]] = -others[a];
+  return result;
+}
+
 /// What the column behind those of the fit tells beside them.
-Distortion PatternFit::distortion(const FitVector& x, const FitPrior& prior, std::size_t count) {
-  FitSubmatrix h;
-  FitSubvector g;
-  assemble(x, prior, h, g);
+Distortion PatternFit::distortion(const Eigen::LDLT<FitSubmatrix>& factors, const FitSubvector& g, std::size_t count) {
   const float* column = equations_.column(columns_);
   FitSubvector common(columns_);
   for (int a = 0; a < columns_; ++a) common[a] = dot(equations_.column(a), column, count);
-  const FitSubvector others = h.ldlt().solve(common);
+  const FitSubvector others = factors.solve(common);
   const double information = dot(column, column, count) - others.dot(common);
   if (!(information > 0)) return {};
-  return {(dot(column, equations_.residual(), count) - others.dot(g)) / information, kVarianceFactor / information};
+  return {(dot(column, equations_.residual(), count) - others.dot(g)) / information,
+          kVarianceFactor * excess_ / information};
 }
 
 void PatternFit::assemble(const FitVector& x, const FitPrior& prior, FitSubmatrix& h, FitSubvector& g) const {
@@ -337,20 +376,27 @@ void PatternFit::assemble(const FitVector& x, const FitPrior& prior, FitSubmatri
   }
 }
 
-void PatternFit::solve(const FitVector& x, const FitPrior& prior, FitStep& result) const {
+void PatternFit::solve(const FitVector& x, const FitPrior& prior, FitStep& result) {
   FitSubmatrix h;
-  FitSubvector g;
-  assemble(x, prior, h, g);
-  const Eigen::LDLT<FitSubmatrix> factors(h);
-  result.valid = factors.info() == Eigen::Success && factors.vectorD().minCoeff() > 0;
+  assemble(x, prior, h, gradient_);
+  at_ = x;
+  factors_.compute(h);
+  result.valid = factors_.info() == Eigen::Success && factors_.vectorD().minCoeff() > 0;
   if (!result.valid) return;
-  const FitSubvector change = factors.solve(g);
-  const FitSubmatrix inverse = factors.solve(FitSubmatrix::Identity(columns_, columns_)) * kVarianceFactor;
+  const FitSubvector change = factors_.solve(gradient_);
   result.valid = change.allFinite();
-  for (int a = 0; a < columns_; ++a) {
-    result.change[parameter_[a]] = change[a];
-    for (int b = 0; b < columns_; ++b) result.covariance(parameter_[a], parameter_[b]) = inverse(a, b);
-  }
+  for (int a = 0; a < columns_; ++a) result.change[parameter_[a]] = change[a];
+}
+
+FitMatrix PatternFit::covariance() const {
+  return spread(factors_.solve(FitSubmatrix::Identity(columns_, columns_)) * kVarianceFactor);
+}
+
+FitMatrix PatternFit::spread(const FitSubmatrix& inverse) const {
+  FitMatrix covariance = FitMatrix::Zero();
+  for (int a = 0; a < columns_; ++a)
+    for (int b = 0; b < columns_; ++b) covariance(parameter_[a], parameter_[b]) = inverse(a, b);
+  return covariance;
 }
 
 }  // namespace vibe::vision

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "track/calibration_doubts.hpp"
@@ -21,6 +22,7 @@ class NormalEquations {
   /// Begins anew with this number of columns.
   void start(int columns);
   float* column(int k) { return columns_.data() + static_cast<std::size_t>(k) * capacity_; }
+  const float* column(int k) const { return columns_.data() + static_cast<std::size_t>(k) * capacity_; }
   float* residual() { return column(kMaxColumns); }
   /// @param count  rows, a multiple of kLanes
   void sum(std::size_t count);
@@ -73,7 +75,6 @@ struct FitOptions {
 /// The result of one step, at the parameters before the step.
 struct FitStep {
   FitVector change = FitVector::Zero();
-  FitMatrix covariance = FitMatrix::Zero();
   double misfit = 0;   ///< robust chi^2 per degree of freedom
   double loss = 0;     ///< mean of the biweight's loss of a pixel, 1: all are outliers
   double visible = 0;  ///< share of the information about the position along the axis that is used
@@ -95,23 +96,34 @@ class PatternFit {
   void startLevels(const PixelBlock& pixels, FitVector& x) const;
   /// One step from x. No allocation.
   FitStep step(const FitVector& x, const FitPrior& prior, const PixelBlock& pixels, const FitOptions& options);
+  /// Of the parameters after the last step(), which was valid.
+  FitMatrix covariance() const;
+  /// The same of a rod whose light is known no better than to this standard deviation, relative to its mean.
+  FitMatrix covariance(const PixelBlock& pixels, const RodLight& light, double deviation) const;
   /// FitStep::loss alone.
   double loss(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
-  /// What the pixels of the last step(), which was at x with the same prior, tell of distortions beside all that it
-  /// looked for. @param unlearnt  the prior before any picture: what a bend does to the first ones, it has taught
-  Distortions distortions(const FitVector& x, const FitPrior& prior, const FitPrior& unlearnt, const PixelBlock& pixels,
-                          const Sight& sight);
+  /// What the pixels of the last step(), which was valid, tell of distortions beside all that it looked for.
+  /// @param unlearnt  the prior before any picture: what a bend does to the first ones, it has taught
+  Distortions distortions(const FitPrior& unlearnt, const PixelBlock& pixels, const Sight& sight);
+  /// How the picture of the last step(), which was valid, changes with something that it did not look for.
+  struct Nuisance {
+    Distortion change;                     ///< of it
+    FitVector others = FitVector::Zero();  ///< what the parameters change by with it
+  };
+  /// @param step  of it that the pattern was prepared for, against the last step()
+  Nuisance nuisance(const PixelBlock& pixels, double step);
   const PatternValues& values() const { return values_; }
   /// Learns how the light changes around a rod, from the pixels and weights of the last step.
   void learnLight(const FitVector& x, const PixelBlock& pixels, RodLight& light) const;
 
  private:
-  Distortion distortion(const FitVector& x, const FitPrior& prior, std::size_t count);
+  Distortion distortion(const Eigen::LDLT<FitSubmatrix>& factors, const FitSubvector& g, std::size_t count);
+  FitMatrix spread(const FitSubmatrix& inverse) const;
   void chooseColumns(const FitOptions& options);
   void weigh(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
   void weighPixels(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
   void fillColumns(const FitVector& x, const PixelBlock& pixels);
-  void solve(const FitVector& x, const FitPrior& prior, FitStep& result) const;
+  void solve(const FitVector& x, const FitPrior& prior, FitStep& result);
   void assemble(const FitVector& x, const FitPrior& prior, FitSubmatrix& h, FitSubvector& g) const;
 
   MarkerPattern& pattern_;
@@ -120,8 +132,13 @@ class PatternFit {
   PatternValues values_;
   std::vector<float> factor_;                               ///< square root of a pixel's weight
   std::vector<float> weight_, rest_, information_, white_;  ///< see weigh()
+  std::vector<float> before_;                               ///< reflectances, see nuisance()
   std::vector<float> lit_;                                  ///< factor_ times the light
   NormalEquations equations_;
+  Eigen::LDLT<FitSubmatrix> factors_;            ///< of the last step(),
+  FitSubvector gradient_;                        ///< likewise
+  double excess_ = 1;                            ///< misfit of the last step(), at least 1
+  FitVector at_;                                 ///< where it was
   std::array<int, kFitParameters> parameter_{};  ///< of each column
   int columns_ = 0;
   double squares_ = 0, weights_ = 0, loss_ = 0, valid_ = 0, used_ = 0, full_ = 0, used_white_ = 0, full_white_ = 0;

@@ -51,6 +51,26 @@ struct TableFrame {
   }
 };
 
+/// Two bands around circles, squares of their radii on the marker; before the motion, and after it.
+struct Edges {
+  float along, lateral, inverse_u, inverse_v, travel;
+  float inner_begin, inner_end, outer_begin, outer_end;
+};
+
+/// @param tells  1: the pixel is in a band at some time, else 0
+VIBE_LANES void mark(const Edges& all, const float* __restrict along, const float* __restrict lateral,
+                     std::size_t count, int* __restrict tells) {
+  const Edges e = all;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float u = std::abs(along[i] - e.along) * e.inverse_u, v = (lateral[i] - e.lateral) * e.inverse_v;
+    const float near_u = u > e.travel ? u - e.travel : 0, far_u = u + e.travel;
+    const float nearest = near_u * near_u + v * v, farthest = far_u * far_u + v * v;
+    const int at_inner = (nearest < e.inner_end ? 1 : 0) & (farthest > e.inner_begin ? 1 : 0);
+    const int at_outer = (nearest < e.outer_end ? 1 : 0) & (farthest > e.outer_begin ? 1 : 0);
+    tells[i] = at_inner | at_outer;
+  }
+}
+
 double reach(double outer, double half_side) {
   return std::min(half_side, outer + kBlurTail * RingTable::kMaxBlur);
 }
@@ -99,21 +119,25 @@ void RingPattern::select(const MarkerPose& pose, double motion, PixelBlock& pixe
   const double size_v = std::exp(pose.log_scale), size_u = size_v * std::exp(pose.log_aspect);
   const double width = kBlurTail * std::sqrt(pose.blur * pose.blur + kPixelVariance) / size_v;
   const auto square = [](double x) { return static_cast<float>(x * std::abs(x)); };
-  const float inner_begin = square(inner_ - width), inner_end = square(inner_ + width);
-  const float outer_begin = square(outer_ - width), outer_end = square(outer_ + width);
-  const auto along = static_cast<float>(pose.along), lateral = static_cast<float>(pose.lateral);
-  const auto inverse_u = static_cast<float>(1 / size_u), inverse_v = static_cast<float>(1 / size_v);
-  const auto travel = static_cast<float>(std::min(std::abs(motion), kMaxMotion) / 2 / size_u);
+  const Edges edges{static_cast<float>(pose.along),
+                    static_cast<float>(pose.lateral),
+                    static_cast<float>(1 / size_u),
+                    static_cast<float>(1 / size_v),
+                    static_cast<float>(std::min(std::abs(motion), kMaxMotion) / 2 / size_u),
+                    square(inner_ - width),
+                    square(inner_ + width),
+                    square(outer_ - width),
+                    square(outer_ + width)};
+  int tells[Part::kSize];
   std::size_t n = 0;
-  for (std::size_t i = 0; i < pixels.count; ++i) {
-    const float u = std::abs(pixels.along[i] - along) * inverse_u, v = (pixels.lateral[i] - lateral) * inverse_v;
-    const float near_u = std::max(u - travel, 0.F), far_u = u + travel;
-    const float nearest = near_u * near_u + v * v, farthest = far_u * far_u + v * v;
-    pixels.along[n] = pixels.along[i], pixels.lateral[n] = pixels.lateral[i];
-    pixels.value[n] = pixels.value[i], pixels.weight[n] = pixels.weight[i];
-    const bool at_inner = nearest < inner_end && farthest > inner_begin;
-    const bool at_outer = nearest < outer_end && farthest > outer_begin;
-    n += at_inner || at_outer ? 1 : 0;
+  for (std::size_t begin = 0; begin < pixels.count; begin += Part::kSize) {
+    const std::size_t count = std::min(Part::kSize, pixels.count - begin);
+    mark(edges, pixels.along.data() + begin, pixels.lateral.data() + begin, count, tells);
+    for (std::size_t i = 0; i < count; ++i) {
+      pixels.along[n] = pixels.along[begin + i], pixels.lateral[n] = pixels.lateral[begin + i];
+      pixels.value[n] = pixels.value[begin + i], pixels.weight[n] = pixels.weight[begin + i];
+      n += static_cast<std::size_t>(tells[i]);
+    }
   }
   pixels.count = n;
   pixels.pad();
@@ -160,7 +184,7 @@ VIBE_LANES void RingPattern::place(const MarkerPose& pose, const PixelBlock& pix
 
 /// Value, derivatives by u and v, and Laplacian, per step of the table.
 VIBE_LANES void RingPattern::readTable(Part& part) const {
-  const int stride = table_.columns();
+  const int stride = table_.stride();
   const float* table = table_.row(0);
   for (std::size_t i = 0; i < part.count; i += 2) {
     const int r = static_cast<int>(part.row[i]), c = static_cast<int>(part.column[i]);

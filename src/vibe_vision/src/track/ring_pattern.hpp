@@ -24,8 +24,10 @@ class RingTable {
   void compose(double blur, double motion);
 
   const float* row(int u) const { return table_.data() + u * columns_; }
-  int rows() const { return rows_; }
-  int columns() const { return columns_; }
+  int stride() const { return columns_; }
+  /// Of the composed table: beyond, all is white.
+  int rows() const { return used_rows_; }
+  int columns() const { return used_columns_; }
   double blur() const { return blur_; }  ///< of the composed table
   double motion() const { return motion_; }
   double maxMotion() const { return max_motion_; }
@@ -38,11 +40,12 @@ class RingTable {
   void buildLevel(Level& level) const;
   std::vector<double> radialProfile(double blur) const;
   void prefilterIntegral(std::vector<float>& integral) const;
-  void mixLevels();
+  void mixLevels(int rows);
   void spreadMotion();
 
   double inner_, outer_, max_motion_;
-  int rows_ = 0, columns_ = 0, integral_rows_ = 0;
+  int rows_ = 0, columns_ = 0, integral_rows_ = 0;  ///< that there is room for
+  int used_rows_ = 0, used_columns_ = 0;
   double blur_ = 0, motion_ = 0;
   std::vector<Level> levels_;
   std::vector<float> mixed_;  ///< integral at the blur asked for

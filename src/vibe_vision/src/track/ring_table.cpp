@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
+
+#include "track/arithmetic.hpp"
 
 namespace vibe::vision {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 constexpr double kBlurRatio = 1.25;        // of the blur from one level to the next
 constexpr double kProfileStep = 1.0 / 32;  // of the radial profile [px]
 constexpr double kGaussTail = 6.5;         // standard deviations of a Gaussian that count
+constexpr double kReach = 4.5, kRoom = 2;  // standard deviations and pixels beyond which all is white
 constexpr double kMinRingMotion = 0.05;    // below it the picture is that of 0.05 px [px]
 constexpr float kPole = -0.26794919F;      // of the cubic B-spline: sqrt(3) - 2
 
@@ -73,6 +75,16 @@ void prefilter(const Row& row, int count, int width, float parity) {
   }
 }
 
+int stepsFor(double reach) {
+  return static_cast<int>(std::ceil(reach / RingTable::kStep)) + 4;
+}
+int rowsFor(double reach) {
+  return stepsFor(reach) + RingTable::kMargin;
+}
+int columnsFor(double reach) {
+  return (rowsFor(reach) + 3) / 4 * 4;
+}
+
 /// Weights of the cubic B-spline at a fraction f between the second and the third of four coefficients.
 std::array<float, 4> splineWeights(double f) {
   const double g = 1 - f;
@@ -84,10 +96,9 @@ std::array<float, 4> splineWeights(double f) {
 
 RingTable::RingTable(double inner, double outer, double reach_u, double reach_v, double max_motion)
     : inner_(inner), outer_(outer), max_motion_(max_motion) {
-  const auto steps = [](double reach) { return static_cast<int>(std::ceil(reach / kStep)) + 4; };
-  rows_ = steps(reach_u) + kMargin;
-  columns_ = (steps(reach_v) + kMargin + 3) / 4 * 4;
-  integral_rows_ = rows_ + steps(max_motion / 2) + 10;  // the filter needs some to settle
+  rows_ = rowsFor(reach_u);
+  columns_ = columnsFor(reach_v);
+  integral_rows_ = rows_ + stepsFor(max_motion / 2) + 10;  // the filter needs some to settle
   for (double blur = kMinBlur; blur < kMaxBlur * kBlurRatio; blur *= kBlurRatio) levels_.push_back({blur, {}});
   for (Level& level : levels_) buildLevel(level);
   mixed_.resize(static_cast<std::size_t>(integral_rows_) * columns_);
@@ -135,16 +146,19 @@ void RingTable::prefilterIntegral(std::vector<float>& integral) const {
 void RingTable::compose(double blur, double motion) {
   blur_ = std::clamp(blur, kMinBlur, kMaxBlur);
   motion_ = std::clamp(std::abs(motion), kMinRingMotion, max_motion_);
-  mixLevels();
+  const double reach = outer_ + kReach * blur_ + kRoom;
+  used_rows_ = std::min(rows_, rowsFor(reach + motion_ / 2));
+  used_columns_ = std::min(columns_, columnsFor(reach));
+  mixLevels(std::min(integral_rows_, used_rows_ + stepsFor(motion_ / 2)));
   spreadMotion();
-  prefilter([&](int i) { return table_.data() + static_cast<std::ptrdiff_t>(i + kMargin) * columns_; }, rows_ - kMargin,
-            columns_, 1);
+  prefilter([&](int i) { return table_.data() + static_cast<std::ptrdiff_t>(i + kMargin) * columns_; },
+            used_rows_ - kMargin, used_columns_, 1);
   for (int i = 1; i <= kMargin; ++i)
-    std::copy_n(row(kMargin + i), columns_, table_.data() + static_cast<std::ptrdiff_t>(kMargin - i) * columns_);
+    std::copy_n(row(kMargin + i), used_columns_, table_.data() + static_cast<std::ptrdiff_t>(kMargin - i) * columns_);
 }
 
 /// Quadratic interpolation in the logarithm of the blur.
-void RingTable::mixLevels() {
+VIBE_LANES void RingTable::mixLevels(int rows) {
   const double place = std::log(blur_ / kMinBlur) / std::log(kBlurRatio);
   const auto last = static_cast<std::ptrdiff_t>(levels_.size()) - 2;
   const auto middle = std::clamp(static_cast<std::ptrdiff_t>(std::lround(place)), std::ptrdiff_t{1}, last);
@@ -154,31 +168,33 @@ void RingTable::mixLevels() {
   const float* p = levels_[middle - 1].integral.data();
   const float* q = levels_[middle].integral.data();
   const float* r = levels_[middle + 1].integral.data();
-  for (std::size_t i = 0; i < mixed_.size(); ++i) mixed_[i] = a * p[i] + b * q[i] + c * r[i];
+  const int columns = used_columns_ / 4 * 4;
+  for (int row = 0; row < rows; ++row, p += columns_, q += columns_, r += columns_) {
+    float* __restrict out = mixed_.data() + static_cast<std::ptrdiff_t>(row) * columns_;
+    for (int j = 0; j < columns; ++j) out[j] = a * p[j] + b * q[j] + c * r[j];
+  }
 }
 
 /// Samples of the mean over the motion at the rows' places: difference of the integral at its two ends.
-void RingTable::spreadMotion() {
+VIBE_LANES void RingTable::spreadMotion() {
   const double shift = motion_ / 2 / kStep;
-  const int whole = static_cast<int>(shift);
+  const int whole = static_cast<int>(shift), columns = used_columns_ / 4 * 4;
   const std::array<float, 4> w = splineWeights(shift - whole);
   const auto scale = static_cast<float>(1 / motion_);
-  const auto term = [&](int k, float weight) {
-    return std::make_pair(mixed_.data() + static_cast<std::ptrdiff_t>(std::abs(k)) * columns_,
-                          k < 0 ? -weight : weight);  // the integral is odd
-  };
-  for (int i = 0; i < rows_ - kMargin; ++i) {
-    float* out = table_.data() + static_cast<std::ptrdiff_t>(i + kMargin) * columns_;
-    std::pair<const float*, float> t[8];
-    for (int k = 0; k < 4; ++k) {
-      t[k] = term(i + whole + k - 1, scale * w[k]);
-      t[4 + k] = term(i - whole - k + 1, -scale * w[k]);
+  for (int i = 0; i < used_rows_ - kMargin; ++i) {
+    float* __restrict out = table_.data() + static_cast<std::ptrdiff_t>(i + kMargin) * columns_;
+    const float* rows[8];
+    float weights[8];
+    for (int k = 0; k < 8; ++k) {
+      const int row = k < 4 ? i + whole + k - 1 : i - whole - k + 5;
+      const float weight = scale * (k < 4 ? w[k] : -w[k - 4]);
+      rows[k] = mixed_.data() + static_cast<std::ptrdiff_t>(std::abs(row)) * columns_;
+      weights[k] = row < 0 ? -weight : weight;  // the integral is odd
     }
-    for (int j = 0; j < columns_; ++j) {
-      float sum = 0;
-      for (int k = 0; k < 8; ++k) sum += t[k].first[j] * t[k].second;
-      out[j] = sum;
-    }
+    for (int j = 0; j < columns; ++j)
+      out[j] =
+          ((rows[0][j] * weights[0] + rows[1][j] * weights[1]) + (rows[2][j] * weights[2] + rows[3][j] * weights[3])) +
+          ((rows[4][j] * weights[4] + rows[5][j] * weights[5]) + (rows[6][j] * weights[6] + rows[7][j] * weights[7]));
   }
 }
 

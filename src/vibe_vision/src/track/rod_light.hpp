@@ -17,6 +17,9 @@ class RodLight {
   bool isRound() const { return radius_ > 0; }
   bool known() const { return known_; }
   bool shines() const { return shines_; }  ///< a lamp is mirrored
+  static constexpr int kPlaces = 13;       ///< over 0.96 of the radius to both sides
+  /// Of a pixel, since the light was learnt: 0 to kPlaces - 1.
+  float placeOf(float along, float lateral) const { return rows_.at(along, lateral); }
   void reset();
   /// From all pixels of a window: the print has the same mean in every row, whatever its place and rotation.
   void guess(const MarkerPose& pose, const PixelBlock& pixels);
@@ -33,7 +36,6 @@ class RodLight {
   double raise(double power);
 
  private:
-  static constexpr int kPlaces = 13;  ///< over 0.96 of the radius to both sides
   using Vector = Eigen::Matrix<double, kPlaces, 1>;
   using Both = Eigen::Matrix<double, 2 * kPlaces, 1>;  ///< the light and the sheen
   using Matrix = Eigen::Matrix<double, 2 * kPlaces, 2 * kPlaces>;

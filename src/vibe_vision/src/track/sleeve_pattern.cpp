@@ -271,23 +271,27 @@ VIBE_LANES void SleevePattern::chain(const View& pose, std::size_t begin, const 
                                      PatternValues& values) const {
   const View view = pose;
   const float c = view.tilt_cosine * view.inverse_scale, s = view.tilt_sine * view.inverse_scale;
-  const float advance = pitch_ / kTurn, swing = view.slant_cosine * view.slope_across;
-  const auto out = [&](PoseIndex k) { return values.derivative[k].data() + begin; };
-  float* __restrict along = out(kAlong), * __restrict lateral = out(kLateral), * __restrict rotation = out(kRotation);
-  float* __restrict scale = out(kLogScale), * __restrict tilt = out(kTilt), * __restrict blur = out(kBlur);
-  float* __restrict slant = out(kSlant), * __restrict value = values.value.data() + begin;
-  for (std::size_t i = 0; i < part.size; ++i) {
-    const float x = part.x[i], v = part.v[i], black_u = part.by_u[i], black_w = part.by_w[i];
-    const float by_x = black_u * part.stretch[i];
-    const float by_v = black_u * part.lean[i] - black_w * part.turn[i];
-    value[i] = 1 - part.value[i];
-    along[i] = c * by_x - s * by_v;
-    lateral[i] = s * by_x + c * by_v;
-    rotation[i] = -advance * black_w;
-    scale[i] = x * by_x + v * by_v + 2 * part.by_blur[i];
-    tilt[i] = x * by_v - v * by_x + swing * part.rise[i] * black_u;
-    blur[i] = -view.by_blur * part.by_blur[i];
-    slant[i] = -black_u * part.by_slant[i];
+  const float advance = pitch_ / kTurn, swing = view.slant_cosine * view.slope_across, per_blur = view.by_blur;
+  Eight* out[kPoseParameters];
+  for (const PoseIndex k : {kAlong, kLateral, kRotation, kLogScale, kTilt, kBlur, kSlant})
+    out[k] = reinterpret_cast<Eight*>(values.derivative[k].data() + begin);
+  Eight* value = reinterpret_cast<Eight*>(values.value.data() + begin);
+  for (std::size_t i = 0; i < part.size; i += kLanes, ++value) {
+    const Eight x = *reinterpret_cast<const Eight*>(part.x + i), v = *reinterpret_cast<const Eight*>(part.v + i);
+    const Eight by_u = *reinterpret_cast<const Eight*>(part.by_u + i);
+    const Eight by_w = *reinterpret_cast<const Eight*>(part.by_w + i);
+    const Eight by_blur = *reinterpret_cast<const Eight*>(part.by_blur + i);
+    const Eight by_x = by_u * *reinterpret_cast<const Eight*>(part.stretch + i);
+    const Eight by_v =
+        by_u * *reinterpret_cast<const Eight*>(part.lean + i) - by_w * *reinterpret_cast<const Eight*>(part.turn + i);
+    *value = 1 - *reinterpret_cast<const Eight*>(part.value + i);
+    *out[kAlong]++ = c * by_x - s * by_v;
+    *out[kLateral]++ = s * by_x + c * by_v;
+    *out[kRotation]++ = -advance * by_w;
+    *out[kLogScale]++ = x * by_x + v * by_v + 2 * by_blur;
+    *out[kTilt]++ = x * by_v - v * by_x + swing * *reinterpret_cast<const Eight*>(part.rise + i) * by_u;
+    *out[kBlur]++ = -per_blur * by_blur;
+    *out[kSlant]++ = -by_u * *reinterpret_cast<const Eight*>(part.by_slant + i);
   }
 }
 
