@@ -159,5 +159,24 @@ TEST(FewIterationsWithGas, FindThePressureWhereNodesAreFixed) {
   }
 }
 
+// Drawn at one speed, then held. A step that starts where the motion leads finds only what changes it.
+TEST(FewIterationsInMotion, FollowWhatGoesOnAndStopWithTheHand) {
+  StepSettings settings;
+  settings.iterations = 2;
+  Ball ball = makeBall(Kind::OnABed, settings);
+  const double per_step = 0.03 * settings.step;  // [m]
+  int steady = 0, longest = 0;
+  for (int i = 1; i <= 60; ++i) {
+    ball.run->loads.constraints = {topAt(ball, per_step * std::min(i, 30))};
+    const StepOutcome outcome = ball.run->step();
+    ASSERT_TRUE(outcome.arrived) << i;
+    if (i > 10 && i <= 30) steady += outcome.iterations;
+    longest = std::max(longest, outcome.iterations);
+  }
+  RecordProperty("iterations_per_step", std::to_string(steady / 20.0));
+  EXPECT_LE(steady, 2.4 * 20) << "from the present positions it takes 3.35";
+  EXPECT_LE(longest, 6);
+}
+
 }  // namespace
 }  // namespace vibe::few_iterations_test
