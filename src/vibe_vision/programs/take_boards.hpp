@@ -64,6 +64,7 @@ class BoardTaker {
     return sum / static_cast<double>(a.size());
   }
   static void save(const ImageView& image, const std::string& file) {
+    if (std::filesystem::exists(file)) throw Error(file + ": is there already; give another folder");
     const cv::Mat grey(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.data),
                        static_cast<std::size_t>(image.stride));
     if (!cv::imwrite(file, grey)) throw Error(file + ": cannot be written; check the folder and the space on the disk");

@@ -12,16 +12,7 @@
 namespace vibe::vision::board_guide_test {
 namespace {
 
-const BoardSpec kBoard{9, 6, 5e-3};
 constexpr double kDistance = 0.2;  // [m]
-
-CameraModel smallCamera() {
-  CameraModel camera;
-  camera.width = 364, camera.height = 272;
-  camera.fx = camera.fy = 750;
-  camera.cx = 181.5, camera.cy = 135.5;
-  return camera;
-}
 
 /// A board before the camera, turned about an axis of the image, beside its middle.
 Eigen::Isometry3d poseAt(double x, double y, double tilt, const Eigen::Vector3d& axis = Eigen::Vector3d::UnitX()) {

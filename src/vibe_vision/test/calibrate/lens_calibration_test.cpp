@@ -24,7 +24,6 @@ CameraModel bentLens() {
 }
 
 constexpr double kDistance = 0.2;  // [m]
-const BoardSpec kBoard{9, 6, 5e-3};
 
 /// Exact corners plus Gaussian errors.
 std::vector<BoardView> viewsOf(const CameraModel& camera, const std::vector<Eigen::Isometry3d>& poses, double error,

@@ -11,6 +11,17 @@
 
 namespace vibe::vision {
 
+const BoardSpec kBoard{9, 6, 5e-3};
+
+/// Of half a picture's width and height, so that boards are drawn fast.
+inline CameraModel smallCamera() {
+  CameraModel camera;
+  camera.width = 364, camera.height = 272;
+  camera.fx = camera.fy = 750;
+  camera.cx = 181.5, camera.cy = 135.5;
+  return camera;
+}
+
 /// Pictures of a chessboard in the world: each pixel is the mean of rays through the lens, plus noise.
 class RenderedBoard {
  public:

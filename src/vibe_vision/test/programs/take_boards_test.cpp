@@ -9,16 +9,6 @@
 namespace vibe::vision::take_boards_test {
 namespace {
 
-const BoardSpec kBoard{9, 6, 5e-3};
-
-CameraModel smallCamera() {
-  CameraModel camera;
-  camera.width = 364, camera.height = 272;
-  camera.fx = camera.fy = 750;
-  camera.cx = 181.5, camera.cy = 135.5;
-  return camera;
-}
-
 Frame frameOf(const RenderedBoard& board, double x, double stamp) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translate(Eigen::Vector3d(x - 0.02, -0.0125, 0.2));

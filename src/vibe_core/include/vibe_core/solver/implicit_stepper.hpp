@@ -99,14 +99,15 @@ class ImplicitStepper {
   /// Names the present positions as those that the factor is about, at once. Costs tens of step times.
   void refactor(const MotionView& motion, StepperMemory& memory) const;
 
-  /// One step. Its work is limited by counts: settings().iterations + kSpareEvaluations evaluations of the energy, or
-  /// settings().iterations + kSpareInFallback with backward Euler, and at most two solves for each. A step that does
-  /// not arrive ends at the best point it has found, with the mean velocity over the step, and the next few steps take
-  /// backward Euler. Forces of the loads are their means over the step.
+  /// One step. It starts along the velocities where these carry a node far, else from the positions. Its work is
+  /// limited by counts: settings().iterations + kSpareEvaluations evaluations of the energy, or settings().iterations +
+  /// kSpareInFallback with backward Euler, and at most two solves for each. A step that does not arrive ends at the
+  /// best point it has found, with the mean velocity over the step, and the next few steps take backward Euler. Forces
+  /// of the loads are their means over the step.
   StepOutcome step(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
 
-  /// The last step() once more, with other loads. All solves of a step together take as many evaluations as two
-  /// without backward Euler may, but each has some at least.
+  /// The last step() once more, with other loads, from where that has ended if it arrived. All solves of a step
+  /// together take as many evaluations as two without backward Euler may, but each has some at least.
   /// @param motion  as before that step
   StepOutcome stepAgain(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
 
