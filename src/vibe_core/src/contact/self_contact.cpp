@@ -143,7 +143,7 @@ void SelfContact::addPair(int vertex, int triangle, double facing) {
   pair.node = {vertex, n[0], n[1], n[2]};
   pair.weight = {1, -foot.weight[0], -foot.weight[1], -foot.weight[2]};
   pair.away = foot.away;
-  pair.thickness = std::min(meanThickness(vertex, triangle), at_rest / (1 + kContactOnset));
+  pair.thickness = std::min(meanThickness(vertex, triangle, foot.weight), at_rest / (1 + kContactOnset));
   pair.straight_below = kStraightBelow;
   pair.stiffness = 0.5 * facing * area_[vertex] * stiffness_ * pair.thickness;
   finish(pair);

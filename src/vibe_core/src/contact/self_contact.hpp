@@ -28,10 +28,11 @@ struct ClosePoints;
 /// continuous stiffness. Within a step d is measured along the direction between vertex and triangle at its start. This
 /// is convex and smooth, and a vertex that an iterate moves through the other wall is pushed back.
 ///
-/// Sharing. In a valley of the other wall several places are local minima of the distance. Those that are at most a
-/// tenth of the thickness farther than the nearest share its bar, by how near they are, how much their directions are
-/// alike, and how far the nearest point is from the edge at which one place goes over into the other. The force of a
-/// vertex that moves across the valley is continuous, so that it comes to rest there.
+/// Sharing. In a valley of the other wall several places are local minima of the distance. A place acts if no other one
+/// is nearer in its direction by a tenth of the thickness, weighed by the cosine of the angle between the directions,
+/// so that walls on opposite sides act independently. Places share by how near they are, how much their directions are
+/// alike, and how far the nearest point is from the edge at which one place goes over into the other. Each place acts
+/// once, and the force of a vertex that moves across the valley is continuous, so that it comes to rest there.
 ///
 /// Places. A vertex and the nearest triangle that faces it see neither edges that cross nor a second triangle. Where
 /// any places of two walls are nearer than 3/8 of the wall (SelfContactClose), a bar of 3/10 of its thickness acts in
@@ -114,7 +115,8 @@ class SelfContact : public EnergyTerm {
   void collectApproaches(int vertex, std::size_t first, std::size_t next);
   bool isInReach(int vertex, const WallApproach& approach) const;
   void addPairsOf(int vertex);
-  void addSharing(int vertex, const WallApproach& nearest);
+  void listReached(int vertex);
+  double farBehind(const WallApproach& one) const;
   static double alike(const WallApproach& one, const WallApproach& other);
   bool isPlace(const WallApproach& approach) const;
   double partBesides(const WallApproach& approach) const;
@@ -124,7 +126,7 @@ class SelfContact : public EnergyTerm {
   void addClosePair(const ClosePoints& close);
   void finish(Pair& pair);
   double searchDistance() const;
-  double meanThickness(int vertex, int triangle) const;
+  double meanThickness(int vertex, int triangle, const Eigen::Vector3d& weight) const;
   Eigen::Vector3d areaVector(int triangle) const;
   Eigen::Vector3d ringVector(int vertex) const;
   static double facing(const Eigen::Vector3d& one, const Eigen::Vector3d& other);

@@ -55,7 +55,7 @@ struct WallApproach {
   double distance;         ///< [m]
   Eigen::Vector3d weight;  ///< barycentric, of the nearest point
   double faces;            ///< 1: the triangle faces the vertex, 0: it does not [1]
-  double share;            ///< of the contact of the vertex on that side [1]
+  double share;            ///< of the contact of the vertex in that direction, before it is divided by the sum [1]
 };
 
 /// Working memory of a SelfContact between the calls of a step.
@@ -91,7 +91,7 @@ class SelfContactMemory {
   std::array<std::vector<double>, 3> start, end;  // positions at detect(), after the step [m]
   std::array<std::vector<double>, 3> speed;       // at detect() [m/s]
   std::vector<WallApproach> approaches;           // of one vertex
-  std::vector<WallApproach*> sharing;             // of its contact on one side
+  std::vector<WallApproach*> reached, sharing;    // of these: what it may touch, nearest first; what it acts on
   std::vector<SelfContactClose::Facing> facing;   // what may be close
   std::vector<Eigen::Vector3d> position, move;    // of a step [m]
   std::vector<Eigen::Vector3d> whole;             // moves before they were shortened [m]

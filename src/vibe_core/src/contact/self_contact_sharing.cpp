@@ -11,16 +11,18 @@ namespace vibe {
 
 namespace {
 
-// How much farther than the nearest triangle others share its contact, in thicknesses. Design choice: far below the
+// How much farther than another place in its direction a place still acts, in thicknesses. Design choice: far below the
 // distance itself, far above what a step moves a wall that rests [1].
 constexpr double kSharing = 0.1;
 constexpr double kSame = 1 - 1e-9;  // ratio of two distances that are the same but for rounding
 
 }  // namespace
 
-double SelfContact::meanThickness(int vertex, int triangle) const {
+// Of the two walls at the points that are nearest to each other.
+double SelfContact::meanThickness(int vertex, int triangle, const Eigen::Vector3d& weight) const {
   const auto& n = rest_.triangles[triangle];
-  return 0.5 * (thickness_[vertex] + (thickness_[n[0]] + thickness_[n[1]] + thickness_[n[2]]) / 3);
+  return 0.5 * (thickness_[vertex] +
+                (weight[0] * thickness_[n[0]] + weight[1] * thickness_[n[1]] + weight[2] * thickness_[n[2]]));
 }
 
 // Twice the area, along the normal [m^2].
@@ -64,44 +66,52 @@ void SelfContact::collectApproaches(int vertex, std::size_t first, std::size_t n
 
 // Whether contact of a vertex may act there in the step.
 bool SelfContact::isInReach(int vertex, const WallApproach& approach) const {
-  return approach.distance < (1 + kContactOnset) * meanThickness(vertex, approach.triangle) + reach_;
-}
-
-// The nearest triangles, and the nearest on the opposite side.
-void SelfContact::addPairsOf(int vertex) {
-  const WallApproach* first = nullptr;
-  for (int side = 0; side < 2; ++side) {
-    const WallApproach* nearest = nullptr;
-    for (const WallApproach& one : memory_->approaches) {
-      if (nearest != nullptr && one.distance >= nearest->distance) continue;
-      if (side == 1 && one.away.dot(first->away) >= 0) continue;
-      if (isInReach(vertex, one)) nearest = &one;
-    }
-    if (nearest == nullptr) return;
-    if (side == 0) first = nearest;
-    addSharing(vertex, *nearest);
-  }
+  return approach.distance < (1 + kContactOnset) * meanThickness(vertex, approach.triangle, approach.weight) + reach_;
 }
 
 // In a valley two triangles may be equally near. If the nearest one alone acted, it would push the vertex to where the
 // other one is nearer, and the step after it back: places that are nearly as near share. The more their directions
-// differ, the less they share; at a right angle each acts as if it were alone.
-void SelfContact::addSharing(int vertex, const WallApproach& nearest) {
+// differ, the less they share; at a right angle each acts as if it were alone. Each place acts once, and as the vertex
+// moves its share is continuous, so that walls that touch come to rest.
+void SelfContact::addPairsOf(int vertex) {
   SelfContactMemory& m = *memory_;
-  const double spread = kSharing * thickness_[vertex];
   m.sharing.clear();
-  for (WallApproach& one : m.approaches) {
-    const double farther = alike(one, nearest) * (one.distance - nearest.distance) / spread;
-    if (!(farther < 1) || one.away.dot(nearest.away) < 0 || !isInReach(vertex, one) || !isPlace(one)) continue;
-    one.share = (1 - farther) * (1 - farther);
-    m.sharing.push_back(&one);
+  listReached(vertex);
+  for (WallApproach* one : m.reached) {
+    const double behind = farBehind(*one) / (kSharing * thickness_[vertex]);
+    if (!(behind < 1) || !isPlace(*one)) continue;
+    one->share = (1 - behind) * (1 - behind);
+    m.sharing.push_back(one);
   }
   for (WallApproach* one : m.sharing) one->share *= partBesides(*one);
   for (const WallApproach* one : m.sharing) {
-    double sum = 0;
-    for (const WallApproach* other : m.sharing) sum += other->share * alike(*one, *other);
+    double sum = one->share;
+    for (const WallApproach* other : m.sharing)
+      if (other != one) sum += other->faces * other->share * alike(*one, *other);
     if (sum > 0) addPair(vertex, one->triangle, one->faces * one->share / sum);
   }
+}
+
+// The triangles that the vertex may touch in the step, the nearest first.
+void SelfContact::listReached(int vertex) {
+  std::vector<WallApproach*>& reached = memory_->reached;
+  reached.clear();
+  for (WallApproach& one : memory_->approaches) {
+    if (!isInReach(vertex, one)) continue;
+    auto at = reached.end();
+    while (at != reached.begin() && (*(at - 1))->distance > one.distance) --at;
+    reached.insert(at, &one);
+  }
+}
+
+// How much farther it is than another place in its direction, as far as that one faces the vertex [m].
+double SelfContact::farBehind(const WallApproach& one) const {
+  double most = 0;
+  for (const WallApproach* other : memory_->reached) {
+    if (other == &one) break;
+    most = std::max(most, other->faces * alike(one, *other) * (one.distance - other->distance));
+  }
+  return most;
 }
 
 // Cosine between the directions, 0 beyond a right angle.
@@ -126,17 +136,20 @@ bool SelfContact::isPlace(const WallApproach& approach) const {
   return true;
 }
 
-// How far a foot is from the triangles beside it that share, over the height of its own: there it goes over into
-// theirs.
+// In a valley the foot in one side reaches the edge while that in the other side, which is nearer there, is still away
+// from it: how far the foot is from that edge, over the sum of both, so that it goes over into the other side.
 double SelfContact::partBesides(const WallApproach& approach) const {
   const auto& n = rest_.triangles[approach.triangle];
   double least = 1;
-  for (const WallApproach* other : memory_->sharing)
+  for (const WallApproach* other : memory_->reached)
     for (std::size_t k = 0; k < 3; ++k) {
       const auto& t = rest_.triangles[other->triangle];
-      const bool beside = other != &approach && hasVertex(t, n[(k + 1) % 3]) && hasVertex(t, n[(k + 2) % 3]);
-      const double height = approach.weight[static_cast<Eigen::Index>(k)];
-      if (beside && height > 0) least = std::min(least, height);
+      if (other == &approach || !hasVertex(t, n[(k + 1) % 3]) || !hasVertex(t, n[(k + 2) % 3])) continue;
+      double beside = 0;  // weight of the corner that is not on the edge
+      for (std::size_t l = 0; l < 3; ++l)
+        if (t[l] != n[(k + 1) % 3] && t[l] != n[(k + 2) % 3]) beside = other->weight[static_cast<Eigen::Index>(l)];
+      const double own = approach.weight[static_cast<Eigen::Index>(k)];
+      if (own > 0) least = std::min(least, own / (own + other->faces * beside));
     }
   return least;
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "contact/self_contact_worlds.hpp"
 
@@ -65,6 +66,53 @@ TEST(SelfContact, ForceIsContinuousAcrossAValley) {
     EXPECT_LT(jump, 0.03 * largest) << "slope " << slope;
     EXPECT_LT(before.x(), 0) << "on the right side, to the left";
   }
+}
+
+/// A trough along y with a floor and two sides, which rise by `angle` [rad], and above it the turned roof of valley(),
+/// whose point is as far from the floor as from sides of 45 degrees.
+SurfaceMesh trough(double angle, double z) {
+  constexpr double kLong = 20e-3, kHigh = 10e-3;
+  const double floor = (std::sqrt(2.0) - 1) * 0.6 * kWallThickness;  // half its width
+  SurfaceMesh mesh = valley(0, 0, z);
+  mesh.vertices.erase(mesh.vertices.begin(), mesh.vertices.begin() + 4);
+  mesh.triangles.erase(mesh.triangles.begin(), mesh.triangles.begin() + 2);
+  for (auto& t : mesh.triangles)
+    for (int& v : t) v -= 4;
+  const double x[4] = {-floor - kHigh * std::cos(angle), -floor, floor, floor + kHigh * std::cos(angle)};
+  for (int i = 0; i < 4; ++i)
+    for (const double y : {-kLong, 0.7 * kLong})  // no diagonal is below the point
+      mesh.vertices.push_back({x[i], y, i == 0 || i == 3 ? kHigh * std::sin(angle) : 0});
+  for (int strip = 0; strip < 3; ++strip) {
+    const int first = 5 + 2 * strip;
+    mesh.triangles.push_back({first, first + 2, first + 3});
+    mesh.triangles.push_back({first, first + 3, first + 1});
+  }
+  return mesh;
+}
+
+// Of three places the outer ones are at a right angle at 45 degrees; they share with the middle one, but not with each
+// other, and each of them acts once. A force that jumps there never lets walls come to rest.
+TEST(SelfContact, ForceIsContinuousWhereSidesPassARightAngle) {
+  constexpr double kHeight = 0.6 * kWallThickness, kDegree = M_PI / 180;
+  ContactWorld world(trough(45 * kDegree, 50e-3));
+  Eigen::Vector3d before = Eigen::Vector3d::Zero();
+  double largest = 0, jump = 0;
+  for (int k = -200; k <= 200; ++k) {
+    const SurfaceMesh now = trough((45 + 0.01 * k) * kDegree, kHeight);
+    for (std::size_t i = 0; i < world.count(); ++i) world.set(i, now.vertices[i]);
+    world.detect(0.5e-3);
+    world.evaluate();
+    std::set<int> places;
+    for (const SelfContact::Pair& pair : world.contact.pairs())
+      if (pair.node[0] == 4 && pair.stiffness > 0) EXPECT_TRUE(places.insert(pair.node[1]).second) << "acts twice";
+    EXPECT_EQ(places.size(), 3U);
+    const Eigen::Vector3d force = world.force(4);
+    if (k > -200) jump = std::max(jump, (force - before).norm());
+    largest = std::max(largest, force.norm());
+    before = force;
+  }
+  EXPECT_GT(largest, 0);
+  EXPECT_LT(jump, 0.01 * largest);
 }
 
 // x . K x of the couplings.
