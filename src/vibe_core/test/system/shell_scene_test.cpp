@@ -53,11 +53,11 @@ TEST(ShellScene, SameBitsOfWallsThatMeetWithAnyThreadCount) {
   Scene scene = livelyScene();
   scene.tissue.self_contact = true;
   const auto squashed = [&](int threads) {
-    World world(scene, plainOrgan(icosphere(kRadius, 4), kWall), "", threads);
+    World world(scene, plainOrgan(icosphere(kRadius, 3), kWall), "", threads);
     for (double& z : world.state.z) z *= 0.9 * kWall / (2 * kRadius);
     world.step();
     EXPECT_GT(world.state.energy.contact_energy, 0);
-    world.run(0.2);
+    world.run(0.05);
     return hash(world.state);
   };
   const auto one = squashed(1);
