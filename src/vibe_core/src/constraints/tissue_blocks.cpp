@@ -109,7 +109,7 @@ class SelfContactBlock : public ConstraintBlock {
     const double lead = context.step / (1 + tissue.spectral_radius) + tissue.stiffness_damping;
     const State& s = context.state;
     contact_.detect({s.x.data(), s.y.data(), s.z.data()}, {s.vx.data(), s.vy.data(), s.vz.data()},
-                    std::clamp(move, kMinReach, context.model.particle_radius), lead);
+                    std::clamp(move, kMinReach, context.model.particle_radius), lead, context.pool);
   }
   static MotionView viewOf(State& state) {
     return {{state.x.data(), state.y.data(), state.z.data()},

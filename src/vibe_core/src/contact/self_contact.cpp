@@ -88,7 +88,7 @@ int SelfContact::searchCount() const {
   return memory_->search.count();
 }
 
-void SelfContact::detect(const NodeVectors& x, const NodeVectors& v, double reach, double lead) {
+void SelfContact::detect(const NodeVectors& x, const NodeVectors& v, double reach, double lead, ThreadPool* pool) {
   if (isStart(x, v) && reach == reach_ && lead == lead_) return;
   reach_ = reach;
   lead_ = lead;
@@ -101,7 +101,7 @@ void SelfContact::detect(const NodeVectors& x, const NodeVectors& v, double reac
   if (!speeds_matter_) return;
   for (std::size_t k = 0; k < 3; ++k) std::copy(v[k], v[k] + thickness_.size(), memory_->speed[k].begin());
   addPairs();
-  addClosePairs();
+  addClosePairs(pool);
 }
 
 // The end of a step is usually the start of the next.
@@ -149,9 +149,9 @@ void SelfContact::addPair(int vertex, int triangle, double facing) {
   finish(pair);
 }
 
-void SelfContact::addClosePairs() {
+void SelfContact::addClosePairs(ThreadPool* pool) {
   SelfContactMemory& m = *memory_;
-  for (const ClosePoints& close : m.close.find(m.facing, m.start, kFound * max_thickness_)) addClosePair(close);
+  for (const ClosePoints& close : m.close.find(m.facing, m.start, kFound * max_thickness_, pool)) addClosePair(close);
 }
 
 // What is nearer than a triangle's foot on one side of a vertex may be elsewhere: edges that cross, further triangles.

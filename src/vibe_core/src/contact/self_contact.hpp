@@ -12,6 +12,7 @@
 namespace vibe {
 
 class SelfContactMemory;
+class ThreadPool;
 struct WallApproach;
 struct ClosePoints;
 
@@ -86,7 +87,8 @@ class SelfContact : public EnergyTerm {
   /// @param x      positions [m]
   /// @param v      velocities [m/s]
   /// @param lead   time from then to the point at which the step evaluates forces [s]
-  void detect(const NodeVectors& x, const NodeVectors& v, double reach, double lead);
+  /// @param pool   null: the calling thread only; the result is the same
+  void detect(const NodeVectors& x, const NodeVectors& v, double reach, double lead, ThreadPool* pool = nullptr);
 
   double evaluate(const double* positions4, float* gradient4) const override;
   /// Of the pairs of the last detect() that are in contact at the positions, with their normals.
@@ -122,7 +124,7 @@ class SelfContact : public EnergyTerm {
   double partBesides(const WallApproach& approach) const;
   void addPair(int vertex, int triangle, double facing);
   void collectFacing(int vertex);
-  void addClosePairs();
+  void addClosePairs(ThreadPool* pool);
   void addClosePair(const ClosePoints& close);
   void finish(Pair& pair);
   double searchDistance() const;

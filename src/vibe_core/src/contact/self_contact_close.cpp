@@ -1,13 +1,16 @@
 #include "contact/self_contact_close.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <queue>
 #include <tuple>
 #include <utility>
 
+#include "common/lending_pool.hpp"
 #include "contact/self_contact_distance.hpp"
+#include "vibe_core/common/thread_pool.hpp"
 
 namespace vibe {
 
@@ -78,6 +81,7 @@ SurfaceWalls::SurfaceWalls(const SurfaceMesh& rest, double reach) : start_(1, 0)
 namespace {
 
 constexpr int kNone = -1;            // node that has no part in a place
+constexpr int kPiece = 256;          // triangles that one thread looks at in a row
 constexpr double kEqual = 1 - 1e-9;  // ratio of two squared distances that are the same but for rounding
 
 // The same place has other roundings as the foot in another triangle.
@@ -104,11 +108,34 @@ SelfContactClose::SelfContactClose(const std::vector<std::array<int, 3>>& triang
       walls_(walls),
       of_vertex_(rings.vertexCount() + 1),
       of_triangle_(triangles.size() + 1),
-      triangle_mark_(triangles.size()),
-      vertex_mark_(rings.vertexCount()) {
+      found_((triangles.size() + kPiece - 1) / kPiece) {
   listEdges();
-  edge_mark_.resize(edges_.size());
 }
+
+/// What one triangle has met already. Each thread that looks borrows some.
+class SelfContactClose::Marks {
+ public:
+  void begin(std::size_t triangles, std::size_t vertices, std::size_t edges) {
+    const std::size_t count[] = {triangles, vertices, edges};
+    for (std::size_t k = 0; k < 3; ++k)
+      if (marks_[k].size() < count[k]) marks_[k].resize(count[k], 0);
+  }
+  void nextTriangle() {
+    if (++now_ != 0) return;
+    for (std::vector<std::uint32_t>& marks : marks_) std::fill(marks.begin(), marks.end(), 0);
+    now_ = 1;
+  }
+  bool meetsTriangle(int t) { return meets(0, t); }  // for the first time
+  bool meetsVertex(int v) { return meets(1, v); }
+  bool meetsEdge(int e) { return meets(2, e); }
+
+ private:
+  bool meets(std::size_t kind, int which) {
+    return std::exchange(marks_[kind][static_cast<std::size_t>(which)], now_) != now_;
+  }
+  std::array<std::vector<std::uint32_t>, 3> marks_;  // the last triangle that has met each, as now_ was
+  std::uint32_t now_ = 0;
+};
 
 void SelfContactClose::listEdges() {
   const auto edge = [](const std::array<int, 3>& t, std::size_t k) -> Edge {
@@ -126,15 +153,14 @@ void SelfContactClose::listEdges() {
 }
 
 const std::vector<ClosePoints>& SelfContactClose::find(const std::vector<Facing>& facing,
-                                                       const std::array<std::vector<double>, 3>& at, double distance) {
+                                                       const std::array<std::vector<double>, 3>& at, double distance,
+                                                       ThreadPool* pool) {
   at_ = &at;
   distance_ = distance;
   places_.clear();
   if (facing.empty()) return places_;
   listFacing(facing);
-  for (std::vector<int>* marks : {&triangle_mark_, &vertex_mark_, &edge_mark_})
-    std::fill(marks->begin(), marks->end(), kNone);
-  for (std::size_t t = 0; t < triangles_.size(); ++t) findAt(static_cast<int>(t));
+  collect(pool);
   std::sort(places_.begin(), places_.end(), isBefore);
   places_.erase(std::unique(places_.begin(), places_.end(), isSame), places_.end());
   places_.erase(std::remove_if(places_.begin(), places_.end(), [this](const ClosePoints& p) { return !isNearest(p); }),
@@ -156,44 +182,64 @@ void SelfContactClose::listFacing(const std::vector<Facing>& facing) {
   of_triangle_[0] = 0;
 }
 
+// The pieces' places in the order of one thread.
+void SelfContactClose::collect(ThreadPool* pool) {
+  const int count = static_cast<int>(triangles_.size());
+  if (pool == nullptr || pool->threads() == 1) return findAmong(0, count, places_);
+  pool->parallelFor(count, kPiece, [this](int first, int last) {
+    std::vector<ClosePoints>& places = found_[static_cast<std::size_t>(first / kPiece)];
+    places.clear();
+    findAmong(first, last, places);
+  });
+  for (const std::vector<ClosePoints>& places : found_) places_.insert(places_.end(), places.begin(), places.end());
+}
+
+void SelfContactClose::findAmong(int first, int last, std::vector<ClosePoints>& places) const {
+  const LendingPool<Marks>::Loan marks;
+  marks->begin(triangles_.size(), rings_.vertexCount(), edges_.size());
+  Scan scan{*marks.operator->(), places, {}, {}};
+  for (int t = first; t < last; ++t) findAt(t, scan);
+}
+
 // With all triangles around what faces it, and all that its own nodes face.
-void SelfContactClose::findAt(int triangle) {
+void SelfContactClose::findAt(int triangle, Scan& scan) const {
   const auto& n = triangles_[triangle];
   const bool faces = std::any_of(n.begin(), n.end(), [&](int v) { return of_vertex_[v] < of_vertex_[v + 1]; });
   if (!faces && of_triangle_[triangle] == of_triangle_[triangle + 1]) return;
   const Eigen::Vector3d a = at(n[0]), b = at(n[1]), c = at(n[2]);
-  low_ = a.cwiseMin(b).cwiseMin(c).array() - distance_;
-  high_ = a.cwiseMax(b).cwiseMax(c).array() + distance_;
+  scan.low = a.cwiseMin(b).cwiseMin(c).array() - distance_;
+  scan.high = a.cwiseMax(b).cwiseMax(c).array() + distance_;
+  scan.marks.nextTriangle();
   for (int i = of_triangle_[triangle]; i < of_triangle_[triangle + 1]; ++i)
-    rings_.visit(facing_vertex_[i], [&](int other) { meet(triangle, other); });
+    rings_.visit(facing_vertex_[i], [&](int other) { meet(triangle, other, scan); });
   for (const int v : n)
-    for (int i = of_vertex_[v]; i < of_vertex_[v + 1]; ++i) meet(triangle, facing_triangle_[i]);
+    for (int i = of_vertex_[v]; i < of_vertex_[v + 1]; ++i) meet(triangle, facing_triangle_[i], scan);
 }
 
-void SelfContactClose::meet(int triangle, int other) {
-  if (std::exchange(triangle_mark_[other], triangle) == triangle || isFar(triangles_[other])) return;
-  addVertices(triangle, other);
-  addEdges(triangle, other);
+void SelfContactClose::meet(int triangle, int other, Scan& scan) const {
+  if (!scan.marks.meetsTriangle(other) || isFar(triangles_[other], scan)) return;
+  addVertices(triangle, other, scan);
+  addEdges(triangle, other, scan);
 }
 
 // By the boxes around them and the triangle that is looked at.
 template <std::size_t Count>
-bool SelfContactClose::isFar(const std::array<int, Count>& nodes) const {
+bool SelfContactClose::isFar(const std::array<int, Count>& nodes, const Scan& scan) const {
   for (Eigen::Index k = 0; k < 3; ++k) {
     const std::vector<double>& x = (*at_)[static_cast<std::size_t>(k)];
     double least = x[nodes[0]], most = least;
     for (std::size_t i = 1; i < Count; ++i) least = std::min(least, x[nodes[i]]), most = std::max(most, x[nodes[i]]);
-    if (least >= high_[k] || most <= low_[k]) return true;
+    if (least >= scan.high[k] || most <= scan.low[k]) return true;
   }
   return false;
 }
 
-void SelfContactClose::addVertices(int triangle, int other) {
+void SelfContactClose::addVertices(int triangle, int other, Scan& scan) const {
   std::array<int, 3> n = triangles_[triangle];
   std::sort(n.begin(), n.end());
   for (const int v : triangles_[other]) {
-    if (std::exchange(vertex_mark_[v], triangle) == triangle || hasVertex(n, v)) continue;
-    if (isFar(std::array<int, 1>{v})) continue;
+    if (!scan.marks.meetsVertex(v) || hasVertex(n, v)) continue;
+    if (isFar(std::array<int, 1>{v}, scan)) continue;
     const TriangleFoot foot = triangleFoot(at(v), at(n[0]), at(n[1]), at(n[2]));
     if (!(foot.away.squaredNorm() < distance_ * distance_)) continue;
     ClosePoints close{{v, kNone, kNone, kNone}, 1, {1, 0, 0, 0}, foot.away, 1, false};
@@ -202,24 +248,24 @@ void SelfContactClose::addVertices(int triangle, int other) {
       if (weight > 0) close.node[next] = n[k], close.weight[next++] = -weight;
     }
     close.in_wall = isInWall(close);
-    places_.push_back(close);
+    scan.places.push_back(close);
   }
 }
 
 // The first of two edges is that of the triangle; where it is the second, the other triangle finds them.
-void SelfContactClose::addEdges(int triangle, int other) {
+void SelfContactClose::addEdges(int triangle, int other, Scan& scan) const {
   for (const int q : edge_of_[other]) {
-    if (std::exchange(edge_mark_[q], triangle) == triangle || isFar(edges_[q])) continue;
+    if (!scan.marks.meetsEdge(q) || isFar(edges_[q], scan)) continue;
     for (const int p : edge_of_[triangle]) {
       const Edge &one = edges_[p], &two = edges_[q];
       if (p >= q || one[0] == two[0] || one[0] == two[1] || one[1] == two[0] || one[1] == two[1]) continue;
-      addEdgePair(one, two);
+      addEdgePair(one, two, scan);
     }
   }
 }
 
 // Where the nearest points are inside both edges: otherwise a vertex is nearer.
-void SelfContactClose::addEdgePair(const Edge& one, const Edge& other) {
+void SelfContactClose::addEdgePair(const Edge& one, const Edge& other, Scan& scan) const {
   const Eigen::Vector3d from = at(one[0]), to = at(other[0]);
   const Eigen::Vector3d u = at(one[1]) - from, v = at(other[1]) - to, r = from - to;
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), across = uu * vv - uv * uv;
@@ -228,8 +274,9 @@ void SelfContactClose::addEdgePair(const Edge& one, const Edge& other) {
   if (!(s > 0 && s < 1 && t > 0 && t < 1)) return;
   const Eigen::Vector3d away = r + s * u - t * v;
   if (!(away.squaredNorm() < distance_ * distance_)) return;
-  places_.push_back({{one[0], one[1], other[0], other[1]}, 2, {1 - s, s, t - 1, -t}, away, across / (uu * vv), false});
-  places_.back().in_wall = isInWall(places_.back());
+  scan.places.push_back(
+      {{one[0], one[1], other[0], other[1]}, 2, {1 - s, s, t - 1, -t}, away, across / (uu * vv), false});
+  scan.places.back().in_wall = isInWall(scan.places.back());
 }
 
 bool SelfContactClose::isInWall(const ClosePoints& place) const {

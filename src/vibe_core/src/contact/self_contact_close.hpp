@@ -11,6 +11,8 @@
 
 namespace vibe {
 
+class ThreadPool;
+
 /// Says which vertices of a surface are so near along it that they belong to the same wall.
 class SurfaceWalls {
  public:
@@ -78,23 +80,34 @@ class SelfContactClose {
   ///                  vertex
   /// @param at        positions [m]
   /// @param distance  [m]
+  /// @param pool      null: the calling thread only; the places are the same
   /// @returns each place once, ascending by node
   const std::vector<ClosePoints>& find(const std::vector<Facing>& facing, const std::array<std::vector<double>, 3>& at,
-                                       double distance);
+                                       double distance, ThreadPool* pool = nullptr);
 
  private:
   using Edge = std::array<int, 2>;  // nodes, ascending
 
+  class Marks;
+  /// Around one triangle after the other.
+  struct Scan {
+    Marks& marks;                      // of what the triangle has met
+    std::vector<ClosePoints>& places;  // to which it adds
+    Eigen::Vector3d low, high;         // corners of the box around the triangle and the distance [m]
+  };
+
   void listEdges();
   void listFacing(const std::vector<Facing>& facing);
-  void findAt(int triangle);
-  void meet(int triangle, int other);
+  void collect(ThreadPool* pool);
+  void findAmong(int first, int last, std::vector<ClosePoints>& places) const;
+  void findAt(int triangle, Scan& scan) const;
+  void meet(int triangle, int other, Scan& scan) const;
   Eigen::Vector3d at(int node) const { return {(*at_)[0][node], (*at_)[1][node], (*at_)[2][node]}; }
   template <std::size_t Count>
-  bool isFar(const std::array<int, Count>& nodes) const;
-  void addVertices(int triangle, int other);
-  void addEdges(int triangle, int other);
-  void addEdgePair(const Edge& one, const Edge& other);
+  bool isFar(const std::array<int, Count>& nodes, const Scan& scan) const;
+  void addVertices(int triangle, int other, Scan& scan) const;
+  void addEdges(int triangle, int other, Scan& scan) const;
+  void addEdgePair(const Edge& one, const Edge& other, Scan& scan) const;
   bool isInWall(const ClosePoints& place) const;
   bool isNearest(const ClosePoints& place) const;
 
@@ -105,12 +118,10 @@ class SelfContactClose {
   std::vector<std::array<int, 3>> edge_of_;       // of each triangle's nodes 0 and 1, 1 and 2, 2 and 0
   std::vector<int> of_vertex_, facing_triangle_;  // what each vertex faces: start, triangles
   std::vector<int> of_triangle_, facing_vertex_;  // what faces each triangle
-  // the last triangle with which each has been looked at
-  std::vector<int> triangle_mark_, vertex_mark_, edge_mark_;
   const std::array<std::vector<double>, 3>* at_ = nullptr;
   double distance_ = 0;
-  Eigen::Vector3d low_, high_;  // corners of the box around a triangle and the distance [m]
   std::vector<ClosePoints> places_;
+  std::vector<std::vector<ClosePoints>> found_;  // by piece, where several threads look
 };
 
 }  // namespace vibe

@@ -66,6 +66,7 @@ ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, c
       report_(report),
       scratch_(scratch),
       context_{model, state, model.scene.step_period, motion != nullptr ? &scratch.tool : nullptr, insufflator_on} {
+  context_.pool = scratch.stepper->pool;
   StepSettings settings = stepper.settings();
   settings.backward_euler = settings.backward_euler || state.solver.fallback > 0;
   context_.when = TimeScheme(settings, 0, 0).part() - kEarlier;

@@ -394,6 +394,9 @@ double ImplicitStepper::elasticEnergy(const MotionView& motion, StepperWorkspace
     for (int k = 0; k < 3; ++k)
       scratch.last.displacement[4 * i + k] = static_cast<float>(motion.x[k][i] - body_.rest[i][k]);
   std::fill(scratch.work.begin(), scratch.work.end(), 0.0F);
+  if (!scratch.shared.shares.empty())
+    return scratch.shared.evaluate(*body_.shell, *scratch.pool, scratch.last.displacement.data(), scratch.work.data(),
+                                   nullptr);
   double energy = 0;
   for (int p = 0; p < body_.elements->pieceCount(); ++p)
     energy += body_.elements->evaluate(p, scratch.last.displacement.data(), scratch.work.data());

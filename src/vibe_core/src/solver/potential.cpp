@@ -95,9 +95,15 @@ double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gra
 }
 
 double Potential::addElements(std::vector<float>& gradient, double& volume) {
-  if (!scratch_.shared.shares.empty()) return addShared(gradient, volume);
   const bool has_gas = gas_.control != GasLoad::Control::None;
   const float* const u = scratch_.last.displacement.data();
+  SharedEvaluation& shared = scratch_.shared;
+  if (!shared.shares.empty()) {
+    const double all = shared.evaluate(*body_.shell, *scratch_.pool, u, gradient.data(),
+                                       has_gas ? scratch_.last.volume_gradient.data() : nullptr);
+    for (const double part : shared.volume) volume += part;
+    return all;
+  }
   double value = 0;
   for (int p = 0; p < body_.elements->pieceCount(); ++p) {
     double part = 0;
@@ -106,66 +112,6 @@ double Potential::addElements(std::vector<float>& gradient, double& volume) {
     volume += part;
   }
   return value;
-}
-
-// The same bits by several threads.
-double Potential::addShared(std::vector<float>& gradient, double& volume) {
-  std::vector<SharedEvaluation::Share>& shares = scratch_.shared.shares;
-  scratch_.pool->parallelFor(1 + static_cast<int>(shares.size()), 1, [&](int k, int) {
-    if (k == 0)
-      evaluatePieces(0, shares.front().part.first_piece, gradient);
-    else
-      evaluateShare(shares[static_cast<std::size_t>(k) - 1], gradient);
-  });
-  float* const volume_gradient = scratch_.last.volume_gradient.data();
-  for (const SharedEvaluation::Share& share : shares)
-    for (std::size_t i = 0; i < share.part.copies.size(); ++i) {
-      const std::size_t from = 4 * (share.part.own.size() + i), to = 4 * static_cast<std::size_t>(share.part.copies[i]);
-      for (std::size_t c = 0; c < 3; ++c) {
-        gradient[to + c] += share.gradient[from + c];
-        volume_gradient[to + c] += share.volume_gradient[from + c];
-      }
-    }
-  double value = 0;
-  for (const double part : scratch_.shared.value) value += part;
-  for (const double part : scratch_.shared.volume) volume += part;
-  return value;
-}
-
-// To the vectors of all nodes.
-void Potential::evaluatePieces(int first, int last, std::vector<float>& gradient) {
-  const bool has_gas = gas_.control != GasLoad::Control::None;
-  const float* const u = scratch_.last.displacement.data();
-  SharedEvaluation& shared = scratch_.shared;
-  for (int p = first; p < last; ++p) {
-    double volume = 0;
-    shared.value[static_cast<std::size_t>(p)] =
-        has_gas ? body_.shell->evaluate(p, u, gradient.data(), scratch_.last.volume_gradient.data(), volume)
-                : body_.shell->evaluate(p, u, gradient.data());
-    shared.volume[static_cast<std::size_t>(p)] = volume;
-  }
-}
-
-// To the vectors of the share, and from there to the nodes that nobody else adds to meanwhile.
-void Potential::evaluateShare(SharedEvaluation::Share& share, std::vector<float>& gradient) {
-  const ShellPart& part = share.part;
-  const float* const u = scratch_.last.displacement.data();
-  float* to = share.displacement.data();
-  for (const std::vector<int>* nodes : {&part.own, &part.copies})
-    for (const int node : *nodes) to = std::copy_n(u + 4 * static_cast<std::size_t>(node), 4, to);
-  for (std::vector<float>* sum : {&share.gradient, &share.volume_gradient}) std::fill(sum->begin(), sum->end(), 0.0F);
-  for (int p = part.first_piece; p < part.last_piece; ++p) {
-    double volume = 0;
-    scratch_.shared.value[static_cast<std::size_t>(p)] =
-        body_.shell->evaluate(part, p, share.displacement.data(), share.gradient.data(),
-                              gas_.control != GasLoad::Control::None ? share.volume_gradient.data() : nullptr, volume);
-    scratch_.shared.volume[static_cast<std::size_t>(p)] = volume;
-  }
-  for (std::size_t i = 0; i < part.own.size(); ++i) {
-    const std::size_t node = 4 * static_cast<std::size_t>(part.own[i]);
-    std::copy_n(share.gradient.data() + 4 * i, 4, gradient.data() + node);
-    std::copy_n(share.volume_gradient.data() + 4 * i, 4, scratch_.last.volume_gradient.data() + node);
-  }
 }
 
 // The displacements, and zeros to add to.

@@ -69,9 +69,6 @@ class Potential {
  private:
   void startSums(const std::vector<double>& z, std::vector<float>& gradient);
   double addElements(std::vector<float>& gradient, double& volume);
-  double addShared(std::vector<float>& gradient, double& volume);
-  void evaluatePieces(int first, int last, std::vector<float>& gradient);
-  void evaluateShare(SharedEvaluation::Share& share, std::vector<float>& gradient);
   double gasEnergy();
   double addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient);
   double addRareTerms(const std::vector<double>& z, std::vector<float>& gradient) const;

@@ -47,7 +47,20 @@ struct SharedEvaluation {
   };
   int threads = 1;  // for which the shares are made
   std::vector<Share> shares;
-  std::vector<double> value, volume;  // per piece
+  std::vector<double> value, volume;  // per piece [J], [m^3]
+
+  /// With the bits of one piece after the other, where there are shares.
+  /// @param gradient         (4 per node) zeros to add to [N]
+  /// @param volume_gradient  the same [m^2]; null: volumes are not wanted, and are 0
+  /// @returns the energy [J]
+  double evaluate(const ShellElements& shell, ThreadPool& pool, const float* displacement, float* gradient,
+                  float* volume_gradient);
+
+ private:
+  void evaluatePieces(const ShellElements& shell, int last, const float* displacement, float* gradient,
+                      float* volume_gradient);
+  void evaluateShare(const ShellElements& shell, Share& share, const float* displacement, float* gradient,
+                     float* volume_gradient);
 };
 
 /// Factors that are kept for many workspaces, by what they are about. They are not changed any more.

@@ -12,6 +12,7 @@
 
 #include "contact/self_contact_distance.hpp"
 #include "contact/self_contact_worlds.hpp"
+#include "vibe_core/common/thread_pool.hpp"
 #include "vibe_core/solver/implicit_stepper.hpp"
 #include "vibe_core/tissue/shell.hpp"
 
@@ -117,6 +118,34 @@ TEST(SelfContactClose, FindsWhatTrialFindsInACrumpledBall) {
     place = place->first == 1 && place->second[3] < 0 ? found.erase(place) : std::next(place);
   EXPECT_GT(expected.size(), 100U);
   EXPECT_EQ(found, expected);
+}
+
+TEST(SelfContactClose, FindsTheSameBitsWithAnyNumberOfThreads) {
+  const SurfaceMesh mesh = sphere(0.01, 12);
+  ASSERT_GT(mesh.triangles.size(), 1000U) << "one piece tests nothing";
+  const VertexTriangles rings(mesh.triangles, mesh.vertices.size());
+  const SurfaceWalls walls(mesh, 1e-3);
+  SelfContactClose close(mesh.triangles, rings, walls);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-4e-3, 4e-3);
+  std::array<std::vector<double>, 3> at;
+  for (const Eigen::Vector3d& p : mesh.vertices)
+    for (Eigen::Index k = 0; k < 3; ++k) at[static_cast<std::size_t>(k)].push_back(p[k] + uniform(random));
+  std::vector<SelfContactClose::Facing> some;
+  for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v)
+    for (int t = v % 97; t < static_cast<int>(mesh.triangles.size()); t += 97) some.push_back({v, t});
+  const std::vector<ClosePoints> one = close.find(some, at, 1e-3);
+  ASSERT_GT(one.size(), 100U);
+  for (const int threads : {1, 2, 5}) {
+    ThreadPool pool(threads);
+    const std::vector<ClosePoints>& found = close.find(some, at, 1e-3, &pool);
+    ASSERT_EQ(found.size(), one.size()) << threads;
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      ASSERT_EQ(found[i].node, one[i].node) << i;
+      ASSERT_EQ(found[i].weight, one[i].weight) << i;
+      ASSERT_EQ(found[i].away, one[i].away) << i;
+    }
+  }
 }
 
 /// A plate of 1 mm cells.

@@ -49,6 +49,22 @@ TEST(ShellScene, SameBitsOfALargeWallWithAnyThreadCount) {
   EXPECT_EQ(hash(a.state), hash(c.state));
 }
 
+TEST(ShellScene, SameBitsOfWallsThatMeetWithAnyThreadCount) {
+  Scene scene = livelyScene();
+  scene.tissue.self_contact = true;
+  const auto squashed = [&](int threads) {
+    World world(scene, plainOrgan(icosphere(kRadius, 3), kWall), "", threads);
+    for (double& z : world.state.z) z *= 0.9 * kWall / (2 * kRadius);
+    world.step();
+    EXPECT_GT(world.state.energy.contact_energy, 0);
+    world.run(0.05);
+    return hash(world.state);
+  };
+  const auto one = squashed(1);
+  EXPECT_EQ(squashed(2), one);
+  EXPECT_EQ(squashed(5), one);
+}
+
 TEST(ShellScene, ASnapshotAtAnyStepContinuesToTheBit) {
   for (int at : {1, 9, 10, 11, 25}) {
     World world = livelyWorld();

@@ -15,6 +15,7 @@ namespace vibe {
 
 class EnergyTerm;
 class ShaftBend;
+class ThreadPool;
 struct Model;
 struct State;
 
@@ -27,6 +28,7 @@ struct StepContext {
   bool insufflator_on;    ///< for the gas
   const ShaftBend* bend = nullptr;  ///< of a tool that yields, at the poses tool->middle; null: it is rigid
   double when = 1;                  ///< part of the step after which its forces act [1]
+  ThreadPool* pool = nullptr;       ///< for what a block does in pieces; null: the calling thread only
 };
 
 /// What a block means for tissue at rest. A step is skipped while all blocks of a resting tissue agree to `Sleep`.
