@@ -25,6 +25,10 @@ PaperExtent extentOf(Paper paper);
 /// Where everything goes. @throws Error if something is larger than a page
 std::vector<SheetPage> layOut(const VisionConfig& config, const SheetOptions& options);
 
+/// Draws the steps of a calibration with a picture on one page; one unit of the context is a metre.
+/// @throws Error if they do not fit on the paper
+void paintGuide(cairo_t* context, const SheetOptions& options, const std::vector<std::string>& instruments);
+
 /// Draws a page on a cairo surface.
 class SheetPainter {
  public:

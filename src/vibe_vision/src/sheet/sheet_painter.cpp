@@ -1,9 +1,8 @@
-#include "sheet/sheet_layout.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
+#include "sheet/sheet_layout.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::vision {
@@ -36,9 +35,13 @@ SheetPainter::~SheetPainter() {
 void SheetPainter::paint(const SheetPage& page, std::size_t number, std::size_t count) {
   cairo_set_source_rgb(context_, 1, 1, 1);
   cairo_paint(context_);
-  paintTitle(number, count);
-  paintRulers();
-  for (const SheetItem& item : page.items) paintItem(item);
+  if (page.guided.empty()) {
+    paintTitle(number, count);
+    paintRulers();
+    for (const SheetItem& item : page.items) paintItem(item);
+  } else {
+    paintGuide(context_, options_, page.guided);
+  }
   cairo_show_page(context_);
   if (cairo_status(context_) != CAIRO_STATUS_SUCCESS) {
     throw Error(std::string("the marker sheet cannot be drawn: ") + cairo_status_to_string(cairo_status(context_)) +
