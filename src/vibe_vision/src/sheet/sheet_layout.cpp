@@ -28,6 +28,10 @@ SheetItem itemOf(const InstrumentConfig& instrument, const SheetOptions& options
     item.width = item.height = ring->side;
     return item;
   }
+  if (const auto* tag = std::get_if<TagDesign>(&instrument.marker)) {
+    item.width = item.height = tag->side + 2 * tagMargin(*tag);
+    return item;
+  }
   const auto& sleeve = std::get<SleeveDesign>(instrument.marker);
   if (options.paper_thickness >= 0.2 * sleeve.diameter) {
     throw Error("the paper of " + showQuantity(options.paper_thickness, "m") + " is too thick for the sleeve of '" +

@@ -49,6 +49,7 @@ class SheetPainter {
   void paintRuler(double x, double y, bool horizontal);
   void paintItem(const SheetItem& item);
   void paintRing(const SheetItem& item, const RingDesign& ring);
+  void paintTag(const SheetItem& item, const TagDesign& tag);
   void paintSleeve(const SheetItem& item, const SleeveDesign& sleeve);
   void paintStripe(const SleeveDesign& sleeve, double from, double to);
   void paintSleeveHints(const SheetItem& item, const SleeveDesign& sleeve);

@@ -13,6 +13,7 @@
 #include "sheet/guide_steps.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_testing/expect_error.hpp"
+#include "vibe_vision/marker/tag_reader.hpp"
 
 namespace vibe::vision::marker_sheet_test {
 namespace {
@@ -123,6 +124,29 @@ TEST(MarkerSheet, TheRasterOfEachMarkerIsItsDesign) {
     EXPECT_GT(agreement.compared, 5000);
     EXPECT_GT(agreement.black, 500);
     EXPECT_EQ(agreement.different, 0);
+  }
+}
+
+TEST(MarkerSheet, TagsAreThoseOfTheirLibraries) {
+  VisionConfig config = twoInstruments();
+  config.instruments[0].marker = TagDesign{TagFamily::AprilTag, 3, 8e-3};
+  config.instruments[1].marker = TagDesign{TagFamily::Aruco, 9, 6e-3};
+  const MarkerSheet sheet(config, {});
+  const SheetRaster raster = sheet.raster(0, kRaster);
+  for (const SheetItem& item : sheet.pages()[0].items) {
+    const TagDesign tag = std::get<TagDesign>(item.marker);
+    std::vector<std::uint8_t> piece;  // what a camera sees of a cut tag, at 0.1 mm/px
+    const int size = static_cast<int>(item.width * 1e4);
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x)
+        piece.push_back(raster.value[static_cast<std::size_t>((item.y * 1e4 + y + 0.5) * 4) *
+                                         static_cast<std::size_t>(raster.width) +
+                                     static_cast<std::size_t>((item.x * 1e4 + x + 0.5) * 4)]);
+    const std::vector<TagCorners> found = TagReader(tag, 1e4).find({piece.data(), size, size, size});
+    ASSERT_EQ(found.size(), 1U) << item.name;
+    EXPECT_NEAR((found[0][0] - found[0][1]).norm(), tag.side * 1e4, 1) << item.name;
+    const TagDesign other{tag.family, tag.id + 1, tag.side};
+    EXPECT_TRUE(TagReader(other, 1e4).find({piece.data(), size, size, size}).empty());
   }
 }
 
