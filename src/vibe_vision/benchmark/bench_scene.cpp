@@ -26,6 +26,10 @@ void resize(SleeveDesign& sleeve, double factor) {
   sleeve.helix_pitch *= factor;
 }
 
+void resize(TagDesign& tag, double factor) {
+  tag.side *= factor;
+}
+
 /// Another part of the motion for each seed, and of the pixel grid.
 void changeMotion(SyntheticMotion& motion, double speed, std::uint64_t seed) {
   const double factor = speed / kNominalSpeed, later = 0.613 * static_cast<double>(seed - 1);
@@ -49,12 +53,12 @@ void enlarge(SyntheticScene& scene, int width, int height) {
 namespace {
 
 /// A tag that moves as the ring does, on an axis of its own below it.
-SyntheticInstrument tagBeside(const SyntheticInstrument& ring, const std::string& name, const SyntheticTag& tag,
+SyntheticInstrument tagBeside(const SyntheticInstrument& ring, const std::string& name, const TagDesign& tag,
                               double below) {
   SyntheticInstrument instrument = ring;
   instrument.nominal.name = name;
   instrument.nominal.axis.origin.y() += below;
-  instrument.tag = tag;
+  setTag(instrument, tag);
   return instrument;
 }
 
@@ -66,9 +70,11 @@ void indexMarkers(BenchScene& bench) {
 void addTags(BenchScene& bench, double factor) {
   const SyntheticInstrument ring = bench.scene.instruments[bench.ring];
   bench.aruco = bench.scene.instruments.size();
-  bench.scene.instruments.push_back(tagBeside(ring, "aruco", arucoTag(kTagSide * factor), kArucoBelow));
+  bench.scene.instruments.push_back(
+      tagBeside(ring, "aruco", {TagFamily::Aruco, kArucoId, kTagSide * factor}, kArucoBelow));
   bench.apriltag = bench.scene.instruments.size();
-  bench.scene.instruments.push_back(tagBeside(ring, "apriltag", aprilTag(kTagSide * factor), kAprilTagBelow));
+  bench.scene.instruments.push_back(
+      tagBeside(ring, "apriltag", {TagFamily::AprilTag, kAprilTagId, kTagSide * factor}, kAprilTagBelow));
 }
 
 }  // namespace

@@ -37,9 +37,6 @@ void enlarge(SyntheticScene& scene, int width, int height);
 std::vector<std::string> harderSceneNames();
 /// Sizes, exposures and sensors of the whole table.
 std::vector<Cell> furtherCells();
-/// The picture of a tag as the libraries draw it.
-SyntheticTag arucoTag(double side);
-SyntheticTag aprilTag(double side);
 
 /// A scene beyond the standard ones: one of those, changed. `seed` varies what a scene may vary.
 struct HarderScene {

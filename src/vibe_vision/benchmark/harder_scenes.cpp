@@ -47,7 +47,7 @@ void addTwins(SyntheticScene& scene) {
   for (std::size_t i = 0; i < count; ++i) {
     if (scene.instruments[i].tag.cells > 0) continue;
     SyntheticInstrument twin = scene.instruments[i];
-    twin.lateral = 2e-3 + (std::holds_alternative<RingDesign>(twin.nominal.marker) ? 7e-3 : 3e-3);
+    twin.lateral = 2e-3 + (std::holds_alternative<SleeveDesign>(twin.nominal.marker) ? 3e-3 : 7e-3);
     const double place = twin.motion.slide(0);
     twin.motion.slide = [=](double) { return place; };
     scene.instruments.push_back(twin);
@@ -101,6 +101,7 @@ std::uint8_t* ownPixels(Frame& frame) {
 double halfLength(const InstrumentConfig& instrument) {
   const double scale = instrument.axis.pixels_per_metre / 2;
   if (const RingDesign* ring = std::get_if<RingDesign>(&instrument.marker)) return scale * ring->outer_diameter;
+  if (const TagDesign* tag = std::get_if<TagDesign>(&instrument.marker)) return scale * tag->side;
   return scale * std::get<SleeveDesign>(instrument.marker).length;
 }
 

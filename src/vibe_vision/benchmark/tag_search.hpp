@@ -1,15 +1,14 @@
 #pragma once
-#include <array>
 #include <functional>
 #include <vector>
 
 #include "method.hpp"
+#include "vibe_vision/marker/tag_reader.hpp"
 
 namespace vibe::vision {
 
-using Corners = std::array<Eigen::Vector2d, 4>;  ///< pixels of the picture that was searched, centres are integers
 /// Finds the corners of all tags with the number that is looked for.
-using TagDetector = std::function<std::vector<Corners>(const ImageView&)>;
+using TagDetector = std::function<std::vector<TagCorners>(const ImageView&)>;
 
 /// Runs a detector of tags on a window around the true place (which favours the tag: no prediction, no wrong window)
 /// for accuracy, and on every few whole frames for the time and success of a search. Of several tags with one number

@@ -1,6 +1,8 @@
-// vibe_marker_sheet: the markers of a configuration and a chessboard, to be printed. No ROS.
+// vibe_marker_sheet: the markers of a configuration, a chessboard and how to calibrate with them, to be printed. No
+// ROS.
 
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 
@@ -21,7 +23,7 @@ struct Options {
   std::string board = "9x6";
   std::string square = "5 mm", thickness = "0.1 mm", overlap = "2.5 mm";
   int copies = 3;
-  bool no_board = false, no_markers = false;
+  bool no_board = false, no_markers = false, no_guide = false;
 };
 
 void addOptions(vibe::OptionList& line, Options& options) {
@@ -37,6 +39,7 @@ void addOptions(vibe::OptionList& line, Options& options) {
   line.option("--square", options.square, "Side of a square of the chessboard").showDefault();
   line.flag("--no-board", options.no_board, "No page with the chessboard");
   line.flag("--no-markers", options.no_markers, "No pages with markers");
+  line.flag("--no-guide", options.no_guide, "No page with the steps of a calibration");
 }
 
 vision::SheetOptions sheetOptions(const Options& options) {
@@ -47,6 +50,8 @@ vision::SheetOptions sheetOptions(const Options& options) {
   sheet.overlap = vision::lengthOption("--overlap", options.overlap);
   sheet.markers = !options.no_markers;
   sheet.board = !options.no_board;
+  sheet.guide = !options.no_guide;
+  sheet.config_file = std::filesystem::path(options.config).filename();
   sheet.board_spec = vision::boardOption(options.board, options.square);
   return sheet;
 }
@@ -70,7 +75,8 @@ int run(const Options& options) {
     throw vibe::Error("nothing is written; give --pdf FILE, --svg FILE or --png FILE");
   }
   vision::VisionConfig config;
-  if (!options.no_markers) config = vision::VisionConfig::load(options.config, vision::AxisRule::Optional);
+  if (!options.no_markers || !options.no_guide)
+    config = vision::VisionConfig::load(options.config, vision::AxisRule::Optional);
   const vision::MarkerSheet sheet(config, sheetOptions(options));
   if (!options.pdf.empty()) {
     sheet.writePdf(options.pdf);
@@ -87,8 +93,10 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  vibe::CommandLine line("Writes the markers of a configuration and a chessboard at their true size, to be printed.",
-                         "vibe_marker_sheet");
+  vibe::CommandLine line(
+      "Writes the markers of a configuration, a chessboard and the steps of a calibration at their true size, to be "
+      "printed.",
+      "vibe_marker_sheet");
   Options options;
   addOptions(line, options);
   return vision::runProgram(line, argc, argv, [&options] { return run(options); });

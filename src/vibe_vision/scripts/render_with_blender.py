@@ -132,7 +132,7 @@ def sheet_crops(folder):
     pdf = os.path.join(folder, "sheet.pdf")
     config = os.path.join(folder, "config.yaml")
     subprocess.run(["rosrun", "vibe_vision", "vibe_marker_sheet", "--config", config, "--pdf", pdf, "--copies", "1",
-                    "--no-board", "--thickness", "%g mm" % PAPER], check=True, stdout=subprocess.DEVNULL)
+                    "--no-board", "--no-guide", "--thickness", "%g mm" % PAPER], check=True, stdout=subprocess.DEVNULL)
     turn = math.pi * (2 * RADIUS - PAPER)
     below = 47 + turn + 2.5 + 24  # the next row: overlap of the strip, gaps and label
     for name, y, width, height in (("helix", 47, LENGTH, turn), ("needle_driver", below, SIDE, SIDE)):

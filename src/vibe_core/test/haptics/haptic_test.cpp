@@ -373,6 +373,15 @@ TEST(Haptic, RendersAContactBetweenFramesBetterThanTheLastForce) {
   EXPECT_LT(errors.axis, errors.held_axis / 10);
 }
 
+TEST(Haptic, RendersAStraightTipOnABallBetterThanTheLastForce) {
+  World frames = ballWorld(kFrame);
+  frames.run(2, scopeAt(0.145));
+  const Errors errors = renderBetweenFrames(
+      std::move(frames), 3, [](double t) { return scopeAt(0.145 + 4e-3 * (1 - std::cos(2 * M_PI * t))); }, 0.5);
+  EXPECT_GT(errors.change, 0.1);
+  EXPECT_LT(errors.rendered, errors.held / 10);
+}
+
 TEST(Kilohertz, SettlesWhereFramesSettle) {
   World fast = ballWorld(kMillisecond), slow = ballWorld(kFrame);
   for (World* world : {&fast, &slow}) world->run(2.5, scopeAt(0.13));

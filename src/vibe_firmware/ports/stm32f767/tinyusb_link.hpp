@@ -5,7 +5,7 @@
 namespace vibe_firmware::stm32 {
 
 /// OTG_FS through TinyUSB. There is one. Descriptors and reports come from the handler; TinyUSB itself answers the
-/// other standard requests and does not stall a malformed feature report that is set: it is ignored.
+/// other standard requests. A report that is set and malformed stalls.
 ///
 /// This port has never run on hardware.
 class TinyUsbLink : public UsbLink {

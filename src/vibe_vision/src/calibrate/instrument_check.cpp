@@ -112,8 +112,10 @@ CheckedInstrument InstrumentCheck::result() const {
   for (const CheckedQuantity& q : result.quantities)
     if (wrong.empty() && q.verdict == Verdict::Wrong) wrong = q.name;
   const bool turns = std::holds_alternative<SleeveDesign>(config_.marker);
+  const bool tag = std::holds_alternative<TagDesign>(config_.marker);  // whose cells do not show how it is bent and lit
   for (const Doubt doubt : {Doubt::Shutter, Doubt::Askew, Doubt::Bent, Doubt::Response})
-    if (doubt != Doubt::Askew || turns) result.quantities.push_back(judgeDoubt(doubt, wrong));
+    if (doubt == Doubt::Shutter || (doubt == Doubt::Askew ? turns : !tag))
+      result.quantities.push_back(judgeDoubt(doubt, wrong));
   return result;
 }
 

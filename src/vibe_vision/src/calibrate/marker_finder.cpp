@@ -36,6 +36,10 @@ cv::Mat pictureOf(const RingDesign& ring, double scale) {
 }
 
 /// The stripe is grey: its phase is not known.
+cv::Mat pictureOf(const TagDesign&, double) {
+  throw Error("a tag of another library is read, not correlated with its picture; use locateMarkers()");
+}
+
 double meanReflectance(const SleeveDesign& sleeve, double u) {
   if (u > sleeve.helix_begin && u < sleeve.helix_end) return 1 - sleeve.helix_duty;
   return reflectance(sleeve, u, 0);

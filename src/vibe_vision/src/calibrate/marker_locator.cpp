@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "calibrate/fitting.hpp"
+#include "tag/tag_place.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_vision/marker/tag_reader.hpp"
 #include "vibe_vision/track/tracker.hpp"
 
 namespace vibe::vision {
@@ -158,12 +160,38 @@ void requireTwo(const LocatedMarkers& located, const std::string& name) {
               "; check that it is the one of the configuration, sharp, lit, and within the scale to look for");
 }
 
+/// Tags are read, each image by itself.
+LocatedMarkers readTags(const VisionConfig& config, const InstrumentConfig& object, const TagDesign& tag,
+                        const std::vector<Frame>& images, const MarkerSearch& search) {
+  TagReader reader(tag, search.lowest_scale);  // until the size is known, on which the reading of corners depends
+  bool sized = false;
+  LocatedMarkers located;
+  for (const Frame& image : images) {
+    LocatedMarker marker;
+    std::vector<TagCorners> tags = reader.find(image.image);
+    if (!sized && tags.size() == 1) {
+      reader = TagReader(tag, TagPlace::of(config.camera, tags[0], {0, 0}, tag.side).pixels_per_metre);
+      tags = reader.find(image.image);
+      sized = true;
+    }
+    marker.problem = tags.empty() ? "the tag is not read in the image" : "two tags have this number";
+    if (tags.size() == 1) {
+      const TagPlace place = TagPlace::of(config.camera, tags[0], {0, 0}, tag.side);
+      marker = {true, "", place.centre, place.pixels_per_metre, 0};
+    }
+    located.markers.push_back(marker);
+  }
+  requireTwo(located, object.name);
+  return located;
+}
+
 }  // namespace
 
 LocatedMarkers locateMarkers(const VisionConfig& config, std::size_t instrument, const std::vector<Frame>& images,
                              const MarkerSearch& search) {
   checkSizes(config, images);
   const InstrumentConfig& object = config.instruments.at(instrument);
+  if (const auto* tag = std::get_if<TagDesign>(&object.marker)) return readTags(config, object, *tag, images, search);
   const RoughResult rough = searchImages(config, instrument, images, search);
   LocatedMarkers located{rough.markers, rough.sleeve_direction};
   for (int pass = 0; pass < kPasses; ++pass) {

@@ -139,8 +139,12 @@ InstrumentConfig ConfigReader::readInstrument(const YamlField& field) const {
       readJoint(entry, "rad", instrument.rotation_joint, instrument.rotation_sign, instrument.rotation_offset);
   }
   for (const YamlField& entry : fields) {
-    if (entry.key == "rotation_joint" && std::holds_alternative<RingDesign>(instrument.marker))
-      source_.fail(entry, "needs a sleeve, a ring does not show the rotation; leave the key out or use a sleeve");
+    if (entry.key == "rotation_joint" && !std::holds_alternative<SleeveDesign>(instrument.marker))
+      source_.fail(entry, "needs a sleeve, " +
+                              std::string(std::holds_alternative<RingDesign>(instrument.marker)
+                                              ? "a ring does not show the rotation"
+                                              : "a flat tag does not show the rotation of a rod") +
+                              "; leave the key out or use a sleeve");
     if (entry.key == "axis") checkAxis(entry, instrument);
   }
   return instrument;

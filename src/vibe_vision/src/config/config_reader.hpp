@@ -37,6 +37,7 @@ class ConfigReader {
 
   MarkerDesign readMarker(const YamlField& field) const;
   RingDesign readRing(const YamlField& field) const;
+  TagDesign readTag(const YamlField& field) const;
   SleeveDesign readSleeve(const YamlField& field) const;
   std::vector<Bar> readBars(const YamlField& field) const;
   void readHelix(const YamlField& field, SleeveDesign& sleeve) const;

@@ -11,12 +11,15 @@ constexpr double kSmallest = 1e-5, kLargest = 0.2;  // of anything printed [m]
 }  // namespace
 
 MarkerDesign ConfigReader::readMarker(const YamlField& field) const {
-  const std::vector<YamlField> fields = mapOf(field, {"ring", "sleeve"}, {});
+  const std::vector<YamlField> fields = mapOf(field, {"ring", "sleeve", "apriltag", "aruco"}, {});
   if (fields.size() != 1) {
-    source_.fail(field, "names " + std::to_string(fields.size()) + " markers; write one of 'ring:' and 'sleeve:'");
+    source_.fail(field, "names " + std::to_string(fields.size()) +
+                            " markers; write one of 'ring:', 'sleeve:', 'apriltag:' and 'aruco:'");
   }
   const YamlField& entry = fields.front();
-  const MarkerDesign design = entry.key == "ring" ? MarkerDesign(readRing(entry)) : MarkerDesign(readSleeve(entry));
+  const MarkerDesign design = entry.key == "ring"     ? MarkerDesign(readRing(entry))
+                              : entry.key == "sleeve" ? MarkerDesign(readSleeve(entry))
+                                                      : MarkerDesign(readTag(entry));
   checkMarker(design, source_.place() + ":" + std::to_string(entry.line) + ": " + entry.path);
   return design;
 }
@@ -30,6 +33,16 @@ RingDesign ConfigReader::readRing(const YamlField& field) const {
     if (entry.key == "side") ring.side = value;
   }
   return ring;
+}
+
+TagDesign ConfigReader::readTag(const YamlField& field) const {
+  TagDesign tag;
+  tag.family = field.key == "apriltag" ? TagFamily::AprilTag : TagFamily::Aruco;
+  for (const YamlField& entry : mapOf(field, {"id", "side"}, {"id", "side"})) {
+    if (entry.key == "id") tag.id = static_cast<int>(source_.integer(entry, 0, tagCount(tag.family) - 1));
+    if (entry.key == "side") tag.side = source_.quantity(entry, "m", kSmallest, kLargest);
+  }
+  return tag;
 }
 
 SleeveDesign ConfigReader::readSleeve(const YamlField& field) const {

@@ -90,6 +90,11 @@ void writeMarker(const RingDesign& ring, std::ostream& out) {
       << "}\n";
 }
 
+void writeMarker(const TagDesign& tag, std::ostream& out) {
+  out << "      " << tagFamilyName(tag.family) << ": {id: " << tag.id << ", side: " << showQuantity(tag.side, "m")
+      << "}\n";
+}
+
 void writeMarker(const SleeveDesign& sleeve, std::ostream& out) {
   out << "      sleeve:\n";
   out << "        diameter: " << showQuantity(sleeve.diameter, "m") << "\n";

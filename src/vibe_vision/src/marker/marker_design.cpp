@@ -23,6 +23,19 @@ double reflectance(const SleeveDesign& design, double u, double phi) {
   return phase - std::floor(phase) < design.helix_duty ? 0 : 1;
 }
 
+int tagCells(TagFamily family) {
+  return family == TagFamily::AprilTag ? 8 : 6;
+}
+int tagCount(TagFamily family) {
+  return family == TagFamily::AprilTag ? 587 : 50;
+}
+const char* tagFamilyName(TagFamily family) {
+  return family == TagFamily::AprilTag ? "apriltag" : "aruco";
+}
+double tagMargin(const TagDesign& tag) {
+  return tag.side / tagCells(tag.family);
+}
+
 /// Bars: of random layouts with at least ten edges, improved edge by edge, the one with the smallest side lobes of the
 /// multiple correlation that the search uses, over motion blurs of 0 to 20 px, sizes of 0.75 to 1.1 and all rotations.
 /// Stripe: one pitch long, so that every rotation shows as many edges. docs/vision.md, "Markers".
@@ -71,6 +84,13 @@ void check(const RingDesign& ring, const std::string& place) {
   require(ring.side >= side, place,
           "the side of the ring's white square is " + millimetres(ring.side) + "; a ring of " +
               millimetres(ring.outer_diameter) + " needs at least " + millimetres(side) + ".");
+}
+
+void check(const TagDesign& tag, const std::string& place) {
+  requireLength(tag.side, place, "the side of the tag");
+  require(tag.id >= 0 && tag.id < tagCount(tag.family), place,
+          "the number of the tag is " + std::to_string(tag.id) + "; " + tagFamilyName(tag.family) +
+              " has tags from 0 to " + std::to_string(tagCount(tag.family) - 1) + ".");
 }
 
 void checkBars(const SleeveDesign& sleeve, const std::string& place) {

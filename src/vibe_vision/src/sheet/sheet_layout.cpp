@@ -28,6 +28,10 @@ SheetItem itemOf(const InstrumentConfig& instrument, const SheetOptions& options
     item.width = item.height = ring->side;
     return item;
   }
+  if (const auto* tag = std::get_if<TagDesign>(&instrument.marker)) {
+    item.width = item.height = tag->side + 2 * tagMargin(*tag);
+    return item;
+  }
   const auto& sleeve = std::get<SleeveDesign>(instrument.marker);
   if (options.paper_thickness >= 0.2 * sleeve.diameter) {
     throw Error("the paper of " + showQuantity(options.paper_thickness, "m") + " is too thick for the sleeve of '" +
@@ -94,7 +98,13 @@ SheetPage boardPage(const SheetOptions& options) {
   }
   item.x = area.left + board.square + (room_x - item.width) / 2;
   item.y = area.top + board.square + kLabelHeight;
-  return {{item}};
+  return {{item}, {}};
+}
+
+SheetPage guidePage(const VisionConfig& config) {
+  SheetPage page;
+  for (const InstrumentConfig& instrument : config.instruments) page.guided.push_back(instrument.name);
+  return page;
 }
 
 void check(const SheetOptions& options) {
@@ -134,7 +144,8 @@ std::vector<SheetPage> layOut(const VisionConfig& config, const SheetOptions& op
     pages = flow.take();
   }
   if (options.board) pages.push_back(boardPage(options));
-  if (pages.empty()) throw Error("a sheet without markers and without a chessboard is empty; leave one of them in");
+  if (options.guide && !config.instruments.empty()) pages.push_back(guidePage(config));
+  if (pages.empty()) throw Error("a sheet without markers, chessboard and guide is empty; leave one of them in");
   return pages;
 }
 

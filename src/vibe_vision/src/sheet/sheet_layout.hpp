@@ -25,6 +25,10 @@ PaperExtent extentOf(Paper paper);
 /// Where everything goes. @throws Error if something is larger than a page
 std::vector<SheetPage> layOut(const VisionConfig& config, const SheetOptions& options);
 
+/// Draws the steps of a calibration with a picture on one page; one unit of the context is a metre.
+/// @throws Error if they do not fit on the paper
+void paintGuide(cairo_t* context, const SheetOptions& options, const std::vector<std::string>& instruments);
+
 /// Draws a page on a cairo surface.
 class SheetPainter {
  public:
@@ -45,6 +49,7 @@ class SheetPainter {
   void paintRuler(double x, double y, bool horizontal);
   void paintItem(const SheetItem& item);
   void paintRing(const SheetItem& item, const RingDesign& ring);
+  void paintTag(const SheetItem& item, const TagDesign& tag);
   void paintSleeve(const SheetItem& item, const SleeveDesign& sleeve);
   void paintStripe(const SleeveDesign& sleeve, double from, double to);
   void paintSleeveHints(const SheetItem& item, const SleeveDesign& sleeve);

@@ -1,10 +1,10 @@
-#include "sheet/sheet_layout.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
+#include "sheet/sheet_layout.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_vision/marker/tag_reader.hpp"
 
 namespace vibe::vision {
 namespace {
@@ -36,9 +36,13 @@ SheetPainter::~SheetPainter() {
 void SheetPainter::paint(const SheetPage& page, std::size_t number, std::size_t count) {
   cairo_set_source_rgb(context_, 1, 1, 1);
   cairo_paint(context_);
-  paintTitle(number, count);
-  paintRulers();
-  for (const SheetItem& item : page.items) paintItem(item);
+  if (page.guided.empty()) {
+    paintTitle(number, count);
+    paintRulers();
+    for (const SheetItem& item : page.items) paintItem(item);
+  } else {
+    paintGuide(context_, options_, page.guided);
+  }
   cairo_show_page(context_);
   if (cairo_status(context_) != CAIRO_STATUS_SUCCESS) {
     throw Error(std::string("the marker sheet cannot be drawn: ") + cairo_status_to_string(cairo_status(context_)) +
@@ -76,6 +80,8 @@ void SheetPainter::paintItem(const SheetItem& item) {
     paintBoard(item);
   } else if (const auto* ring = std::get_if<RingDesign>(&item.marker)) {
     paintRing(item, *ring);
+  } else if (const auto* tag = std::get_if<TagDesign>(&item.marker)) {
+    paintTag(item, *tag);
   } else {
     paintSleeve(item, std::get<SleeveDesign>(item.marker));
   }
@@ -94,6 +100,23 @@ void SheetPainter::paintRing(const SheetItem& item, const RingDesign& ring) {
   cairo_new_sub_path(context_);
   cairo_arc_negative(context_, x, y, ring.inner_diameter / 2, 2 * M_PI, 0);
   cairo_close_path(context_);
+  cairo_fill(context_);
+}
+
+void SheetPainter::paintTag(const SheetItem& item, const TagDesign& tag) {
+  text(item.x, item.y - kGap - 3e-3, kTextSize, item.name);
+  text(item.x, item.y - kGap + 0.5e-3, 0.8 * kTextSize,
+       std::string(tagFamilyName(tag.family)) + " " + std::to_string(tag.id) + ", " + millimetres(tag.side, 2));
+  paintCutLine(item);
+  const int cells = tagCells(tag.family);
+  const double cell = tag.side / cells;
+  const std::vector<std::uint8_t> white = tagPicture(tag);
+  cairo_set_source_rgb(context_, 0, 0, 0);
+  cairo_new_path(context_);
+  for (int row = 0; row < cells; ++row)
+    for (int column = 0; column < cells; ++column)
+      if (white[static_cast<std::size_t>(row * cells + column)] == 0)
+        cairo_rectangle(context_, item.x + (column + 1) * cell, item.y + (row + 1) * cell, cell, cell);
   cairo_fill(context_);
 }
 

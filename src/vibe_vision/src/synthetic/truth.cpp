@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "synthetic/degradation.hpp"
+#include "vibe_vision/marker/tag_reader.hpp"
 #include "vibe_vision/synthetic/synthetic_scene.hpp"
 
 namespace vibe::vision {
@@ -60,6 +61,11 @@ SyntheticTruth truthAt(const SyntheticScene& scene, std::size_t instrument, doub
   truth.velocity = (ideal(time + kStep) - ideal(time - kStep)).dot(axis.direction) / (2 * kStep);
   truth.visible = visibleShare(scene, object, time);
   return truth;
+}
+
+void setTag(SyntheticInstrument& instrument, const TagDesign& tag) {
+  instrument.nominal.marker = tag;
+  instrument.tag = {tagCells(tag.family), tagPicture(tag), tag.side};
 }
 
 }  // namespace vibe::vision

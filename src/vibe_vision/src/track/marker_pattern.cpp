@@ -2,6 +2,7 @@
 
 #include "track/ring_pattern.hpp"
 #include "track/sleeve_pattern.hpp"
+#include "vibe_core/common/error.hpp"
 
 namespace vibe::vision {
 
@@ -42,6 +43,8 @@ std::unique_ptr<MarkerPattern> makePattern(const MarkerDesign& design, double pi
                                            const MarkerView& view) {
   if (const auto* ring = std::get_if<RingDesign>(&design))
     return std::make_unique<RingPattern>(*ring, pixels_per_metre);
+  if (std::holds_alternative<TagDesign>(design))
+    throw Error("a tag of another library has no pattern to fit; track it with a Tracker");
   return std::make_unique<SleevePattern>(std::get<SleeveDesign>(design), pixels_per_metre, view);
 }
 

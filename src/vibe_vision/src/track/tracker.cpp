@@ -1,5 +1,8 @@
 #include "vibe_vision/track/tracker.hpp"
 
+#include <variant>
+
+#include "tag/tag_tracker.hpp"
 #include "track/instrument_tracker.hpp"
 
 namespace vibe::vision {
@@ -57,20 +60,23 @@ const char* toText(Doubt doubt) {
 
 struct Tracker::Impl {
   VisionConfig config;
-  std::vector<InstrumentTracker> instruments;
+  std::vector<std::variant<InstrumentTracker, TagTracker>> instruments;
   Measurements measurements;
 
   /// All markers are seen by one shutter.
   void shareRowTimes() {
     if (instruments.size() < 2) return;
     CalibrationDoubts::RowTime all;
-    for (InstrumentTracker& instrument : instruments) {
-      const CalibrationDoubts::RowTime seen = instrument.doubts().rowTimeSeen();
+    const auto doubtsOf = [](auto& instrument) -> CalibrationDoubts& {
+      return std::visit([](auto& tracker) -> CalibrationDoubts& { return tracker.doubts(); }, instrument);
+    };
+    for (auto& instrument : instruments) {
+      const CalibrationDoubts::RowTime seen = doubtsOf(instrument).rowTimeSeen();
       all.information += seen.information, all.sum += seen.sum;
     }
-    for (InstrumentTracker& instrument : instruments) {
-      const CalibrationDoubts::RowTime own = instrument.doubts().rowTimeSeen();
-      instrument.doubts().addRowTime({all.information - own.information, all.sum - own.sum});
+    for (auto& instrument : instruments) {
+      const CalibrationDoubts::RowTime own = doubtsOf(instrument).rowTimeSeen();
+      doubtsOf(instrument).addRowTime({all.information - own.information, all.sum - own.sum});
     }
   }
 
@@ -86,10 +92,14 @@ Tracker::Tracker(const VisionConfig& config) : impl_(std::make_unique<Impl>()) {
   impl_->config = config;
   for (const InstrumentConfig& instrument : config.instruments) {
     checkMarker(instrument.marker, "The marker of instrument '" + instrument.name + "'");
-    impl_->instruments.emplace_back(
-        config, instrument,
-        makePattern(instrument.marker, instrument.axis.pixels_per_metre, markerView(config.camera, instrument.axis)));
-    impl_->measurements.push_back(impl_->instruments.back().measurement());
+    if (std::holds_alternative<TagDesign>(instrument.marker))
+      impl_->instruments.emplace_back(std::in_place_type<TagTracker>, config, instrument);
+    else
+      impl_->instruments.emplace_back(
+          std::in_place_type<InstrumentTracker>, config, instrument,
+          makePattern(instrument.marker, instrument.axis.pixels_per_metre, markerView(config.camera, instrument.axis)));
+    impl_->measurements.push_back(
+        std::visit([](const auto& tracker) { return tracker.measurement(); }, impl_->instruments.back()));
   }
 }
 
@@ -101,16 +111,19 @@ const Measurements& Tracker::track(const Frame& frame) {
   impl_->shareRowTimes();
   const bool none = frame.image.empty() || frame.image.data == nullptr;
   for (std::size_t i = 0; i < impl_->instruments.size(); ++i) {
-    InstrumentTracker& instrument = impl_->instruments[i];
-    impl_->measurements[i] = none                 ? instrument.lose(LostReason::NoFrame)
-                             : impl_->fits(frame) ? instrument.track(frame)
-                                                  : instrument.lose(LostReason::WrongImage);
+    impl_->measurements[i] = std::visit(
+        [&](auto& tracker) {
+          return none                 ? tracker.lose(LostReason::NoFrame)
+                 : impl_->fits(frame) ? tracker.track(frame)
+                                      : tracker.lose(LostReason::WrongImage);
+        },
+        impl_->instruments[i]);
   }
   return impl_->measurements;
 }
 
 void Tracker::reset() {
-  for (InstrumentTracker& instrument : impl_->instruments) instrument.reset();
+  for (auto& instrument : impl_->instruments) std::visit([](auto& tracker) { tracker.reset(); }, instrument);
 }
 
 const VisionConfig& Tracker::config() const {

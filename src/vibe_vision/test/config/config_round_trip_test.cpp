@@ -18,6 +18,13 @@ void expectEqual(const MarkerDesign& a, const MarkerDesign& b) {
     EXPECT_EQ(ring->side, other.side);
     return;
   }
+  if (const auto* tag = std::get_if<TagDesign>(&a)) {
+    const auto& other = std::get<TagDesign>(b);
+    EXPECT_EQ(tag->family, other.family);
+    EXPECT_EQ(tag->id, other.id);
+    EXPECT_EQ(tag->side, other.side);
+    return;
+  }
   const auto &one = std::get<SleeveDesign>(a), &other = std::get<SleeveDesign>(b);
   EXPECT_EQ(one.diameter, other.diameter);
   EXPECT_EQ(one.length, other.length);

@@ -41,6 +41,9 @@ class RandomConfig {
   }
 
   MarkerDesign marker() {
+    if (random_() % 4 == 0)
+      return TagDesign{random_() % 2 == 0 ? TagFamily::AprilTag : TagFamily::Aruco, static_cast<int>(random_() % 50),
+                       from(1e-3, 1e-2)};
     if (random_() % 2 == 0) {
       const double outer = from(1e-3, 1e-2);
       return RingDesign{outer, outer * from(0.3, 0.7), outer * from(1.5, 2)};

@@ -4,13 +4,16 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <regex>
 #include <string>
 
+#include "sheet/guide_steps.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_testing/expect_error.hpp"
+#include "vibe_vision/marker/tag_reader.hpp"
 
 namespace vibe::vision::marker_sheet_test {
 namespace {
@@ -124,6 +127,29 @@ TEST(MarkerSheet, TheRasterOfEachMarkerIsItsDesign) {
   }
 }
 
+TEST(MarkerSheet, TagsAreThoseOfTheirLibraries) {
+  VisionConfig config = twoInstruments();
+  config.instruments[0].marker = TagDesign{TagFamily::AprilTag, 3, 8e-3};
+  config.instruments[1].marker = TagDesign{TagFamily::Aruco, 9, 6e-3};
+  const MarkerSheet sheet(config, {});
+  const SheetRaster raster = sheet.raster(0, kRaster);
+  for (const SheetItem& item : sheet.pages()[0].items) {
+    const TagDesign tag = std::get<TagDesign>(item.marker);
+    std::vector<std::uint8_t> piece;  // what a camera sees of a cut tag, at 0.1 mm/px
+    const int size = static_cast<int>(item.width * 1e4);
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x)
+        piece.push_back(raster.value[static_cast<std::size_t>((item.y * 1e4 + y + 0.5) * 4) *
+                                         static_cast<std::size_t>(raster.width) +
+                                     static_cast<std::size_t>((item.x * 1e4 + x + 0.5) * 4)]);
+    const std::vector<TagCorners> found = TagReader(tag, 1e4).find({piece.data(), size, size, size});
+    ASSERT_EQ(found.size(), 1U) << item.name;
+    EXPECT_NEAR((found[0][0] - found[0][1]).norm(), tag.side * 1e4, 1) << item.name;
+    const TagDesign other{tag.family, tag.id + 1, tag.side};
+    EXPECT_TRUE(TagReader(other, 1e4).find({piece.data(), size, size, size}).empty());
+  }
+}
+
 TEST(MarkerSheet, ControlAnotherDesignDoesNotMatchTheRaster) {
   const SheetOptions options;
   const MarkerSheet sheet(twoInstruments(), options);
@@ -151,7 +177,7 @@ TEST(MarkerSheet, PdfPagesHaveTheSizeOfThePaper) {
       EXPECT_NEAR(std::stod((*match)[1]), paper == Paper::A4 ? 595.2756 : 612, 1e-3);
       EXPECT_NEAR(std::stod((*match)[2]), paper == Paper::A4 ? 841.8898 : 792, 1e-3);
     }
-    EXPECT_EQ(pages, 2);
+    EXPECT_EQ(pages, 3);
     unlink(file.c_str());
   }
 }
@@ -194,7 +220,7 @@ bool contains(const std::vector<Box>& boxes, double left, double top, double wid
 TEST(MarkerSheet, SvgIsInMillimetresAndTheMarkersAreWhereThePagesSay) {
   const MarkerSheet sheet(twoInstruments(), {});
   const std::vector<std::string> files = sheet.writeSvg(fileName(".svg"));
-  ASSERT_EQ(files.size(), 2U);
+  ASSERT_EQ(files.size(), 3U);
   const std::string text = contentOf(files[0]);
   EXPECT_NE(text.find("width=\"210mm\" height=\"297mm\" viewBox=\"0 0 210 297\""), std::string::npos);
   const std::vector<Box> boxes = filledBoxes(text);
@@ -263,7 +289,7 @@ TEST(MarkerSheet, NothingLiesOnAnythingElseAndAllIsOnThePaper) {
     options.paper = paper;
     options.copies = 20;
     const MarkerSheet sheet(twoInstruments(), options);
-    EXPECT_GT(sheet.pages().size(), 2U);
+    EXPECT_GT(sheet.pages().size(), 3U);
     for (const SheetPage& page : sheet.pages()) {
       for (std::size_t i = 0; i < page.items.size(); ++i) {
         const SheetItem& a = page.items[i];
@@ -278,6 +304,67 @@ TEST(MarkerSheet, NothingLiesOnAnythingElseAndAllIsOnThePaper) {
       }
     }
   }
+}
+
+/// Share of a frame of 10 mm along the edges of a page that is printed on.
+double printedInTheMargin(const MarkerSheet& sheet, std::size_t page) {
+  constexpr double kCoarse = 4e3;  // pixels per metre
+  const SheetRaster raster = sheet.raster(page, kCoarse);
+  const int margin = static_cast<int>(10e-3 * kCoarse);
+  int all = 0, dark = 0;
+  for (int y = 0; y < raster.height; ++y)
+    for (int x = 0; x < raster.width; ++x) {
+      if (x >= margin && y >= margin && x < raster.width - margin && y < raster.height - margin) continue;
+      ++all;
+      if (raster.value[static_cast<std::size_t>(y * raster.width + x)] < 255) ++dark;
+    }
+  return static_cast<double>(dark) / all;
+}
+
+TEST(MarkerSheet, TheGuideFillsOnePage) {
+  VisionConfig many = twoInstruments();
+  while (many.instruments.size() < 8) {
+    many.instruments.push_back(many.instruments[0]);
+    many.instruments.back().name = "instrument_" + std::to_string(many.instruments.size());
+  }
+  SheetOptions options;
+  options.markers = options.board = false;
+  for (const Paper paper : {Paper::A4, Paper::Letter})
+    for (const VisionConfig& config : {twoInstruments(), many}) {
+      options.paper = paper;
+      const MarkerSheet sheet(config, options);
+      ASSERT_EQ(sheet.pages().size(), 1U);
+      EXPECT_EQ(printedInTheMargin(sheet, 0), 0);
+    }
+  many.instruments[0].name = std::string(400, 'w');
+  EXPECT_NE(vibe::errorOf([&] { MarkerSheet(many, options).raster(0, 1e3); }).find("do not fit on one page"),
+            std::string::npos);
+}
+
+/// What a terminal shows of a command in an empty folder.
+std::string shown(const std::string& command) {
+  FILE* pipe = ::popen(("cd /var/empty 2>/dev/null || cd /; " + command + " 2>&1").c_str(), "r");
+  std::string text;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
+  ::pclose(pipe);
+  return text;
+}
+
+TEST(MarkerSheet, TheCommandsOfTheGuideAreThoseOfThePrograms) {
+  const std::string run = "rosrun vibe_vision ";
+  SheetOptions options;
+  options.config_file = "no_such_rig.yaml";
+  int files = 0;
+  for (const GuideStep& step : guideSteps(options, {"helix", "needle_driver"})) {
+    ASSERT_EQ(step.command.rfind(run, 0), 0U);
+    const std::string command = step.command.substr(run.size());
+    if (command.rfind("vision_node", 0) == 0) continue;  // its parameters are checked with it
+    const bool camera = command.rfind("vibe_camera_check", 0) == 0;
+    const std::string answer = shown(VISION_PROGRAMS "/" + command + (camera ? " --duration 0.1 --wrong" : ""));
+    EXPECT_EQ(answer.find("see --help") != std::string::npos, camera) << step.command << "\n" << answer;
+    files += answer.find("no_such_rig") != std::string::npos ? 1 : 0;
+  }
+  EXPECT_EQ(files, 5);
 }
 
 TEST(MarkerSheet, WhatCannotBePrintedIsSaid) {

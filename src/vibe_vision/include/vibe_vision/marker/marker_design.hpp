@@ -35,7 +35,22 @@ struct SleeveDesign {
   // pi
 };
 
-using MarkerDesign = std::variant<RingDesign, SleeveDesign>;  ///< what the tracker knows to look for
+/// Whose tags: 36h11 of libapriltag, or the dictionary 4X4_50 of OpenCV's aruco.
+enum class TagFamily { AprilTag, Aruco };
+
+/// A square tag of another library: slide only. It is printed flat and looks at the camera; which of its sides is up
+/// does not matter. A ring is several times as exact: docs/vision.md, "Tags of other libraries".
+struct TagDesign {
+  TagFamily family = TagFamily::AprilTag;  ///< where its picture is from
+  int id = 0;                              ///< number of the tag in the family
+  double side = 0;                         ///< of its black border, without the cell of white around it [m]
+};
+int tagCells(TagFamily family);               ///< per side, black border included
+int tagCount(TagFamily family);               ///< of the family; numbers are from 0
+const char* tagFamilyName(TagFamily family);  ///< its key in a configuration
+double tagMargin(const TagDesign& tag);       ///< white that must be around it: a cell [m]
+
+using MarkerDesign = std::variant<RingDesign, SleeveDesign, TagDesign>;  ///< what the tracker knows to look for
 
 /// The sleeve that ships: 3 mm rod.
 SleeveDesign defaultSleeve();

@@ -12,13 +12,15 @@ namespace vibe::vision {
 enum class Paper { A4, Letter };
 
 struct SheetOptions {
-  Paper paper = Paper::A4;        ///< of all pages
-  int copies = 3;                 ///< of each marker
-  double paper_thickness = 1e-4;  ///< [m]; 80 g/m^2 office paper. Sleeves are shorter by pi times it
-  double overlap = 2.5e-3;        ///< of a sleeve, glued under its other end [m]
-  bool markers = true;            ///< the pages with the markers of the configuration
-  bool board = true;              ///< the page with the chessboard
-  BoardSpec board_spec;           ///< for the chessboard
+  Paper paper = Paper::A4;               ///< of all pages
+  int copies = 3;                        ///< of each marker
+  double paper_thickness = 1e-4;         ///< [m]; 80 g/m^2 office paper. Sleeves are shorter by pi times it
+  double overlap = 2.5e-3;               ///< of a sleeve, glued under its other end [m]
+  bool markers = true;                   ///< the pages with the markers of the configuration
+  bool board = true;                     ///< the page with the chessboard
+  bool guide = true;                     ///< the page that says how to calibrate, step by step
+  BoardSpec board_spec;                  ///< for the chessboard
+  std::string config_file = "rig.yaml";  ///< as the commands of the guide name it
 };
 
 /// A piece of a page, in metres from the page's upper left corner, x to the right and y down.
@@ -31,7 +33,8 @@ struct SheetItem {
 };
 
 struct SheetPage {
-  std::vector<SheetItem> items;  ///< in the order in which they are drawn
+  std::vector<SheetItem> items;     ///< in the order in which they are drawn
+  std::vector<std::string> guided;  ///< instruments whose calibration the page explains; empty: of no other page
 };
 
 /// A page as grey values, row by row: 0 black, 255 white.
@@ -41,13 +44,14 @@ struct SheetRaster {
 };
 
 /// Pages with all markers of a configuration at their true size, to be printed at 100 %: cut lines, names, the
-/// direction of positive slide, and rulers of 100 mm along both sides that show a printer that scales.
+/// direction of positive slide, and rulers of 100 mm along both sides that show a printer that scales; and a page that
+/// says how to calibrate.
 class MarkerSheet {
  public:
   /// @throws Error if something does not fit on the paper
   MarkerSheet(const VisionConfig& config, const SheetOptions& options);
 
-  const std::vector<SheetPage>& pages() const { return pages_; }  ///< those with markers first, then the chessboard
+  const std::vector<SheetPage>& pages() const { return pages_; }  ///< with markers first, chessboard, guide
   double width() const;                                           ///< of the paper [m]
   double height() const;                                          ///< [m]
 

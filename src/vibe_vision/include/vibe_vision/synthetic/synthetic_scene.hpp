@@ -28,13 +28,16 @@ struct SyntheticTag {
 /// they leave slide and axis as they are. The rotation of a sleeve is counted from the direction to the camera.
 struct SyntheticInstrument {
   InstrumentConfig nominal;  ///< as calibrated; marker and axis
-  SyntheticTag tag;          ///< drawn instead of nominal.marker if it has cells
+  SyntheticTag tag;          ///< drawn instead of nominal.marker if it has cells; needed if that is a tag: setTag()
   SyntheticMotion motion;    ///< of the marker along and about the axis
   double tilt = 0;           ///< of the marker about the view direction, from the axis to its right (y down) [rad]
   double slant = 0;          ///< of the marker out of the image plane; positive: its positive end is further away [rad]
   double scale = 1;          ///< of the marker: it is printed larger by this factor
   double lateral = 0;        ///< offset of the marker across the axis, to the right of the direction [m]
 };
+
+/// Gives an instrument a tag, and its picture.
+void setTag(SyntheticInstrument& instrument, const TagDesign& tag);
 
 /// What spoils a picture. The default spoils nothing but noise and focus blur.
 struct Degradation {

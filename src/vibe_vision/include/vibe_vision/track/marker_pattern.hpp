@@ -129,7 +129,8 @@ struct MarkerView {
 /// The view of a calibrated camera on an axis.
 MarkerView markerView(const CameraModel& camera, const SlideAxis& axis);
 
-/// @param pixels_per_metre  scale at which the marker is seen at log_scale 0
+/// Of a ring or a sleeve. @param pixels_per_metre  scale at which the marker is seen at log_scale 0
+/// @throws Error for a tag
 std::unique_ptr<MarkerPattern> makePattern(const MarkerDesign& design, double pixels_per_metre,
                                            const MarkerView& view = {});
 
