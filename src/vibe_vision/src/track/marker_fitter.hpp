@@ -62,7 +62,7 @@ class MarkerFitter {
                          double max_motion, bool known_rotation, double reach);
   void learnLight(const MarkerFit& fit);
   void refineWithLight(MarkerFit& fit, const FitPrior& prior, double max_motion);
-  SideLimits sideLimits(double max_motion) const;
+  SideLimits sideLimits(const MarkerFit& fit, double max_motion) const;
   void stepWithSides(MarkerFit& fit, FitStep& step);
   void measureMotion(const MarkerFit& fit, const SideLimits& limits);
   void useHalf();

@@ -110,13 +110,14 @@ MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const Fit
 /// the motion.
 void MarkerFitter::refineWithLight(MarkerFit& fit, const FitPrior& prior, double max_motion) {
   learnLight(fit);
-  sides_ = sideLimits(max_motion);
+  sides_ = sideLimits(fit, max_motion);
   refine(fit, prior, kMotionUncertainty, kAcquireSteps);
   sides_ = {};
 }
 
-SideLimits MarkerFitter::sideLimits(double max_motion) const {
-  if (max_motion <= 1 || most_.bend <= 0 || most_.turn <= 0) return {kGuessedLight, {}};
+/// A short motion looks like blur, which is a parameter.
+SideLimits MarkerFitter::sideLimits(const MarkerFit& fit, double max_motion) const {
+  if (!isMotionLong(fit) || most_.bend <= 0 || most_.turn <= 0) return {kGuessedLight, {}};
   return {kGuessedLight, {max_motion / 2, most_.bend / 2, most_.turn / 2}};
 }
 
@@ -240,7 +241,7 @@ void MarkerFitter::refineMotion(MarkerFit& fit, const FitPrior& prior, double ma
 
 /// One frame hardly tells the light around a rod from its rotation and its place across the axis.
 void MarkerFitter::doubtLight(MarkerFit& fit, double max_motion) {
-  const SideLimits limits = sideLimits(max_motion);
+  const SideLimits limits = sideLimits(fit, max_motion);
   measureMotion(fit, limits);
   fit.covariance = fit_.covariance(pixels_, light_, limits) * std::max(1.0, fit.misfit);
   doubtCovered(fit);
