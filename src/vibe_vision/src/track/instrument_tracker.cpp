@@ -41,7 +41,7 @@ constexpr int kFirstLooks = 16, kLookEvery = 4;        // frames; to look for a 
 constexpr double kTellingSpeed = 0.05;                 // from which a picture would be sheared [m/s]
 constexpr double kUncheckedShift = 2.5e-4;             // standard deviation that is worth a doubt [m]
 constexpr double kUneven = 0.028;  // bars apart, by optics that blur not as a Gaussian, per square of the blur [1/px]
-constexpr double kSearchDoubt = 0.1;  // about size, tilt and blur that a search found
+constexpr double kSearchDoubt = 0.1;  // about size, tilt and blur of a ring that a search found
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double bandHalfWidth(const MarkerPattern& pattern, const InstrumentConfig& config) {
@@ -128,15 +128,17 @@ InstrumentTracker::Prediction InstrumentTracker::predict(double stamp) {
   return p;
 }
 
-MarkerMotion InstrumentTracker::motionAt(const MotionFilter::State& slide, double exposure) const {
+MarkerMotion InstrumentTracker::motionAt(const MotionFilter::State& slide, const MotionFilter::State& rotation,
+                                         double exposure) const {
   const double scale = pixelsPerMetre(config_.axis, slide.mean[0]);
-  return {slide.mean[1] * exposure * scale, slide.mean[2] * square(exposure) / 16 * scale};
+  return {slide.mean[1] * exposure * scale, slide.mean[2] * square(exposure) / 16 * scale, rotation.mean[1] * exposure};
 }
 
 MarkerMotion InstrumentTracker::fastestMotion(const Frame& frame) const {
   const double scale = config_.axis.pixels_per_metre;
   return {config_.motion.max_speed * frame.exposure * scale,
-          config_.motion.max_acceleration * square(frame.exposure) / 16 * scale};
+          config_.motion.max_acceleration * square(frame.exposure) / 16 * scale,
+          config_.motion.max_angular_speed * frame.exposure};
 }
 
 /// What was learnt may be wrong if it finds nothing.
@@ -159,8 +161,9 @@ bool InstrumentTracker::follow(const Frame& frame, const Prediction& prediction)
   const FitPrior prior = slow_.prior(slide);
   FitVector start = startAt(slide, prior, prediction);
   start[kLateral] = measurement_.tracked() ? measurement_.lateral : 0;
-  MarkerFit fit = fitter_.follow(map_, frame, start, prior, motionAt(prediction.slide, frame.exposure),
-                                 prediction.slide.deviation() * scale);
+  MarkerFit fit =
+      fitter_.follow(map_, frame, start, prior, motionAt(prediction.slide, prediction.rotation, frame.exposure),
+                     prediction.slide.deviation() * scale);
   if (fit.valid) correctMotion(frame, prior, fit);
   reason_ = gates_.judge(fit, slow_.nominal(slide), isNear(fit, prediction));
   if (reason_ == LostReason::None && !isExpected(fit, prediction, frame.stamp)) reason_ = LostReason::Jump;
@@ -215,7 +218,8 @@ void InstrumentTracker::correctMotion(const Frame& frame, const FitPrior& prior,
   const double slide = slideOf(config_.axis, fit.x[kAlong]);
   filter.update(frame.stamp, slide, fit.covariance(kAlong, kAlong) / square(pixelsPerMetre(config_.axis, slide)));
   const MotionFilter::State state = filter.predict(frame.stamp);
-  const MarkerMotion motion = motionAt(state, frame.exposure);
+  MarkerMotion motion = motionAt(state, {}, frame.exposure);
+  motion.turn = fit.motion.turn;
   const double deviation = std::sqrt(state.covariance(1, 1)) * frame.exposure * pixelsPerMetre(config_.axis, slide);
   const bool same =
       std::abs(motion.length - fit.motion.length) < kSameMotion && std::abs(motion.bend - fit.motion.bend) < kSameBend;
@@ -242,7 +246,7 @@ bool InstrumentTracker::searchNearby(const Frame& frame, const Prediction& predi
   const double scale = pixelsPerMetre(config_.axis, slide), deviation = prediction.slide.deviation() * scale;
   if (deviation > kKnownPlace) return false;
   const FitPrior prior = slow_.prior(slide);
-  const double motion = std::abs(motionAt(prediction.slide, frame.exposure).length);
+  const double motion = std::abs(motionAt(prediction.slide, prediction.rotation, frame.exposure).length);
   const bool known_rotation = prediction.rotation.deviation() < kKnownRotation;
   const MarkerFit fit = fitter_.acquire(map_, frame, startAt(slide, prior, prediction), prior, motion,
                                         fastestMotion(frame), known_rotation, kNearbyReach * deviation);
@@ -349,7 +353,9 @@ void InstrumentTracker::accept(const Frame& frame, const MarkerFit& fit, const P
   toMiddle(frame, fit, scale);
   measurement_.slide = slideOf(config_.axis, measurement_.along);
   describe(fit);
-  if (fit.visible > kGoodLook) slow_.update(fit.x, fit.covariance, measurement_.slide, reacquired ? kSearchDoubt : 0);
+  // The covariance of a sleeve that was searched has the light and the motion in it.
+  const double doubt = reacquired && !fitter_.shows(kRotation) ? kSearchDoubt : 0;
+  if (fit.visible > kGoodLook) slow_.update(fit.x, fit.covariance, measurement_.slide, doubt);
   jumps_ = lost_frames_ = 0;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include "track/axis_search.hpp"
+#include "track/gates.hpp"
 #include "track/kalman_filters.hpp"
 #include "track/marker_fitter.hpp"
 #include "track/slow_state.hpp"
@@ -28,7 +29,7 @@ class InstrumentTracker {
     bool close = false;  ///< well enough to fit right away
   };
   Prediction predict(double stamp);
-  MarkerMotion motionAt(const MotionFilter::State& slide, double exposure) const;
+  MarkerMotion motionAt(const MotionFilter::State& slide, const MotionFilter::State& rotation, double exposure) const;
   FitVector startAt(double slide, const FitPrior& prior, const Prediction& prediction) const;
   bool follow(const Frame& frame, const Prediction& prediction);
   void lookForDistortions(const Frame& frame, const MarkerFit& fit);

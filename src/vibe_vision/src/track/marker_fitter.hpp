@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "track/axis_map.hpp"
-#include "track/kalman_filters.hpp"
 #include "track/pattern_fit.hpp"
 #include "vibe_vision/track/tracker.hpp"
 
@@ -50,6 +49,9 @@ class MarkerFitter {
                     const MarkerMotion& most, bool known_rotation, double reach = 0);
 
  private:
+  static constexpr double kStrangeMotion = 1.5;  ///< misfit from which a motion may be why
+  static constexpr double kLearnVisible = 0.8;   ///< share of a rod that must be seen to learn the light on it
+
   bool read(AxisMap& map, const Frame& frame, MarkerFit& fit, bool guess_light = false);
   void linearise();
   void prepare(const MarkerFit& fit, bool rough = false);
@@ -59,6 +61,10 @@ class MarkerFitter {
   MarkerFit tryToAcquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior, double motion,
                          double max_motion, bool known_rotation, double reach);
   void learnLight(const MarkerFit& fit);
+  void refineWithLight(MarkerFit& fit, const FitPrior& prior, double max_motion);
+  SideLimits sideLimits(const MarkerFit& fit, double max_motion) const;
+  void stepWithSides(MarkerFit& fit, FitStep& step);
+  void measureMotion(const MarkerFit& fit, const SideLimits& limits);
   void useHalf();
   void useQuarter();
   void useAll();
@@ -68,13 +74,11 @@ class MarkerFitter {
   void chooseMotion(MarkerFit& fit, const FitPrior& prior, double max_motion);
   static bool isMotionLong(const MarkerFit& fit);
   void refineMotion(MarkerFit& fit, const FitPrior& prior, double max_motion);
-  void solveBend(MarkerFit& fit, const FitPrior& prior);
-  void chooseLateral(MarkerFit& fit, const FitPrior& prior);
   bool tryMotions(MarkerFit& fit, const FitPrior& prior, double max_motion, double distance);
   void refine(MarkerFit& fit, const FitPrior& prior, double uncertainty, int max_steps);
   double lengthOf(const FitStep& step) const;
   void stateCovariance(MarkerFit& fit) const;
-  void doubtLight(MarkerFit& fit) const;
+  void doubtLight(MarkerFit& fit, double max_motion);
   static void doubtCovered(MarkerFit& fit);
   void take(const FitStep& step, MarkerFit& fit);
 
@@ -85,6 +89,8 @@ class MarkerFitter {
   PixelBlock pixels_;
   std::size_t all_ = 0;  ///< pixels read
   RodLight light_;
+  SideLimits sides_;                 ///< in refine(); light 0: nothing beside the parameters
+  int lit_frames_ = 0;               ///< followed since forget(), the light of which was learnt
   int tries_ = 0;                    ///< by acquire() since the light was learnt
   double gamma_ = 1;                 ///< of pixels_ and light_
   double table_gamma_ = 0;           ///< of linear_
@@ -93,26 +99,8 @@ class MarkerFitter {
   MarkerPose prepared_;              ///< for which the pattern made its picture,
   MarkerMotion prepared_motion_;
   bool prepared_rough_ = false, is_prepared_ = false;
-  double most_bend_ = 0;  ///< of MarkerMotion, in acquire() [px]
+  MarkerMotion most_;  ///< in acquire()
   PatternFit fit_;
-};
-
-/// Decides whether a fit is the marker.
-class Gates {
- public:
-  Gates(const VisionConfig& config, const InstrumentConfig& instrument);
-
-  /// Everything that one picture tells. @param nominal  what the calibration says about size and tilt there
-  /// @param expected  the place agrees with a good prediction
-  LostReason judge(const MarkerFit& fit, const FitVector& nominal, bool expected = false) const;
-  /// Whether an instrument that was seen some time ago can be there. @param dt  since then [s]
-  bool isReachable(double slide, const MotionFilter::State& predicted, double last_slide, double dt) const;
-
- private:
-  GateConfig limits_;
-  MotionLimits motion_;
-  double begin_, end_;        ///< along the axis [px]
-  double lateral_tolerance_;  ///< [px]
 };
 
 }  // namespace vibe::vision

@@ -120,6 +120,7 @@ PatternFit::PatternFit(MarkerPattern& pattern, const PixelNoise& noise, std::siz
       rest_(factor_),
       information_(factor_),
       white_(factor_),
+      moved_({factor_, factor_, factor_}),
       before_(factor_),
       lit_(factor_),
       equations_(capacity) {
@@ -269,28 +270,6 @@ VIBE_LANES void PatternFit::fillColumns(const FitVector& x, const PixelBlock& pi
   }
 }
 
-FitMatrix PatternFit::covariance(const PixelBlock& pixels, const RodLight& light, double deviation) const {
-  using Lights = Eigen::Matrix<double, RodLight::kPlaces, RodLight::kPlaces>;
-  Lights lights = Lights::Identity() / square(deviation);
-  Eigen::Matrix<double, Eigen::Dynamic, RodLight::kPlaces, 0, kFitParameters> common(columns_, RodLight::kPlaces);
-  common.setZero();
-  const auto black = static_cast<float>(at_[kBlack]), contrast = static_cast<float>(at_[kContrast]);
-  for (std::size_t i = 0; i < pixels.count; ++i) {
-    const float p = light.placeOf(pixels.along[i], pixels.lateral[i]);
-    const int k = static_cast<int>(p);
-    const double b = p - static_cast<float>(k), a = 1 - b;
-    const double c = lit_[i] / pixels.light[i] * (black + contrast * values_.value[i]);
-    lights(k, k) += square(a * c), lights(k + 1, k + 1) += square(b * c);
-    lights(k, k + 1) += a * b * c * c, lights(k + 1, k) += a * b * c * c;
-    for (int j = 0; j < columns_; ++j) {
-      const double d = c * equations_.column(j)[i];
-      common(j, k) += a * d, common(j, k + 1) += b * d;
-    }
-  }
-  const FitSubmatrix h = factors_.reconstructedMatrix() - common * lights.ldlt().solve(common.transpose());
-  return spread(h.ldlt().solve(FitSubmatrix::Identity(columns_, columns_)) * kVarianceFactor);
-}
-
 void PatternFit::learnLight(const FitVector& x, const PixelBlock& pixels, RodLight& light) const {
   light.begin(poseOf(x));
   for (std::size_t i = 0; i < pixels.count; ++i) {
@@ -336,22 +315,6 @@ Distortions PatternFit::distortions(const FitPrior& unlearnt, const PixelBlock& 
   return found;
 }
 
-PatternFit::Nuisance PatternFit::nuisance(const PixelBlock& pixels, double step) {
-  const std::size_t count = pixels.padded();
-  std::copy_n(values_.value.data(), count, before_.data());
-  evaluate(at_, pixels);
-  const auto factor = static_cast<float>(at_[kContrast] / step);
-  float* column = equations_.column(columns_);
-  for (std::size_t i = 0; i < count; ++i) column[i] = lit_[i] * factor * (values_.value[i] - before_[i]);
-  Nuisance result;
-  result.change = distortion(factors_, gradient_, count);
-  FitSubvector common(columns_);
-  for (int a = 0; a < columns_; ++a) common[a] = dot(equations_.column(a), column, count);
-  const FitSubvector others = factors_.solve(common);
-  for (int a = 0; a < columns_; ++a) result.others[parameter_[a]] = -others[a];
-  return result;
-}
-
 /// What the column behind those of the fit tells beside them.
 Distortion PatternFit::distortion(const Eigen::LDLT<FitSubmatrix>& factors, const FitSubvector& g, std::size_t count) {
   const float* column = equations_.column(columns_);
@@ -389,13 +352,13 @@ void PatternFit::solve(const FitVector& x, const FitPrior& prior, FitStep& resul
 }
 
 FitMatrix PatternFit::covariance() const {
-  return spread(factors_.solve(FitSubmatrix::Identity(columns_, columns_)) * kVarianceFactor);
+  return spread(factors_.solve(FitSubmatrix::Identity(columns_, columns_)));
 }
 
 FitMatrix PatternFit::spread(const FitSubmatrix& inverse) const {
   FitMatrix covariance = FitMatrix::Zero();
   for (int a = 0; a < columns_; ++a)
-    for (int b = 0; b < columns_; ++b) covariance(parameter_[a], parameter_[b]) = inverse(a, b);
+    for (int b = 0; b < columns_; ++b) covariance(parameter_[a], parameter_[b]) = kVarianceFactor * inverse(a, b);
   return covariance;
 }
 

@@ -72,6 +72,12 @@ struct FitOptions {
   bool response = false;  ///< look for gamma, too
 };
 
+/// What is known of what a fit may look for beside its parameters: standard deviations. 0 of the motion: all.
+struct SideLimits {
+  double light = 0;     ///< of the light at a place of a rod, relative to what it is
+  MarkerMotion motion;  ///< each of its three
+};
+
 /// The result of one step, at the parameters before the step.
 struct FitStep {
   FitVector change = FitVector::Zero();
@@ -98,25 +104,34 @@ class PatternFit {
   FitStep step(const FitVector& x, const FitPrior& prior, const PixelBlock& pixels, const FitOptions& options);
   /// Of the parameters after the last step(), which was valid.
   FitMatrix covariance() const;
-  /// The same of a rod whose light is known no better than to this standard deviation, relative to its mean.
-  FitMatrix covariance(const PixelBlock& pixels, const RodLight& light, double deviation) const;
+  /// The same of a rod together with what else its picture depends on; see measureMotion().
+  FitMatrix covariance(const PixelBlock& pixels, const RodLight& light, const SideLimits& limits) const;
+  /// How the picture of the last step() changes with its motion. @param k  0: with the length, 1: with the bend, 2:
+  /// with the turn  @param by  change of it that the pattern is prepared for
+  void measureMotion(int k, const PixelBlock& pixels, double by);
+  /// Replaces the change of the last step(), which was valid, by that together with the light on a rod, which is
+  /// changed, and the motion. @return what the motion changes by
+  MarkerMotion stepWithLight(const PixelBlock& pixels, RodLight& light, const SideLimits& limits,
+                             const MarkerMotion& motion, FitStep& step) const;
   /// FitStep::loss alone.
   double loss(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
   /// What the pixels of the last step(), which was valid, tell of distortions beside all that it looked for.
   /// @param unlearnt  the prior before any picture: what a bend does to the first ones, it has taught
   Distortions distortions(const FitPrior& unlearnt, const PixelBlock& pixels, const Sight& sight);
-  /// How the picture of the last step(), which was valid, changes with something that it did not look for.
-  struct Nuisance {
-    Distortion change;                     ///< of it
-    FitVector others = FitVector::Zero();  ///< what the parameters change by with it
-  };
-  /// @param step  of it that the pattern was prepared for, against the last step()
-  Nuisance nuisance(const PixelBlock& pixels, double step);
   const PatternValues& values() const { return values_; }
   /// Learns how the light changes around a rod, from the pixels and weights of the last step.
   void learnLight(const FitVector& x, const PixelBlock& pixels, RodLight& light) const;
 
  private:
+  static constexpr int kMotionSides = 3, kSides = RodLight::kPlaces + kMotionSides;
+  /// Normal equations of the light and the motion, and what they share with those of the last step().
+  struct Sides {
+    Eigen::Matrix<double, kSides, kSides> left;
+    Eigen::Matrix<double, kSides, 1> right;
+    Eigen::Matrix<double, Eigen::Dynamic, kSides, 0, kFitParameters> common;
+  };
+  Sides sides(const PixelBlock& pixels, const RodLight& light, const SideLimits& limits,
+              const MarkerMotion& motion) const;
   Distortion distortion(const Eigen::LDLT<FitSubmatrix>& factors, const FitSubvector& g, std::size_t count);
   FitMatrix spread(const FitSubmatrix& inverse) const;
   void chooseColumns(const FitOptions& options);
@@ -132,7 +147,8 @@ class PatternFit {
   PatternValues values_;
   std::vector<float> factor_;                               ///< square root of a pixel's weight
   std::vector<float> weight_, rest_, information_, white_;  ///< see weigh()
-  std::vector<float> before_;                               ///< reflectances, see nuisance()
+  std::array<std::vector<float>, kMotionSides> moved_;      ///< see measureMotion()
+  std::vector<float> before_;                               ///< reflectances, likewise
   std::vector<float> lit_;                                  ///< factor_ times the light
   NormalEquations equations_;
   Eigen::LDLT<FitSubmatrix> factors_;            ///< of the last step(),

@@ -29,6 +29,15 @@ void smoothen(Left&& left, double deviation) {
 
 }  // namespace
 
+void RodLight::addPrior(double deviation, Eigen::Ref<Lights> left, Eigen::Ref<Vector> right) const {
+  left.diagonal().array() += 1 / square(deviation);
+  for (int k = 0; k + 2 < kPlaces; ++k) {
+    const Eigen::Vector3d row = Eigen::Vector3d(factor_[k], -2 * factor_[k + 1], factor_[k + 2]) / kBend;
+    left.block<3, 3>(k, k) += row * row.transpose();
+    right.segment<3>(k) -= row * row.sum();
+  }
+}
+
 void RodLight::reset() {
   factor_.setOnes();
   sheen_.setZero();

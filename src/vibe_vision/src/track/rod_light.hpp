@@ -18,6 +18,14 @@ class RodLight {
   bool known() const { return known_; }
   bool shines() const { return shines_; }  ///< a lamp is mirrored
   static constexpr int kPlaces = 13;       ///< over 0.96 of the radius to both sides
+  using Vector = Eigen::Matrix<double, kPlaces, 1>;
+  using Lights = Eigen::MatrixXd;
+  /// The marker is there now.
+  void moveTo(const MarkerPose& pose) { rows_ = placed_ ? rows_ : rowsOf(pose); }
+  /// That it is smooth and known to a standard deviation, as normal equations of a relative change of the factors.
+  void addPrior(double deviation, Eigen::Ref<Lights> left, Eigen::Ref<Vector> right) const;
+  /// Changes the factors, relative to what they are.
+  void change(const Vector& by) { factor_.array() *= (1 + by.array()).max(0.5); }
   /// Of a pixel, since the light was learnt: 0 to kPlaces - 1.
   float placeOf(float along, float lateral) const { return rows_.at(along, lateral); }
   void reset();
@@ -36,7 +44,6 @@ class RodLight {
   double raise(double power);
 
  private:
-  using Vector = Eigen::Matrix<double, kPlaces, 1>;
   using Both = Eigen::Matrix<double, 2 * kPlaces, 1>;  ///< the light and the sheen
   using Matrix = Eigen::Matrix<double, 2 * kPlaces, 2 * kPlaces>;
   struct Rows {

@@ -10,9 +10,10 @@ namespace vibe::vision {
 namespace {
 
 constexpr double kMinBlur = 0.25, kMaxBlur = 3.5;  // of the optics [px]
-constexpr double kMinSleeveMotion = 0.5;  // replaces shorter ones, and their variance is taken off the blur [px]
-constexpr double kRim = 0.88;             // of the radius: beyond, the print is seen too obliquely
-constexpr double kNoticeableBend = 0.01;  // of the motion [px]
+constexpr double kMinSleeveMotion = 0.5;    // replaces shorter ones, and their variance is taken off the blur [px]
+constexpr float kLeastStripeMotion = 0.2F;  // half of it [px]: a turn may make up for the slide
+constexpr double kRim = 0.88;               // of the radius: beyond, the print is seen too obliquely
+constexpr double kNoticeableBend = 0.01;    // of the motion [px]
 constexpr double kLongestBend = 0.7 * (BlurredLine::kMargin - MovingLine::kMaxHalfMotion);  // tables end there [px]
 constexpr float kMaxSine = 0.97F;                 // of the angle around the rod: keeps derivatives finite
 constexpr int kBarLevels = 4, kStripeLevels = 5;  // variances from the middle of the rod to the rim
@@ -105,6 +106,7 @@ void SleevePattern::compose(MovingLine& line, double low, double high, double ha
 void SleevePattern::prepare(const MarkerPose& pose, const MarkerMotion& motion, bool rough) {
   rough_ = rough;
   motion_ = std::min(std::abs(motion.length), 2.0 * MovingLine::kMaxHalfMotion);
+  turn_ = std::copysign(1.0, motion.length) * motion.turn;
   const double most = std::min(MotionParts::kMostBend * motion_ / 2, kLongestBend);
   const double bend = std::clamp(motion.bend, -most, most);
   parts_ = MotionParts(static_cast<float>(std::abs(bend) < kNoticeableBend ? 0 : 2 * bend / motion_));
@@ -118,7 +120,8 @@ void SleevePattern::prepare(const MarkerPose& pose, const MarkerMotion& motion, 
   const double stripe_more = 2.0 / 3 * half * half * tilt * (bow + std::abs(turn) * (rim - 1) / 2);
   compose(moving_bars_, variance * stretch - bars_more, variance * (stretch + bow * bow) + bars_more, half);
   compose(moving_stripe_, variance * (stretch + turn * turn) - stripe_more,
-          variance * (stretch + swing * swing) + stripe_more, half + half * view.tilt_sine * turn * (1 + rim) / 2);
+          variance * (stretch + swing * swing) + stripe_more,
+          std::max<double>(half + half * view.tilt_sine * turn * (1 + rim) / 2 + view.spin, kLeastStripeMotion));
 }
 
 SleevePattern::View SleevePattern::viewOf(const MarkerPose& pose, double motion_length) const {
@@ -146,6 +149,7 @@ SleevePattern::View SleevePattern::viewOf(const MarkerPose& pose, double motion_
   const double motion = std::max(motion_length, kMinSleeveMotion), blur = std::clamp(pose.blur, kMinBlur, kMaxBlur);
   const double variance = blur * blur + kPixelVariance - (motion * motion - motion_length * motion_length) / 12;
   view.half_motion = static_cast<float>(motion / 2 / scale);
+  view.spin = static_cast<float>(-pitch_ / kTurn * turn_ / 2);
   view.variance = static_cast<float>(variance / (scale * scale));
   view.by_blur = static_cast<float>(2 * blur / variance);
   return view;
@@ -241,7 +245,8 @@ VIBE_LANES void SleevePattern::spread(const View& pose, Part& __restrict part) c
     const float reach = kEdgeReach * std::sqrt(variance) + half_motion, low = part.u[i] - reach,
                 high = part.u[i] + reach;
     part.half_motion[i] = half_motion;
-    part.stripe_half_motion[i] = half_motion + view.half_motion * view.tilt_sine * turn;
+    const float stripe_half = half_motion + view.half_motion * view.tilt_sine * turn + view.spin;
+    part.stripe_half_motion[i] = stripe_half < kLeastStripeMotion ? kLeastStripeMotion : stripe_half;
     part.bar_variance[i] = variance;
     part.stripe_variance[i] = view.variance * (stretch * stretch + swing * swing);
     part.cut_variance[i] = view.variance * turn * turn;

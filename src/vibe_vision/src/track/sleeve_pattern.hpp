@@ -60,7 +60,8 @@ class SleevePattern : public MarkerPattern {
   BlurredLine bars_, stripe_;
   MovingLine moving_bars_, moving_stripe_;
   CutStripe cut_;
-  double motion_ = 0;     ///< of prepare() [px]
+  double motion_ = 0;     ///< of prepare() [px],
+  double turn_ = 0;       ///< likewise, to the side of the motion [rad]
   MotionParts parts_{0};  ///< of prepare()
   bool rough_ = false;
 };
@@ -73,6 +74,7 @@ struct SleevePattern::View {
   float bend;  ///< of the line of sight per pixel: 1 / focal length; also 1 / distance to the camera [1/px]
   float slope_along, slope_across;  ///< of the line of sight to the centre, along and across the tilted marker
   float turn_cosine, turn_sine;     ///< of the angle around the rod from the rod's normal to the camera
+  float spin;                       ///< by how much half of the motion is longer for the stripe, which turns
   float half_motion;                ///< in pixels of the print, where the camera looks at it at a right angle
   float variance;                   ///< of optics and pixel in pixels of the print, less what a lengthened motion has
   float by_blur;                    ///< relative change of `variance` with the blur [1/px]

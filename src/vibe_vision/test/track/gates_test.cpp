@@ -1,5 +1,5 @@
 // Every gate: a picture that passes and one that does not.
-#include "track/marker_fitter.hpp"
+#include "track/gates.hpp"
 
 #include <gtest/gtest.h>
 

@@ -99,7 +99,7 @@ TEST(SleeveTracking, TellsALongMotionInItsFirstFrame) {
   scene.instruments.resize(1);
   const Renderer renderer(scene);
   int found = 0;
-  double square = 0;
+  double square = 0, nees = 0;
   for (int k = 0; k < 180; k += 3) {
     Tracker tracker(nominalConfig(scene));  // knows nothing
     const RenderedFrame rendered = renderer.render(static_cast<std::uint64_t>(k));
@@ -110,10 +110,12 @@ TEST(SleeveTracking, TellsALongMotionInItsFirstFrame) {
     EXPECT_LT(std::abs(slide), 4 * std::sqrt(m.covariance(0, 0))) << k;
     EXPECT_LT(std::abs(rotation), std::max(0.09, 4 * std::sqrt(m.covariance(1, 1)))) << k;
     square += slide * slide;
+    nees += rotation * rotation / m.covariance(1, 1);
     ++found;
   }
   EXPECT_GE(found, 48);
-  EXPECT_LT(std::sqrt(square / found), 5e-5);  // half a pixel
+  EXPECT_LT(std::sqrt(square / found), 2e-5);  // a fifth of a pixel
+  EXPECT_LT(nees / found, 2);
 }
 
 TEST(SleeveTracking, FollowsADefocusedPicture) {

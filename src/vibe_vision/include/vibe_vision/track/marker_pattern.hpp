@@ -69,9 +69,11 @@ struct MarkerMotion {
   /// Of an accelerated motion: the first and the last place are further along by this much than in an even one, the
   /// middle is as much behind. Acceleration times the square of the exposure, by 16 [px].
   double bend = 0;
+  double turn = 0;  ///< of the rotation, in the same time [rad]
 
   /// From a length alone it is a motion with even speed [px].
-  MarkerMotion(double its_length = 0, double its_bend = 0) : length(its_length), bend(its_bend) {}
+  MarkerMotion(double its_length = 0, double its_bend = 0, double its_turn = 0)
+      : length(its_length), bend(its_bend), turn(its_turn) {}
 };
 
 /// The picture of a marker as a function of its pose: blurred by optics, the area of a pixel (1 px) and the motion

@@ -1,0 +1,255 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "track/arithmetic.hpp"
+#include "track/marker_fitter.hpp"
+
+namespace vibe::vision {
+
+namespace {
+
+constexpr double kAligned = 0.2;            // a step after which the coarse alignment ends [px]
+constexpr double kMotionTrials[] = {2, 1};  // [px]
+constexpr double kTellingMotion = 6;        // from which what is seen where edges meet tells the motion [px]
+constexpr int kMotionRefinements = 10;      // trials of a motion,
+constexpr double kMotionRefined = 0.2;      // until a step is this short [px]
+constexpr double kWorthRefining = 0.35;     // loss of a pixel up to which it may be the marker
+constexpr double kMotionTrial = 0.1, kBendTrial = 0.1, kTurnTrial = 0.02;  // for derivatives [px], [rad]
+constexpr double kMostMotionStep = 1.5, kMostBendStep = 0.4;               // at most [px]
+constexpr double kGuessedLight = 0.05;                  // standard deviation of the light on a rod, after one frame
+constexpr double kMotionUncertainty = 0.3;              // of the edges while it is tried [px]
+constexpr double kCoarseBlur = 2.4, kMiddleBlur = 0.9;  // more than the camera's [px]
+constexpr double kUnknownGamma = 0.1;                   // standard deviation from which a search tries another one,
+constexpr double kCommonGamma = 2.2;                    // that of many cameras
+constexpr double kStrange = 2.5;                        // misfit from which the response may be why,
+constexpr double kStrangeRod = 1.4;                     // the same of a rod, whose light is looked for, too
+constexpr double kBothEdges = 0.6;     // of the share of all edges: a curve moves white and black ones apart
+constexpr double kLearnSheen = 0.6;    // kLearnVisible before the line of the lamp on a rod is known well
+constexpr int kLitFrames = 4;          // followed ones, after which the light is known beside a long motion
+constexpr int kGuessAfter = 3;         // tries after which what was learnt of the light is doubted
+constexpr double kHopeless = 0.8;      // loss of a pixel after the coarse alignment
+constexpr double kVeryHopeless = 0.8;  // before size and tilt are known
+constexpr double kPoor = 0.25;         // loss of a pixel from which the rotation may be wrong
+constexpr int kAlignSteps = 3;
+constexpr double kPlaceTrial = 1.5;  // [px]
+constexpr int kAcquireSteps = 14;    // a covered marker needs many
+
+}  // namespace
+
+MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
+                                double motion, const MarkerMotion& most, bool known_rotation, double reach) {
+  const double max_motion = most.length;
+  most_ = most;
+  MarkerFit fit = acquireWithAnyResponse(map, frame, start, prior, motion, max_motion, known_rotation, reach);
+  // Only now: another motion would also explain some of what a response does.
+  const bool strange = light_.isRound() && fit.valid && fit.misfit > kStrangeMotion && !isMotionLong(fit);
+  if (strange && max_motion > 1 && fit.loss < kWorthRefining && read(map, frame, fit))
+    refineMotion(fit, prior, max_motion);
+  return fit;
+}
+
+MarkerFit MarkerFitter::acquireWithAnyResponse(AxisMap& map, const Frame& frame, const FitVector& start,
+                                               const FitPrior& prior, double motion, double max_motion,
+                                               bool known_rotation, double reach) {
+  const MarkerFit fit = tryToAcquire(map, frame, start, prior, motion, max_motion, known_rotation, reach);
+  const double known = prior.information(kGamma, kGamma);
+  const auto explains = [this](const MarkerFit& f) {
+    const double strange = light_.isRound() ? kStrangeRod : kStrange;
+    return f.valid && f.loss < kPoor && f.misfit < strange && f.weaker_edges > kBothEdges * f.visible;
+  };
+  if (explains(fit) || seen_ > 0 || known == 0 || known * kUnknownGamma * kUnknownGamma > 1) return fit;
+  FitVector other = start;
+  other[kGamma] = kCommonGamma;
+  const MarkerFit second = tryToAcquire(map, frame, other, prior, motion, max_motion, known_rotation, reach);
+  return explains(second) && (!fit.valid || second.loss < fit.loss) ? second : fit;
+}
+
+MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
+                                     double motion, double max_motion, bool known_rotation, double reach) {
+  MarkerFit fit;
+  fit.x = start;
+  fit.motion = motion;
+  const double blur = fit.x[kBlur];
+  // The search knows the place of a sleeve well, and its bars would vanish.
+  fit.x[kBlur] = blur + (observed_[kRotation] ? kMiddleBlur : kCoarseBlur);
+  const bool guess = !light_.known() || ++tries_ > kGuessAfter;
+  if (!read(map, frame, fit, guess)) return fit;
+  observed_[kRotation] ? useHalf() : useQuarter();
+  if (reach > 0) choosePlace(fit, reach);
+  if (!align(fit, prior, FitScope::Position)) return fit;
+  if (!observed_[kRotation] && fit.loss > kVeryHopeless) return fit;  // else the rotation may be wrong
+  fit.x[kBlur] = blur + kMiddleBlur;
+  if (observed_[kRotation] && (!known_rotation || fit.loss > kPoor)) chooseRotation(fit);
+  if (!read(map, frame, fit)) return fit;
+  observed_[kRotation] ? useHalf() : useQuarter();
+  if (!align(fit, prior, FitScope::Shape) || fit.loss > kHopeless) return fit;
+  // The blur is not that of the prior if the camera is out of focus: edges along the motion tell it, and thin bars.
+  if (!align(fit, prior, FitScope::All)) return fit;
+  if (max_motion > 1) chooseMotion(fit, prior, max_motion);
+  if (!read(map, frame, fit)) return fit;
+  refine(fit, prior, kMotionUncertainty, kAcquireSteps);
+  if (isMotionLong(fit)) refineMotion(fit, prior, max_motion);
+  if (!light_.isRound()) return fit;
+  // The fit began aside: some of its pixels are on the rim or behind the ends, and others are missing.
+  if (fit.loss < kPoor) {
+    if (!read(map, frame, fit)) return fit;
+    refine(fit, prior, kMotionUncertainty, kAcquireSteps);
+  }
+  const bool unsure = guess || (lit_frames_ < kLitFrames && isMotionLong(fit));
+  const int rounds = !unsure ? 0 : (light_.shines() ? 2 : 1);
+  for (int i = 0; i < rounds && fit.visible > (light_.shines() ? kLearnSheen : kLearnVisible); ++i) {
+    refineWithLight(fit, prior, max_motion);
+    if (fit.valid && guess) tries_ = 0;
+  }
+  if (fit.valid && fit.visible > kLearnSheen) doubtLight(fit, max_motion);
+  return fit;
+}
+
+/// Together with the light, since one picture hardly tells it from the rotation and the place across the axis, and with
+/// the motion.
+void MarkerFitter::refineWithLight(MarkerFit& fit, const FitPrior& prior, double max_motion) {
+  learnLight(fit);
+  sides_ = sideLimits(fit, max_motion);
+  refine(fit, prior, kMotionUncertainty, kAcquireSteps);
+  sides_ = {};
+}
+
+/// A short motion looks like blur, which is a parameter.
+SideLimits MarkerFitter::sideLimits(const MarkerFit& fit, double max_motion) const {
+  if (!isMotionLong(fit) || most_.bend <= 0 || most_.turn <= 0) return {kGuessedLight, {}};
+  return {kGuessedLight, {max_motion / 2, most_.bend / 2, most_.turn / 2}};
+}
+
+/// A Gauss-Newton step as the last one, with the light on a rod and the motion as further unknowns.
+void MarkerFitter::stepWithSides(MarkerFit& fit, FitStep& step) {
+  measureMotion(fit, sides_);
+  const MarkerMotion change = fit_.stepWithLight(pixels_, light_, sides_, fit.motion, step);
+  fit.motion.length = std::max(fit.motion.length + std::clamp(change.length, -kMostMotionStep, kMostMotionStep), 0.0);
+  fit.motion.bend += std::clamp(change.bend, -kMostBendStep, kMostBendStep);
+  fit.motion.turn = std::clamp(fit.motion.turn + change.turn, -most_.turn, most_.turn);
+}
+
+void MarkerFitter::measureMotion(const MarkerFit& fit, const SideLimits& limits) {
+  if (limits.motion.length == 0) return;
+  const auto measure = [this, &fit](int k, double MarkerMotion::*part, double by) {
+    MarkerFit other = fit;
+    other.motion.*part += by;
+    prepare(other);
+    fit_.measureMotion(k, pixels_, by);
+  };
+  measure(0, &MarkerMotion::length, kMotionTrial);
+  measure(1, &MarkerMotion::bend, kBendTrial);
+  measure(2, &MarkerMotion::turn, kTurnTrial);
+}
+
+/// A few steps with a picture that is more blurred than the camera's: its edges reach further.
+bool MarkerFitter::align(MarkerFit& fit, const FitPrior& prior, FitScope scope) {
+  prepare(fit, true);
+  for (int i = 0; i < kAlignSteps; ++i) {
+    fit_.evaluate(fit.x, pixels_);
+    if (i == 0) fit_.startLevels(pixels_, fit.x);
+    const FitStep step = fit_.step(fit.x, prior, pixels_, {fit.x[kBlur], scope});
+    if (!step.valid) return false;
+    fit.loss = step.loss;
+    take(step, fit);
+    if (lengthOf(step) < kAligned) break;
+  }
+  return true;
+}
+
+/// The place with the least loss of a pixel, from trials.
+void MarkerFitter::choosePlace(MarkerFit& fit, double reach) {
+  const FitVector start = fit.x;
+  FitVector best = start;
+  const int steps = static_cast<int>(std::ceil(reach / kPlaceTrial));
+  double least = 2;
+  prepare(fit, true);
+  for (int k = -steps; k <= steps; ++k) {
+    fit.x[kAlong] = start[kAlong] + k * kPlaceTrial;
+    fit_.evaluate(fit.x, pixels_);
+    fit_.startLevels(pixels_, fit.x);
+    const double loss = fit_.loss(fit.x, pixels_, {fit.x[kBlur], FitScope::Position});
+    if (loss < least) least = loss, best = fit.x;
+  }
+  fit.x = best;
+}
+
+/// The rotation with the least loss; that of the start stays if no other is better.
+void MarkerFitter::chooseRotation(MarkerFit& fit) {
+  FitVector best = fit.x;
+  prepare(fit, true);
+  double least = fit.loss;
+  for (double rotation : rotations_) {
+    fit.x[kRotation] = rotation;
+    fit_.evaluate(fit.x, pixels_);
+    fit_.startLevels(pixels_, fit.x);
+    const double loss = fit_.loss(fit.x, pixels_, {fit.x[kBlur], FitScope::Position});
+    if (loss < least) least = loss, best = fit.x;
+  }
+  fit.x = best;
+}
+
+/// Loss of a pixel against the motion that is assumed: a parabola through three places. Of a ring, coarse and then
+/// fine, since it is one near the least loss only, and together with the blur, which the edges along the motion tell.
+/// Of a sleeve, blur and motion look too much alike.
+void MarkerFitter::chooseMotion(MarkerFit& fit, const FitPrior& prior, double max_motion) {
+  for (const double distance : kMotionTrials)
+    if (!tryMotions(fit, prior, max_motion, distance) || observed_[kRotation]) return;
+}
+
+/// @return false if they do not tell the motion
+bool MarkerFitter::tryMotions(MarkerFit& fit, const FitPrior& prior, double max_motion, double distance) {
+  const double middle = std::clamp(fit.motion.length, distance, std::max(max_motion - distance, distance));
+  const MarkerFit start = fit;
+  std::array<double, 3> loss{};
+  for (int k = 0; k < 3; ++k) {
+    MarkerFit trial = start;
+    trial.motion = middle + (k - 1) * distance;
+    prepare(trial, middle < kTellingMotion);
+    for (int i = 0; i < (observed_[kRotation] ? 2 : 1); ++i) {
+      fit_.evaluate(trial.x, pixels_);
+      const FitScope scope = observed_[kRotation] ? FitScope::Shape : FitScope::All;
+      const FitStep step = fit_.step(trial.x, prior, pixels_, {kMotionUncertainty, scope});
+      if (!step.valid) return false;
+      loss[k] = step.loss;
+      take(step, trial);
+    }
+    if (k == 0 || loss[k] < *std::min_element(loss.begin(), loss.begin() + k)) fit = trial;
+  }
+  const double bend = loss[0] - 2 * loss[1] + loss[2];
+  if (bend <= 0) return false;
+  const double vertex = middle + distance * std::clamp((loss[0] - loss[2]) / (2 * bend), -1.5, 1.5);
+  fit.motion = std::clamp(vertex, 0.0, max_motion);
+  return true;
+}
+
+/// The motion that explains the pixels best.
+void MarkerFitter::refineMotion(MarkerFit& fit, const FitPrior& prior, double max_motion) {
+  double step = kMotionTrials[1];
+  for (int i = 0; i < kMotionRefinements && std::abs(step) > kMotionRefined; ++i) {
+    MarkerFit trial = fit;
+    const double length = std::clamp(std::abs(fit.motion.length) + step, 1.0, max_motion);
+    trial.motion.length = std::copysign(length, fit.motion.length);
+    refine(trial, prior, 0, kAcquireSteps);
+    const bool better = trial.loss < fit.loss;
+    if (better) fit = trial;
+    step *= better ? 1 : (i == 0 ? -1 : -0.5);
+  }
+  refine(fit, prior, 0, kAcquireSteps);
+}
+
+/// One frame hardly tells the light around a rod from its rotation and its place across the axis.
+void MarkerFitter::doubtLight(MarkerFit& fit, double max_motion) {
+  const SideLimits limits = sideLimits(fit, max_motion);
+  measureMotion(fit, limits);
+  fit.covariance = fit_.covariance(pixels_, light_, limits) * std::max(1.0, fit.misfit);
+  doubtCovered(fit);
+}
+
+/// Then it does not look like blur.
+bool MarkerFitter::isMotionLong(const MarkerFit& fit) {
+  return fit.loss < kWorthRefining && std::abs(fit.motion.length) > kTellingMotion;
+}
+
+}  // namespace vibe::vision
