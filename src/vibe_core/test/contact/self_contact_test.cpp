@@ -103,8 +103,10 @@ TEST(SelfContact, ForceIsContinuousWhereSidesPassARightAngle) {
     world.detect(0.5e-3);
     world.evaluate();
     std::set<int> places;
-    for (const SelfContact::Pair& pair : world.contact.pairs())
-      if (pair.node[0] == 4 && pair.stiffness > 0) EXPECT_TRUE(places.insert(pair.node[1]).second) << "acts twice";
+    for (const SelfContact::Pair& pair : world.contact.pairs()) {
+      const bool acts = pair.node[0] == 4 && pair.stiffness > 0;
+      EXPECT_TRUE(!acts || places.insert(pair.node[1]).second) << "acts twice";
+    }
     EXPECT_EQ(places.size(), 3U);
     const Eigen::Vector3d force = world.force(4);
     if (k > -200) jump = std::max(jump, (force - before).norm());

@@ -2,8 +2,8 @@
 
 #include "tag/tag_place.hpp"
 #include "track/calibration_doubts.hpp"
+#include "track/gates.hpp"
 #include "track/kalman_filters.hpp"
-#include "track/marker_fitter.hpp"
 
 namespace vibe::vision {
 
