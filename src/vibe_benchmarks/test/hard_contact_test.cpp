@@ -46,23 +46,25 @@ std::vector<Run> allRuns() {
 class HardContact : public testing::TestWithParam<Run> {};
 
 /// What holds of every session, however hard.
-/// @param tangles  walls catch in each other, and are led back to rest straight through each other
-void expectSound(const HardResult& result, bool tangles = false) {
+/// @param may_tangle  loops of a coarse wall may catch in each other, and are led back to rest straight through each
+///                    other then, and only then; whether they do is a matter of chance: of eight meshes of 860 to
+///                    1,100 particles one or two do
+void expectSound(const HardResult& result, bool may_tangle = false) {
   std::ostringstream row;
   printHardHeader(row);
   printHardResult(result, row);
   SCOPED_TRACE(row.str());
   EXPECT_EQ(result.last_crossings, 0);
-  EXPECT_EQ(result.crossings > 0, tangles);
+  EXPECT_TRUE(result.crossings == 0 || result.recoveries > 0);
   EXPECT_EQ(result.pierced, 0);
-  EXPECT_EQ(result.recoveries, tangles ? 1 : 0);
+  EXPECT_LE(result.recoveries, may_tangle ? 1 : 0);
   EXPECT_LE(result.max_iterations, kMostIterations);
   EXPECT_LT(std::abs(result.balance), kClosed * result.work);
 }
 
 TEST_P(HardContact, NothingCrossesAndEverythingEnds) {
   const HardResult result = runHardCase(cases().prepare(GetParam().name, GetParam().seed));
-  expectSound(result, slow() && result.name == "wind");
+  expectSound(result, result.name == "wind");
   EXPECT_LT(result.speed, 1e-2) << "m/s";
   if (result.returns) {
     EXPECT_LT(result.away, 2e-3) << "m";
