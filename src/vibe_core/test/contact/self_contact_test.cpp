@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <set>
@@ -66,6 +67,21 @@ TEST(SelfContact, ForceIsContinuousAcrossAValley) {
     EXPECT_LT(jump, 0.03 * largest) << "slope " << slope;
     EXPECT_LT(before.x(), 0) << "on the right side, to the left";
   }
+}
+
+// Though its nearest point is inside the other side, that no longer acts: the near one is nearer in its direction.
+TEST(SelfContact, APlaceFarBehindAnotherDoesNotAct) {
+  const auto places = [](double x) {
+    ContactWorld world(valley(0.8, 0, 50e-3));
+    const SurfaceMesh now = valley(0.8, x, 0.6 * kWallThickness);
+    for (std::size_t i = 0; i < world.count(); ++i) world.set(i, now.vertices[i]);
+    world.detect(0.5e-3);
+    return std::count_if(world.contact.pairs().begin(), world.contact.pairs().end(), [](const SelfContact::Pair& pair) {
+      return pair.node[0] == 8 && pair.straight_below > 0.19;  // not the bars at places that are close
+    });
+  };
+  EXPECT_EQ(places(0.8e-3), 2);
+  EXPECT_EQ(places(1.3e-3), 1);
 }
 
 /// A trough along y with a floor and two sides, which rise by `angle` [rad], and above it the turned roof of valley(),
