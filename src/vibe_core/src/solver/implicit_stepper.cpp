@@ -238,7 +238,7 @@ double ImplicitStepper::guess(const MotionView& motion, bool fallback, StepperWo
 }
 
 // A large motion goes on with its velocity, and the step has to find only what changes it. The velocity has the error
-// that the last step has left, which its iterations have brought below a fiftieth of such a motion. Of a small one it
+// that the last step has left, which its iterations have brought below a hundredth of such a motion. Of a small one it
 // may be all, and would grow from step to step.
 double ImplicitStepper::predict(const MotionView& motion, const TimeScheme& scheme, StepperWorkspace& scratch) const {
   const double ahead = scheme.part() * scheme.h;
@@ -304,11 +304,13 @@ void ImplicitStepper::iterate(QuasiNewton& newton, StepperWorkspace& scratch, St
   bool done = false;
   while (!done && !outcome.converged && !newton.exhausted() && std::isfinite(outcome.last_move) &&
          (!newton.failed() || newton.startAgain())) {
-    outcome.last_move = newton.iterate(longest, outcome.iterations + 1 < settings_.iterations);
+    newton.aim();
+    const bool tiny = newton.directionLength() < std::max(settings_.tolerance, newton.resolution());
+    outcome.last_move = newton.iterate(longest, !tiny && outcome.iterations + 1 < settings_.iterations);
     if (++outcome.iterations == kSatisfyConstraints && !newton.exhausted() && newton.satisfyConstraints())
       continue;  // and on from there
     done = outcome.iterations >= settings_.iterations && newton.contracts();
-    outcome.converged = newton.directionLength() < std::max(settings_.tolerance, newton.resolution());
+    outcome.converged = tiny;
   }
   const double first_length = newton.judgedBy();
   if (!scratch.solved) memory.usual_length += kUsualShare * (first_length - memory.usual_length);

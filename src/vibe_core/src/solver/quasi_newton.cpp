@@ -39,9 +39,10 @@ constexpr double kThreadShare = 1.0 / 3;
 // Length of a direction over the one before, below which the iteration contracts. Design choice: halving per iteration
 // is the weakest rate that bounds the rest by the last move [1].
 constexpr double kSafeContraction = 0.5;
-// The same over the first direction. Design choice: the last move of a step is a fiftieth of its first one. With
-// a tenth, the force of a pull by 2 mm between frames is 2 % of its change off, with this 0.5 % [1].
-constexpr double kSafeRest = 0.02;
+// What is left after the last move of a step over its first direction. Design choice: a hundredth. A force that a device
+// renders from one frame to the next is then 5 % of its change off, with a fiftieth 7 %, with half a hundredth 4.5 %
+// [1].
+constexpr double kSafeRest = 0.01;
 // Smallest cosine between move and change of gradient of a pair that is kept. Design choice: the rounding of single
 // precision; below it the curvature has no correct digit [1].
 constexpr double kMinPairCosine = 1e-8;
@@ -332,13 +333,18 @@ double QuasiNewton::iterate(double max, bool verify) {
   return advance(max, verify);
 }
 
+// What is left after this direction if the next ones go on to shrink as this one did: the sum of a geometric series [m].
+double QuasiNewton::rest() const {
+  return direction_length_ * direction_length_ / (last_length_ - direction_length_);
+}
+
 double QuasiNewton::advance(double max, bool verify) {
   const double part = direction_length_ > max ? max / direction_length_ : 1;
   const bool begins = first_length_ == 0;
   if (begins) first_length_ = direction_length_;
   const bool shrinks = last_length_ > 0 && direction_length_ < kSafeContraction * last_length_;
   const bool is_short = direction_length_ < safe_length_ && begins;
-  contracts_ = part == 1 && (is_short || (shrinks && direction_length_ < kSafeRest * first_length_));
+  contracts_ = part == 1 && (is_short || (shrinks && rest() < kSafeRest * first_length_));
   before_length_ = last_length_;
   last_length_ = -1;  // only a whole step says how fast the next ones shrink
   if (verify || !contracts_) return search(part);

@@ -41,8 +41,8 @@ class QuasiNewton {
   double value() const { return value_; }
   /// Rounding error of the displacements, which are single precision [m].
   double resolution() const;
-  /// The last direction is less than half of the one before and a few hundredths of the first, or it is the first and
-  /// has a safe length.
+  /// The last direction is less than half of the one before and leaves a hundredth of the first, or it is the first
+  /// and has a safe length.
   bool contracts() const { return contracts_; }
   /// The last iterate found no lower energy along its direction, and did not move.
   bool failed() const { return failed_; }
@@ -67,6 +67,7 @@ class QuasiNewton {
   double lagrangian(double part) const;
   double lagrangianSlope(double part) const;
   double evaluate(const std::vector<double>& z, std::vector<float>& gradient);
+  double rest() const;
   double advance(double max, bool verify);
   void takeUnseen();
   double slopeAtTrial(double part) const;
