@@ -24,6 +24,12 @@ RECORDER_PATIENCE = 600.0  # for the recorder to write what it holds in memory [
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)  # that end a program
 
 
+def stepping_threads():
+    """Of the simulator: two where as many cores are left for the next factor and for whatever else a session runs. The
+    results are the same."""
+    return 2 if len(os.sched_getaffinity(0)) >= 4 else 1
+
+
 class Interrupted(Exception):
     """Somebody wants the session to end."""
 
@@ -79,6 +85,7 @@ class Session:
         put("/sim_node/lockstep", simulated)
         if simulated:
             put("/sim_node/lockstep_timeout", DRIVER_PATIENCE)
+        put("/sim_node/threads", stepping_threads())
         put("/sim_node/await_recorder", True)
         put("/sim_node/duration", arguments.duration)
         put("/sim_node/summary_file", self.summary)

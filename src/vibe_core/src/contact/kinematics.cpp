@@ -69,6 +69,11 @@ namespace {
 constexpr double kDirectionWeight = 0.02;  // [m/rad]
 constexpr double kGoodCost = 1e-6;         // (1 mm)^2
 constexpr int kMaxIterations = 100;
+constexpr double kPlaced = 1e-26;     // (0.1 pm)^2
+constexpr double kMostDamping = 1e9;  // [1]
+// Decrease that a step promises over the cost, below which the descent ends. Design choice: far below what can be seen,
+// far above rounding. A target out of reach has no other end [1].
+constexpr double kWorthAStep = 1e-10;
 
 // shortest rotation that turns one unit vector into another, as a vector [rad]
 Eigen::Vector3d rotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
@@ -134,38 +139,51 @@ void InverseKinematics::holdAtLimits(const Inputs& inputs, const Step& gradient,
   }
 }
 
-InverseKinematics::Inputs InverseKinematics::descend(Inputs inputs, double& cost) {
-  inputs = moved(inputs, Step::Zero());
-  Residual r = residual(inputs);
-  cost = r.squaredNorm();
-  double damping = 1e-3;
-  for (int iteration = 0; iteration < kMaxIterations && cost > 1e-26 && damping < 1e9; ++iteration) {
-    const Jacobian j = jacobian();
-    const Eigen::Matrix<double, kFree, kFree> normal = j.transpose() * j;
-    const Step gradient = j.transpose() * r;
-    bool better = false;
-    while (!better && damping < 1e9) {
-      Eigen::Matrix<double, kFree, kFree> matrix = normal;
-      // the constant keeps inputs without effect still, such as the rotation of a straight scope
-      matrix.diagonal() += damping * (normal.diagonal() + Step::Constant(1e-7));
-      Step right = gradient;
-      holdAtLimits(inputs, gradient, matrix, right);
-      const Inputs trial = moved(inputs, matrix.ldlt().solve(right));
-      const Residual trial_residual = trial == inputs ? r : residual(trial);
-      better = trial_residual.squaredNorm() < cost;
-      damping = better ? std::max(damping / 5, 1e-12) : damping * 4;
-      if (!better) continue;
-      inputs = trial;
-      r = trial_residual;
-      cost = r.squaredNorm();
-    }
+// A step from where the chain is.
+// @returns false where none leads on
+bool InverseKinematics::improve(Descent& at) {
+  const Jacobian j = jacobian();
+  const Eigen::Matrix<double, kFree, kFree> normal = j.transpose() * j;
+  const Step gradient = j.transpose() * at.residual;
+  for (; at.damping < kMostDamping; at.damping *= 4) {
+    Eigen::Matrix<double, kFree, kFree> matrix = normal;
+    // the constant keeps inputs without effect still, such as the rotation of a straight scope
+    matrix.diagonal() += at.damping * (normal.diagonal() + Step::Constant(1e-7));
+    Step right = gradient;
+    holdAtLimits(at.inputs, gradient, matrix, right);
+    const Step step = matrix.ldlt().solve(right);
+    const Inputs trial = moved(at.inputs, step);
+    if (!(right.dot(step) > kWorthAStep * at.cost) || trial == at.inputs) return false;
+    const Residual there = residual(trial);
+    if (!(there.squaredNorm() < at.cost)) continue;
+    at = {trial, there, there.squaredNorm(), std::max(at.damping / 5, 1e-12)};
+    return true;
   }
-  return inputs;
+  return false;
+}
+
+InverseKinematics::Inputs InverseKinematics::descend(const Inputs& start, double& cost) {
+  const Inputs inputs = moved(start, Step::Zero());
+  const Residual r = residual(inputs);
+  Descent at{inputs, r, r.squaredNorm(), 1e-3};
+  for (int iteration = 0; iteration < kMaxIterations && at.cost > kPlaced && improve(at);) ++iteration;
+  cost = at.cost;
+  return at.inputs;
+}
+
+InverseKinematics::Inputs InverseKinematics::follow(const Eigen::Isometry3d& target, const Inputs& start) {
+  aim(target);
+  double cost = 0;
+  return descend(start, cost);
+}
+
+void InverseKinematics::aim(const Eigen::Isometry3d& target) {
+  target_position_ = target.translation();
+  target_direction_ = target.linear().col(0);
 }
 
 InverseKinematics::Inputs InverseKinematics::solve(const Eigen::Isometry3d& target, const Inputs& start) {
-  target_position_ = target.translation();
-  target_direction_ = target.linear().col(0);
+  aim(target);
   double best_cost = 0;
   Inputs best = descend(start, best_cost);
   constexpr double kQuarter = 1.5707963267948966;

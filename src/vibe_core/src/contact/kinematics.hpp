@@ -41,6 +41,8 @@ class InverseKinematics {
   /// error, so that a tool that follows a moving target does not jump for a small gain.
   /// @param target  pose of scope_tip in the root frame
   Inputs solve(const Eigen::Isometry3d& target, const Inputs& start);
+  /// The solution found by descent from `start` alone.
+  Inputs follow(const Eigen::Isometry3d& target, const Inputs& start);
 
  private:
   static constexpr int kFree = kScopeJointCount;
@@ -48,7 +50,15 @@ class InverseKinematics {
   using Jacobian = Eigen::Matrix<double, 6, kFree>;
   using Step = Eigen::Matrix<double, kFree, 1>;
 
-  Inputs descend(Inputs inputs, double& cost);
+  struct Descent {
+    Inputs inputs;
+    Residual residual;
+    double cost, damping;  // square of the residual [m^2], [1]
+  };
+
+  void aim(const Eigen::Isometry3d& target);
+  Inputs descend(const Inputs& start, double& cost);
+  bool improve(Descent& at);
   Residual residual(const Inputs& inputs);
   Jacobian jacobian() const;
   Inputs moved(const Inputs& from, const Step& step) const;

@@ -39,9 +39,9 @@ constexpr double kThreadShare = 1.0 / 3;
 // Length of a direction over the one before, below which the iteration contracts. Design choice: halving per iteration
 // is the weakest rate that bounds the rest by the last move [1].
 constexpr double kSafeContraction = 0.5;
-// What is left after the last move of a step over its first direction. Design choice: a hundredth. A force that a device
-// renders from one frame to the next is then 5 % of its change off, with a fiftieth 7 %, with half a hundredth 4.5 %
-// [1].
+// What is left after the last move of a step over its first direction. Design choice: a hundredth. A force that a
+// device renders from one frame to the next is then 5 % of its change off, with a fiftieth 7 %, with half a
+// hundredth 4.5 % [1].
 constexpr double kSafeRest = 0.01;
 // Smallest cosine between move and change of gradient of a pair that is kept. Design choice: the rounding of single
 // precision; below it the curvature has no correct digit [1].
@@ -333,7 +333,8 @@ double QuasiNewton::iterate(double max, bool verify) {
   return advance(max, verify);
 }
 
-// What is left after this direction if the next ones go on to shrink as this one did: the sum of a geometric series [m].
+// What is left after this direction if the next ones go on to shrink as this one did: the sum of a geometric series
+// [m].
 double QuasiNewton::rest() const {
   return direction_length_ * direction_length_ / (last_length_ - direction_length_);
 }

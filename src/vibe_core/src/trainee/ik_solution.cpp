@@ -55,7 +55,7 @@ IkSolution aimFrom(Scope& scope, const Eigen::Vector3d& point, const Eigen::Vect
       if (directed)
         target.linear() = rotationBetween(target.linear().col(0), ahead).toRotationMatrix() * target.linear();
       const std::array<double, kJointCount> before =
-          std::exchange(aim.joints, scope.kinematics.solve(target, aim.joints));
+          std::exchange(aim.joints, scope.kinematics.follow(target, aim.joints));
       if (aim.joints == before) break;
     }
   const Eigen::Isometry3d tip = scope.model.tool_base * scope.chain.place(aim.joints);
