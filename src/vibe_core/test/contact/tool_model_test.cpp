@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <new>
@@ -246,6 +247,30 @@ TEST(ToolModel, InverseKinematicsStaysWithinTheLimits) {
   Isometry3d ahead = Isometry3d::Identity();
   ahead.translation().x() = 1;
   EXPECT_NEAR(tool.inverseKinematics(ahead, {0.1, 0.2, 0.3, 0.1})[Insertion], 0.3, 1e-6);
+}
+
+// The square of distance and turn, of which 0.02 m count as a radian.
+double missOf(const ToolModel& tool, const Inputs& inputs, const Isometry3d& target) {
+  const Isometry3d there = tipPose(tool, inputs);
+  const double turn = std::acos(std::clamp(there.linear().col(0).dot(target.linear().col(0)), -1.0, 1.0));
+  return (there.translation() - target.translation()).squaredNorm() + std::pow(0.02 * turn, 2);
+}
+
+TEST(ToolModel, InverseKinematicsComesAsNearAsItCanToWhatIsOutOfReach) {
+  const ToolModel tool = loadScope();
+  std::mt19937 random(13);
+  for (int trial = 0; trial < 50; ++trial) {
+    Isometry3d target = tipPose(tool, randomInputs(tool, random));
+    target.linear() = Eigen::AngleAxisd(1.2, target.linear().col(1)) * target.linear();
+    const Inputs found = tool.inverseKinematics(target, randomInputs(tool, random));
+    const double miss = missOf(tool, found, target);
+    for (int i = 0; i < kScopeJointCount; ++i)
+      for (const double by : {-1e-3, 1e-3}) {
+        Inputs beside = found;
+        beside[i] = std::clamp(found[i] + by, tool.limits()[i].lower, tool.limits()[i].upper);
+        EXPECT_GE(missOf(tool, beside, target), miss * (1 - 1e-6)) << "trial " << trial << ", input " << i;
+      }
+  }
 }
 
 TEST(ToolModel, InverseKinematicsKeepsWhatIsAlreadyThere) {
