@@ -179,5 +179,25 @@ TEST(FewIterationsInMotion, FollowWhatGoesOn) {
   EXPECT_LE(longest, 6);
 }
 
+// The last move of a step is not evaluated, if it is the first as well.
+TEST(FewIterationsInMotion, TakeOneEvaluationWhereHardlyAnythingMoves) {
+  StepSettings settings;
+  settings.iterations = 2;
+  Ball ball = makeBall(Kind::OnABed, settings);
+  int at_once = 0, evaluations = 0;
+  for (int i = 1; i <= 200; ++i) {
+    ball.run->loads.constraints = {topAt(ball, 1e-3 * minimumJerk(i / 30.0))};
+    const StepOutcome outcome = ball.run->step();
+    if (i == 15) {
+      EXPECT_GE(outcome.evaluations, 2) << "while it moves";
+    }
+    if (i <= 190) continue;
+    at_once += outcome.converged && outcome.iterations == 1 ? 1 : 0;
+    evaluations += outcome.evaluations;
+  }
+  EXPECT_EQ(at_once, 10);
+  EXPECT_LE(evaluations, 12) << "with every end evaluated it is 20";
+}
+
 }  // namespace
 }  // namespace vibe::few_iterations_test
