@@ -34,6 +34,7 @@ class Part:
     words: tuple
     minutes: float  # of processor time, about
     quick: bool = False  # is run by the test
+    cores: int = 1  # is measured where the machine has so many
 
 
 @dataclasses.dataclass(frozen=True)
@@ -60,6 +61,12 @@ def contact_parts():
     words = ("vibe_contact", "states", "free", "pressed", "--rate", "1020", "--iterations", "1", "--no-reference")
     yield Part("steps_1_ms", words, 1)
     yield Part("steps_1_ms_small", (*words, "--scene", "{small}"), 0.3)
+
+
+def threads_parts():
+    for count in ("2", "4", "8"):
+        words = ("vibe_contact", "states", "free", "pressed", "wound", "--no-reference", "--real-time", "--repeats", "3")
+        yield Part(count, (*words, "--threads", "1", count), 0.8, cores=int(count))
 
 
 def hard_parts():
@@ -118,6 +125,7 @@ def sections(root, meshes=()):
         Section("pulling", "two bites pulled together by thread and by groups", case, (),
                 (Part("pulling", ("vibe_bench", "--pulling"), 3),)),
         Section("states", "steps in contact", ("state", "rate", "iterations"), STATE_ERRORS, tuple(contact_parts())),
+        Section("threads", "wall time of steps by number of threads", ("state", "threads"), (), tuple(threads_parts())),
         Section("refinement", "force of a grip on finer meshes", ("grip", "site"), (), tuple(refinement_parts())),
         Section("hard", "hard cases of contact", ("case",), (), tuple(hard_parts())),
         Section("scenarios", "time of each suture set", ("scenario", "set"), (),
