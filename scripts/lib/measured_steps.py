@@ -185,6 +185,15 @@ def threads(store):
     return table(header, lines), shown
 
 
+@made_from("instructions")
+def instructions(store):
+    rows = store.rows("instructions")
+    parts = ("step", "energy", "inverse", "rows", "paths", "walls", "loads", "factor")
+    lines = [(f"`{row['state']}`", row["steps"], *(digits(row[part], 3) for part in parts)) for row in rows]
+    header = ("state", "steps", "all", "energy", "inverse", "of it rows", "paths", "walls", "loads", "factor")
+    return table(header, lines), [(f"`{row['state']}`", row) for row in rows]
+
+
 @made_from("refinement")
 def refinement(store):
     rows, forces = store.rows("refinement"), {}

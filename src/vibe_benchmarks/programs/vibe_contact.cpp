@@ -30,7 +30,7 @@ struct Options {
   std::vector<int> particles{1000, 2000, 3618, 8000, 16000};
   int sites = 6;
   bool brief = false;
-  bool check_reference = false, no_reference = false, stages = false, real_time = false;
+  bool check_reference = false, no_reference = false, stages = false, real_time = false, plain_preparation = false;
 };
 
 template <class Write>
@@ -80,6 +80,8 @@ OptionList addStates(OptionList& line, Options& o) {
       .check(wholeFrom(1, 1000));
   states.flag("--real-time", o.real_time,
               "a step begins when its time has come, not as soon as the last one has ended");
+  states.flag("--plain-preparation", o.plain_preparation,
+              "prepare with plain arithmetic: for valgrind, which takes long over fused one");
   states.flag("--stages", o.stages, "print what the steps have spent their time on");
   states.option("--repeats", o.repeats, "runs of each setting (default: 1); of each step the fastest counts")
       .typeName("N")
@@ -127,6 +129,7 @@ ContactPlan planOf(const Options& o, const Scene& scene) {
   ContactPlan plan;
   plan.names = o.names;
   plan.repeats = o.repeats;
+  plan.plain_preparation = o.plain_preparation;
   plan.check_reference = o.check_reference;
   for (std::size_t k = 0; k < o.rate.size(); ++k)
     for (const int threads : o.threads)

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/machine.hpp"
 
 namespace vibe::benchmarks {
 namespace {
@@ -100,9 +101,16 @@ class Table {
 
 std::vector<ContactRow> runContactStates(const Scene& scene, const std::string& urdf, const ContactPlan& plan,
                                          std::ostream& log) {
+  const Arithmetic measured = arithmetic(), preparing = plan.plain_preparation ? Arithmetic::Plain : measured;
+  setArithmetic(preparing);
   ContactStates states(scene, urdf, log);
   Table table(plan, log);
-  for (const std::string& name : namesOf(plan)) table.addCase(states.prepare(name));
+  for (const std::string& name : namesOf(plan)) {
+    setArithmetic(preparing);
+    const ContactCase one = states.prepare(name);
+    setArithmetic(measured);
+    table.addCase(one);
+  }
   return table.takeRows();
 }
 

@@ -58,6 +58,7 @@ struct ContactPlan {
   std::optional<ContactSetting> reference;
   bool check_reference = false;  ///< adds a row of the reference against one with steps half as long
   int repeats = 1;
+  bool plain_preparation = false;  ///< prepares with Arithmetic::Plain, which valgrind runs eight times as fast
 };
 
 /// @param log  progress and rows as they come
