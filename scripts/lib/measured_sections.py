@@ -108,7 +108,7 @@ def outcome_parts():
     all_three = ("as_cinched", "sewn_empty", "same_thread", "fine_mesh", "no_friction", "no_foundation")
     names = [name + "_" + pattern for name in all_three for pattern in "cuz"]
     for name in (*names[:3], "tight_u", "loose_u", *names[3:]):
-        yield Part(name, ("vibe_sutures", "outcomes", "--trial", name), 6 if name.startswith("fine_mesh") else 2.5)
+        yield Part(name, ("vibe_sutures", "outcomes", "--trial", name), 2.5 if name.startswith("fine_mesh") else 0.7)
 
 
 def refinement_parts():
