@@ -55,11 +55,14 @@ def version(root):
     return "{} ({}{})".format(number, commit, changed) if commit else number
 
 
+def cores():
+    return len(os.sched_getaffinity(0))
+
+
 def machine():
     with open("/proc/cpuinfo", encoding="utf-8") as text:
         found = re.search(r"^model name\s*: (.*)$", text.read(), re.MULTILINE)
-    cores = len(os.sched_getaffinity(0))
-    return "{}, {} cores".format(found.group(1) if found else os.uname().machine, cores)
+    return "{}, {} cores".format(found.group(1) if found else os.uname().machine, cores())
 
 
 def stamped(work, part, rows, seconds):
@@ -116,6 +119,9 @@ def measure_all(work, wanted, again):
     status = 0
     for section, part in work.parts(quick=False):
         if is_wanted(section, part, wanted) and (again or work.is_due(section, part)):
+            if part.cores > cores():
+                print("{} {}: left out, needs {} cores".format(section.name, part.name, part.cores))
+                continue
             try:
                 keep(work, section, part, measure(work, section, part))
                 render(work)

@@ -34,6 +34,7 @@ class Part:
     words: tuple
     minutes: float  # of processor time, about
     quick: bool = False  # is run by the test
+    cores: int = 1  # is measured where the machine has so many
 
 
 @dataclasses.dataclass(frozen=True)
@@ -60,6 +61,17 @@ def contact_parts():
     words = ("vibe_contact", "states", "free", "pressed", "--rate", "1020", "--iterations", "1", "--no-reference")
     yield Part("steps_1_ms", words, 1)
     yield Part("steps_1_ms_small", (*words, "--scene", "{small}"), 0.3)
+
+
+def threads_parts():
+    for count in ("2", "4", "8"):
+        words = ("vibe_contact", "states", "free", "pressed", "wound", "--no-reference", "--real-time", "--repeats", "3")
+        yield Part(count, (*words, "--threads", "1", count), 0.8, cores=int(count))
+
+
+def instructions_parts():
+    yield Part("tool", ("scripts/instructions", "free", "pressed"), 2)
+    yield Part("folds", ("scripts/instructions", "wound", "cinch1", "cinch6"), 10)
 
 
 def hard_parts():
@@ -92,6 +104,13 @@ def guard_parts():
     yield Part("refinement", words, 0.1, True)
 
 
+def outcome_parts():
+    all_three = ("as_cinched", "sewn_empty", "same_thread", "fine_mesh", "no_friction", "no_foundation")
+    names = [name + "_" + pattern for name in all_three for pattern in "cuz"]
+    for name in (*names[:3], "tight_u", "loose_u", *names[3:]):
+        yield Part(name, ("vibe_sutures", "outcomes", "--trial", name), 2.5 if name.startswith("fine_mesh") else 0.7)
+
+
 def refinement_parts():
     for count in (1000, 2000, 3618, 8000, 16000):
         yield Part(str(count), ("vibe_contact", "refinement", "--particles", str(count)), count / 1500)
@@ -118,12 +137,14 @@ def sections(root, meshes=()):
         Section("pulling", "two bites pulled together by thread and by groups", case, (),
                 (Part("pulling", ("vibe_bench", "--pulling"), 3),)),
         Section("states", "steps in contact", ("state", "rate", "iterations"), STATE_ERRORS, tuple(contact_parts())),
+        Section("threads", "wall time of steps by number of threads", ("state", "threads"), (), tuple(threads_parts())),
+        Section("instructions", "instructions of steps in contact", ("state",), (), tuple(instructions_parts())),
         Section("refinement", "force of a grip on finer meshes", ("grip", "site"), (), tuple(refinement_parts())),
         Section("hard", "hard cases of contact", ("case",), (), tuple(hard_parts())),
         Section("scenarios", "time of each suture set", ("scenario", "set"), (),
                 (Part("scenarios", ("vibe_sutures", "scenarios", "--quick"), 12),)),
         Section("outcomes", "idealised sleeves in C, U and Z", ("trial", "pattern"), (),
-                (Part("outcomes", ("vibe_sutures", "outcomes"), 60),)),
+                tuple(outcome_parts())),
         Section("sessions", "the first session and a minute of grabs", (), (), tuple(session_parts())),
         Section("organs", "an expert's sleeve on all organs", (), (), tuple(organ_parts(meshes))),
     )  # fmt: skip
@@ -166,6 +187,8 @@ class Runner:
         self.root, self.devel, self.log = root, devel, log
 
     def program(self, name):
+        if name.startswith("scripts/"):
+            return os.path.join(self.root, name)
         package = "vibe_core" if name == "vibe_headless" else "vibe_benchmarks"
         return os.path.join(self.devel, "lib", package, name)
 

@@ -167,6 +167,33 @@ def steps_1_ms(store):
     return table(("state, 1,020 Hz, 1 iteration", "mean", "p50, p99 ms", "iterations"), lines), rows
 
 
+@made_from("threads")
+def threads(store):
+    """Of a state the row with one thread of the first part; ratios are those within a part, which is one run."""
+    rows = store.rows("threads")
+    alone = {(row["part"], row["state"]): row for row in reversed(rows) if row["threads"] == "1"}
+    lines, shown = [], []
+    for state in dict.fromkeys(row["state"] for row in rows):
+        found = [row for row in rows if row["state"] == state]
+        for row in (found[0], *(row for row in found if row["threads"] != "1")):
+            ratio = number(row["ms_wall_mean"]) / number(alone[row["part"], state]["ms_wall_mean"])
+            lines.append((f"`{state}`", row["threads"], digits(row["ms_wall_mean"]), digits(ratio),
+                          times(row, "ms_wall_p50", "ms_wall_p99"), *(digits(row[c]) for c in ("ms_mean", "ms_all_threads"))))
+            shown.append((row["part"], row))
+    header = ("state", "threads", "wall time, mean, ms", "of one thread", "p50, p99 ms", "CPU of the stepping thread, ms",
+              "CPU of all, ms")  # fmt: skip
+    return table(header, lines), shown
+
+
+@made_from("instructions")
+def instructions(store):
+    rows = store.rows("instructions")
+    parts = ("step", "energy", "inverse", "rows", "paths", "walls", "loads", "factor")
+    lines = [(f"`{row['state']}`", row["steps"], *(digits(row[part], 3) for part in parts)) for row in rows]
+    header = ("state", "steps", "all", "energy", "inverse", "of it rows", "paths", "walls", "loads", "factor")
+    return table(header, lines), [(f"`{row['state']}`", row) for row in rows]
+
+
 @made_from("refinement")
 def refinement(store):
     rows, forces = store.rows("refinement"), {}

@@ -19,6 +19,7 @@ packagesOf() {
 keysOf() {
   case $1 in
     session) echo @build @run ;;
+    measurements) echo @count ;;
     firmware) echo @firmware ;;
     packages) echo @package ;;
     tests) echo @test @lint ;;

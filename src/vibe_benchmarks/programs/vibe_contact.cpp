@@ -19,7 +19,7 @@ using namespace vibe::benchmarks;
 struct Options {
   std::string csv, scene = "package://vibe_core/scenes/stomach.yaml";
   std::vector<std::string> names;
-  std::vector<int> rate{60}, iterations;
+  std::vector<int> rate{60}, iterations, threads{1};
   std::vector<double> radius;
   // 8 iterations do not solve the steps in which a fold snaps: the end of a frame is then off by 7 % of the motion
   int reference_rate = 960, reference_iterations = 30, repeats = 1;
@@ -30,7 +30,7 @@ struct Options {
   std::vector<int> particles{1000, 2000, 3618, 8000, 16000};
   int sites = 6;
   bool brief = false;
-  bool check_reference = false, no_reference = false, stages = false;
+  bool check_reference = false, no_reference = false, stages = false, real_time = false, plain_preparation = false;
 };
 
 template <class Write>
@@ -73,6 +73,15 @@ OptionList addStates(OptionList& line, Options& o) {
       .check(wholeFrom(1, 1000));
   states.flag("--check-reference", o.check_reference, "compare it with a reference of twice its rate");
   states.flag("--no-reference", o.no_reference, "times only");
+  states
+      .option("--threads", o.threads,
+              "used inside a step; several: each, in turn, and the bits must be the same (default: 1)")
+      .typeName("N")
+      .check(wholeFrom(1, 1000));
+  states.flag("--real-time", o.real_time,
+              "a step begins when its time has come, not as soon as the last one has ended");
+  states.flag("--plain-preparation", o.plain_preparation,
+              "prepare with plain arithmetic: for valgrind, which takes long over fused one");
   states.flag("--stages", o.stages, "print what the steps have spent their time on");
   states.option("--repeats", o.repeats, "runs of each setting (default: 1); of each step the fastest counts")
       .typeName("N")
@@ -120,11 +129,14 @@ ContactPlan planOf(const Options& o, const Scene& scene) {
   ContactPlan plan;
   plan.names = o.names;
   plan.repeats = o.repeats;
+  plan.plain_preparation = o.plain_preparation;
   plan.check_reference = o.check_reference;
   for (std::size_t k = 0; k < o.rate.size(); ++k)
-    plan.settings.push_back({o.rate[k], entry(o.iterations, k, "--iterations", o.rate.size(), scene.tissue.iterations),
-                             entry(o.radius, k, "--spectral-radius", o.rate.size(), scene.tissue.spectral_radius),
-                             o.stages});
+    for (const int threads : o.threads)
+      plan.settings.push_back({o.rate[k],
+                               entry(o.iterations, k, "--iterations", o.rate.size(), scene.tissue.iterations),
+                               entry(o.radius, k, "--spectral-radius", o.rate.size(), scene.tissue.spectral_radius),
+                               o.stages, threads, o.real_time});
   if (!o.no_reference)
     plan.reference = ContactSetting{o.reference_rate, o.reference_iterations, scene.tissue.spectral_radius};
   return plan;

@@ -1,4 +1,5 @@
 // Simulates complete suturing procedures: the cost of each set, and the effect of stitch patterns on the stomach.
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <string>
@@ -25,6 +26,7 @@ const char kAbout[] =
 
 struct Options {
   std::string mode, csv, scene = "package://vibe_core/scenes/stomach.yaml";
+  std::vector<std::string> trials;
   int repeats = 3;
   bool quick = false;
 };
@@ -38,6 +40,8 @@ void addOptions(OptionList& line, Options& o) {
   line.option("--repeats", o.repeats, "runs of each scenario (default: 3); of each step the fastest counts")
       .typeName("N")
       .check(wholeFrom(1, 1000));
+  line.option("--trial", o.trials, "only these outcomes, by the columns trial and pattern, as in fine_mesh_u")
+      .typeName("TRIAL_PATTERN");
   line.flag("--quick", o.quick, "one run of each scenario; patterns and outcomes once, with nothing varied");
   line.option("--csv", o.csv, "write the rows there (- for standard output)").typeName("FILE");
 }
@@ -82,11 +86,25 @@ void runPatterns(const Options& options) {
   save(options.csv, [&](std::ostream& out) { writePatterns(rows, out); });
 }
 
+std::vector<OutcomeTrial> chosenTrials(const Scene& scene, const Options& options) {
+  const std::vector<OutcomeTrial> all = outcomeTrials(scene, options.quick);
+  if (options.trials.empty()) return all;
+  std::vector<OutcomeTrial> chosen;
+  for (const std::string& name : options.trials) {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const OutcomeTrial& trial) {
+      return trial.name + "_" + toString(trial.pattern) == name;
+    });
+    if (found == all.end()) throw Error("--trial: there is no '" + name + "'; without the option all run by name.");
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
 void runOutcomes(const Options& options) {
   const Scene scene = sceneOf(options);
   OutcomeStudy study(scene);
   std::vector<OutcomeRow> rows;
-  for (const OutcomeTrial& trial : outcomeTrials(scene, options.quick)) {
+  for (const OutcomeTrial& trial : chosenTrials(scene, options)) {
     rows.push_back(study.run(trial));
     printOutcome(rows.back(), std::cerr);
     save(options.csv, [&](std::ostream& out) { writeOutcomes(rows, out); });

@@ -9,6 +9,7 @@
 #include "contact/contact_table.hpp"
 #include "contact_scene.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/step_timer.hpp"
 
 namespace vibe::benchmarks::contact_test {
 namespace {
@@ -72,11 +73,11 @@ TEST(Contact, APullAtHigherRatesIsNearerToTheReference) {
   std::ostringstream log;
   ContactPlan plan;
   plan.names = {"free"};
-  plan.settings = {{60, 4, 0.2}, {240, 4, 0.2}};
+  plan.settings = {{60, 4, 0.2}, {240, 4, 0.2}, {240, 4, 0.2, false, 2}};
   plan.reference = ContactSetting{960, 4, 0.2};
   plan.repeats = 2;  // throws if the bits differ
   const auto rows = runContactStates(coarseStomach(), scopeUrdf(), plan, log);
-  ASSERT_EQ(rows.size(), 2u);
+  ASSERT_EQ(rows.size(), 3u);
   for (const ContactRow& row : rows) {
     ASSERT_TRUE(row.errors);
     EXPECT_EQ(row.name, "free");
@@ -88,16 +89,31 @@ TEST(Contact, APullAtHigherRatesIsNearerToTheReference) {
     EXPECT_EQ(row.trace.crossings, 0);
     EXPECT_EQ(row.trace.events, 0);
     EXPECT_GT(row.times.p50, 0);
+    EXPECT_GT(row.wall.max, 0.99 * row.times.max);
+    EXPECT_GT(row.trace.others, 0);  // makes factors
     EXPECT_GE(row.trace.iterations, 1);
   }
   EXPECT_LT(rows[1].errors->motion, 0.5 * rows[0].errors->motion);
   EXPECT_LT(rows[1].errors->force, 0.5 * rows[0].errors->force);
+  EXPECT_EQ(rows[2].trace.hash, rows[1].trace.hash);
   std::ostringstream csv;
   writeContactRows(rows, csv);
   const std::string text = csv.str();
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);
   const auto fields = std::count(text.begin(), text.begin() + static_cast<long>(text.find('\n')), ',');
-  EXPECT_EQ(std::count(text.begin(), text.end(), ','), 3 * fields);
+  EXPECT_EQ(std::count(text.begin(), text.end(), ','), 4 * fields);
+}
+
+TEST(Contact, OfTwoRunsTheShorterTimeOfEachStepCounts) {
+  ContactTrace trace, other;
+  trace.cpu = {1, 4}, trace.wall = {5, 2}, trace.others = 7;
+  other.cpu = {2, 3}, other.wall = {4, 3}, other.others = 8;
+  takeFaster(other, trace);
+  EXPECT_EQ(trace.cpu, (std::vector<double>{1, 3}));
+  EXPECT_EQ(trace.wall, (std::vector<double>{4, 2}));
+  EXPECT_EQ(trace.others, 7);
+  other.hash = 1;
+  EXPECT_THROW(takeFaster(other, trace), Error);
 }
 
 TEST(Contact, ThePressedStateTouchesAndTheCinchedOneIsDrawn) {
@@ -105,15 +121,20 @@ TEST(Contact, ThePressedStateTouchesAndTheCinchedOneIsDrawn) {
   ContactStates states(coarseStomach(), scopeUrdf(), log);
   const ContactCase pressed = states.prepare("pressed");
   EXPECT_LT(pressed.start.tool_force.norm(), 0.1);  // [N]
-  const ContactTrace push = runContact(pressed, {60, 4, 0.2}, 1);
+  const ContactTrace push = runContact(pressed, {60, 4, 0.2});
   EXPECT_GT(push.contacts, 0);
   EXPECT_GT(push.force.back().norm(), 0.5);  // [N]
   const ContactCase cinch = states.prepare("cinch1");
   ASSERT_EQ(cinch.start.procedure.sutures.size(), 1u);
   EXPECT_EQ(cinch.start.procedure.sutures.back().stage, Suture::Stage::Tagged);
-  const ContactTrace drawn = runContact(cinch, {60, 4, 0.2}, 1);
+  const ContactTrace drawn = runContact(cinch, {60, 4, 0.2});
   EXPECT_GT(drawn.force.back().x(), 1);  // [N]
   EXPECT_THROW(states.prepare("juggled"), Error);
+  ContactCase brief = pressed;
+  brief.duration = 0.5;
+  const double begin = steadyTime();
+  runContact(brief, {60, 4, 0.2, false, 1, true});
+  EXPECT_GT(steadyTime() - begin, 0.48);  // [s], of real time
 }
 
 TEST(Contact, ChecksSeeAWallThatCrossesAndAToolThatPassesThrough) {

@@ -35,12 +35,14 @@ struct ContactCase {
   ContactSignal signal = ContactSignal::ToolForce;
 };
 
-/// Settings of the implicit step.
+/// Settings of the implicit step, and how it is run.
 struct ContactSetting {
   int rate = 60;                 ///< steps per second, a multiple of 60 [Hz]
   int iterations = 4;            ///< tissue.iterations
   double spectral_radius = 0.2;  ///< tissue.spectral_radius
   bool stages = false;           ///< says what the steps have spent their time on
+  int threads = 1;               ///< used inside a step
+  bool real_time = false;        ///< a step begins when its time has come, not as soon as the last one has ended
 };
 
 /// The model of the case with another setting.
@@ -69,24 +71,31 @@ struct ContactTrace {
   ContactSetting setting;
   std::vector<std::array<std::vector<double>, 3>> frames;  ///< positions every 1/60 s, from the start on [m]
   std::vector<Eigen::Vector3d> force;                      ///< mean over each frame [N]
-  std::vector<double> cpu;  ///< of the stepping thread, each step but the first, which makes the first factor [ms]
-  double iterations = 0;    ///< mean of the steps
-  int max_iterations = 0;   ///< of a step
-  int fallback_steps = 0;   ///< repeated with backward Euler
-  int contacts = 0;         ///< with the tool, most in a step
-  int pairs = 0;            ///< of walls in contact, most in a frame
-  int crossings = 0;        ///< pairs of triangles of the wall that cross, most at the end of a frame
-  double depth = 0;         ///< of the wall's middle surface in the tool, most at the end of a frame [m]
-  int events = 0;           ///< slips, tear-outs, broken threads and recoveries
-  double balance = 0;       ///< energyBalance() at the end minus that at the start [J]
-  double work = 0;          ///< sum over the steps of |work| of tool, gas, threads and pull spring [J]
-  std::uint64_t hash = 0;   ///< of the last state
-  std::string stages;       ///< StageSummary of all steps, if it was asked for
+  std::vector<double> cpu;   ///< of the stepping thread, each step but the first, which makes the first factor [ms]
+  std::vector<double> wall;  ///< of the same steps [ms]
+  double others = 0;         ///< CPU time of all other threads, mean of the same steps [ms]
+  double iterations = 0;     ///< mean of the steps
+  int max_iterations = 0;    ///< of a step
+  int fallback_steps = 0;    ///< repeated with backward Euler
+  int contacts = 0;          ///< with the tool, most in a step
+  int pairs = 0;             ///< of walls in contact, most in a frame
+  int crossings = 0;         ///< pairs of triangles of the wall that cross, most at the end of a frame
+  double depth = 0;          ///< of the wall's middle surface in the tool, most at the end of a frame [m]
+  int events = 0;            ///< slips, tear-outs, broken threads and recoveries
+  double balance = 0;        ///< energyBalance() at the end minus that at the start [J]
+  double work = 0;           ///< sum over the steps of |work| of tool, gas, threads and pull spring [J]
+  std::uint64_t hash = 0;    ///< of the last state
+  std::string stages;        ///< StageSummary of all steps, if it was asked for
 };
 
-/// @param repeats  runs; of each step the shortest time counts
-/// @throws Error if two runs end with different bits
-ContactTrace runContact(const ContactCase& one, const ContactSetting& setting, int repeats);
+ContactTrace runContact(const ContactCase& one, const ContactSetting& setting);
+
+/// The steps of runContact() but the first; a function of its own for scripts/instructions, which counts in it.
+const std::vector<Event>& countedStep(Simulation& simulation, const StepInput& input);
+
+/// Of each step the shorter time counts.
+/// @throws Error if the two end with different bits
+void takeFaster(const ContactTrace& other, ContactTrace& trace);
 
 /// Differences of a trace from another one of the same case.
 struct ContactErrors {

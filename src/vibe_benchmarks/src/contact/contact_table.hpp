@@ -44,7 +44,8 @@ class ContactStates {
 struct ContactRow {
   std::string name;
   ContactSetting setting;
-  StepTimes times;                      ///< [ms]
+  StepTimes times;                      ///< CPU of the stepping thread [ms]
+  StepTimes wall;                       ///< [ms]
   double ratio = 0;                     ///< of the median to that of the free pull at the same setting
   ContactTrace trace;                   ///< without frames and forces
   std::optional<ContactErrors> errors;  ///< empty without a reference
@@ -52,11 +53,12 @@ struct ContactRow {
 
 /// What runContactStates() measures.
 struct ContactPlan {
-  std::vector<std::string> names;  ///< empty: all
-  std::vector<ContactSetting> settings;
+  std::vector<std::string> names;        ///< empty: all
+  std::vector<ContactSetting> settings;  ///< those that differ in threads only stand behind one another
   std::optional<ContactSetting> reference;
   bool check_reference = false;  ///< adds a row of the reference against one with steps half as long
   int repeats = 1;
+  bool plain_preparation = false;  ///< prepares with Arithmetic::Plain, which valgrind runs eight times as fast
 };
 
 /// @param log  progress and rows as they come
