@@ -83,11 +83,11 @@ class ConstraintSchur {
   ColumnCache* cache_ = nullptr;  // null: there are no rows
   std::vector<int> nodes_;        // of the rows
   HalfRows rows_;
-  bool formed_ = false;  // the compliance is that of the rows and the gas
+  bool formed_ = false;       // the compliance is that of the rows and the gas
+  bool rows_formed_ = false;  // row_compliance_ is that of the rows
   Eigen::VectorXd row_value_;
   std::vector<int> equations_;     // row numbers: those of equations, then of springs
   std::vector<int> inequalities_;  // row numbers: normals and tangents of contacts, then pulls of threads
-  std::vector<int> idle_;          // row numbers of contacts beyond the budget
   std::vector<Contact> contact_list_;
   ContactProblem contacts_;  // of inequalities_
   LimitedSlide limited_slide_;
@@ -104,7 +104,7 @@ class ConstraintSchur {
   double gas_stiffness_ = 0, gas_norm2_ = 0;
   Eigen::VectorXd gas_row_, force_, moves_, lost_;
   double gas_force_ = 0;
-  Eigen::MatrixXd compliance_, block_, cross_, coupling_,
+  Eigen::MatrixXd row_compliance_, compliance_, block_, cross_, coupling_,
       thread_compliance_;  // of equations, with contacts, of contacts
   Eigen::VectorXd residual_, equation_residual_, contact_residual_, equation_force_, contact_force_, thread_residual_;
   OrderedLdlt equation_factor_;

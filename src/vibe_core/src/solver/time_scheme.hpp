@@ -59,8 +59,9 @@ void setStepTargets(const BodyLoads& loads, const MotionView& motion, const Time
 /// of a solution grows with the third power of the rows that act.
 constexpr std::size_t kMaxContacts = 128;
 /// Bounds the work of a step: the deepest contacts at the scratch's z keep their friction, further ones up to
-/// kMaxContacts only their normal, and the rest has no force. Needs the targets.
-void limitContacts(StepperWorkspace& scratch);
+/// kMaxContacts only their normal, and the rest neither rows nor force. Needs the targets.
+/// @returns whether rows have other numbers now; their targets are to be set again
+bool limitContacts(StepperWorkspace& scratch);
 /// How deep the contacts that do not count end in the tool, at the scratch's z [m].
 double depthLeftOut(const StepperWorkspace& scratch);
 /// The rows' forces back to the loads, and how far the threads slid.
