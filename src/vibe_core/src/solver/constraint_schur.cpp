@@ -30,6 +30,16 @@ void ConstraintSchur::addRow(const LinearForm& form, double compliance, const Fa
     rows_.addTerm(cache_->nodeSlot(factor, form.node[k]), form.coefficient[k]);
 }
 
+// Tangents without friction have rows without a term.
+void ConstraintSchur::addContact(const ContactRows& contact, const Factor& factor) {
+  addRow(contact.form[0], contact.compliance, factor);
+  for (std::size_t k = 1; k < 3; ++k)
+    if (contact.friction > 0)
+      addRow(contact.form[k], 0, factor);
+    else
+      rows_.addRow(1);
+}
+
 // From an attachment point to the next: the same as a form in their nodes, in fewer columns.
 void ConstraintSchur::addRun(int attachment, const Eigen::Vector3d& along, double compliance) {
   rows_.addRow(compliance);
@@ -68,9 +78,7 @@ void ConstraintSchur::setRows(const ConstraintRows& rows, const Factor& factor, 
   cache.makeRoom(nodes_);
   rows_.clear();
   for (const EquationRow& equation : rows.equations) addRow(equation.form, equation.compliance, factor);
-  for (std::size_t c = 0; c < rows.counted; ++c)
-    for (std::size_t k = 0; k < 3; ++k)
-      addRow(rows.contacts[c].form[k], k == 0 ? rows.contacts[c].compliance : 0, factor);
+  for (std::size_t c = 0; c < rows.counted; ++c) addContact(rows.contacts[c], factor);
   for (const ThreadRows& thread : rows.threads) addThreadRows(thread);
   rows_.finish(cache);
   row_value_.setZero(rowCount());
@@ -82,7 +90,7 @@ void ConstraintSchur::setRows(const ConstraintRows& rows, const Factor& factor, 
 }
 
 void ConstraintSchur::sortRows(const ConstraintRows& rows) {
-  equations_.clear(), inequalities_.clear(), contact_list_.clear();
+  equations_.clear(), inequalities_.clear(), contact_list_.clear(), idle_.clear();
   thread_count_ = 0;
   threads_held_ = false;
   for (int i = 0; i < static_cast<int>(rows.equations.size()); ++i) equations_.push_back(i);
@@ -90,8 +98,10 @@ void ConstraintSchur::sortRows(const ConstraintRows& rows) {
     for (int k = 0; k < 2 * thread.count(); ++k)
       if (thread.segments[k / 2].turn_missing > 0) equations_.push_back(thread.turnRow(k / 2, k % 2));
   for (std::size_t c = 0; c < rows.counted; ++c) {
-    contact_list_.push_back({static_cast<int>(inequalities_.size()), rows.contacts[c].friction});
-    for (int k = 0; k < 3; ++k) inequalities_.push_back(rows.contactRow(c) + k);
+    const double friction = rows.contacts[c].friction;
+    contact_list_.push_back({static_cast<int>(inequalities_.size()), friction});
+    inequalities_.push_back(rows.contactRow(c));
+    for (int k = 1; k < 3; ++k) (friction > 0 ? inequalities_ : idle_).push_back(rows.contactRow(c) + k);
   }
   for (const ThreadRows& thread : rows.threads)
     if (thread.count() > 0) addThread(thread);
@@ -281,6 +291,7 @@ void ConstraintSchur::eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, do
   moves_ = rhs;
   lost_.setZero(m);
   holds_.assign(static_cast<std::size_t>(m), 1);
+  for (const int row : idle_) holds_[static_cast<std::size_t>(row)] = 0;
   residual_ = rhs - row_value_;
   if (gas_stiffness_ != 0 && m > 0) residual_ -= gas_row_ * (gas_residual / gas_norm2_);
   solveRows();

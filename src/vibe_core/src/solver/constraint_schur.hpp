@@ -56,7 +56,7 @@ class ConstraintSchur {
 
  private:
   struct Contact {
-    int first = 0;  // of inequalities_: normal, two tangents
+    int first = 0;  // of inequalities_: normal; two tangents where there is friction
     double friction = 0;
   };
   struct Thread {
@@ -66,6 +66,7 @@ class ConstraintSchur {
   };
   void findNodes(const ConstraintRows& rows);
   void addRow(const LinearForm& form, double compliance, const Factor& factor);
+  void addContact(const ContactRows& contact, const Factor& factor);
   void addRun(int attachment, const Eigen::Vector3d& along, double compliance);
   void addThreadRows(const ThreadRows& thread);
   void sortRows(const ConstraintRows& rows);
@@ -88,6 +89,7 @@ class ConstraintSchur {
   Eigen::VectorXd row_value_;
   std::vector<int> equations_;     // row numbers: those of equations, then of springs
   std::vector<int> inequalities_;  // row numbers: normals and tangents of contacts, then pulls of threads
+  std::vector<int> idle_;          // row numbers of tangents without friction
   std::vector<Contact> contact_list_;
   ContactProblem contacts_;  // of inequalities_
   LimitedSlide limited_slide_;

@@ -10,9 +10,6 @@
 namespace vibe {
 namespace {
 
-// Those with friction, which have three rows. Design choice: half of them.
-constexpr std::size_t kMaxWithFriction = kMaxContacts / 2;
-
 Eigen::Vector3d positionOf(const AttachmentPoint& attachment, const MotionView& motion) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < attachment.node.size(); ++i)

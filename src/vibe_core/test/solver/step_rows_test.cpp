@@ -96,7 +96,7 @@ TEST(StepRows, TheDeepestContactsCountWhereThereAreTooMany) {
   for (int i = 0; i < kCount; ++i) {
     const ContactRows& contact = scratch.rows.contacts[i];
     const int deeper = kCount - 1 - static_cast<int>(7 * contact.load) % kCount;
-    EXPECT_EQ(contact.friction, deeper < 64 ? first.friction : 0) << deeper;
+    EXPECT_EQ(contact.friction, deeper < 32 ? first.friction : 0) << deeper;
     EXPECT_EQ(i < 128, deeper < 128) << deeper;
     if (i > 0 && i < 128) EXPECT_LT(scratch.rows.contacts[i - 1].load, contact.load);
   }
