@@ -192,6 +192,7 @@ bool ImplicitStep::solve() {
   report_.evaluations += outcome.evaluations;
   ++report_.solves;
   report_.rows = scratch_.stepper->rows.count();
+  report_.limited = static_cast<int>(std::max(scratch_.loads.contacts.size(), kMaxWithFriction) - kMaxWithFriction);
   report_.wall_pairs = scratch_.terms.pairCount();
   report_.residual = outcome.residual;
   report_.arrived = outcome.arrived;

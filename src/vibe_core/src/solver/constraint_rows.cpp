@@ -37,13 +37,15 @@ void LinearForm::addForce(double force, std::vector<float>& vector4) const {
 void ConstraintRows::clear() {
   equations.clear();
   contacts.clear();
+  counted = 0;
   threads.clear();
   tool_compliance.setZero();
   tool_yields = false;
 }
 
-void ConstraintRows::number() {
-  int row = contactRow(contacts.size());
+void ConstraintRows::number(std::size_t contacts_that_count) {
+  counted = contacts_that_count;
+  int row = contactRow(counted);
   for (ThreadRows& thread : threads) {
     thread.first_row = row;
     row += 3 * thread.count();
@@ -51,7 +53,7 @@ void ConstraintRows::number() {
 }
 
 int ConstraintRows::count() const {
-  int sum = contactRow(contacts.size());
+  int sum = contactRow(counted);
   for (const ThreadRows& thread : threads) sum += 3 * thread.count();
   return sum;
 }
@@ -62,10 +64,7 @@ void RowUnknowns::begin(const ConstraintRows& rows) {
   compliance_.setZero(count);
   int row = 0;
   for (const EquationRow& equation : rows.equations) compliance_[row++] = equation.compliance;
-  for (const ContactRows& contact : rows.contacts) {
-    compliance_[row] = contact.counts ? contact.compliance : 0;
-    row += 3;
-  }
+  for (std::size_t c = 0; c < rows.counted; ++c, row += 3) compliance_[row] = rows.contacts[c].compliance;
   for (const ThreadRows& thread : rows.threads)
     for (int k = 0; k < thread.count(); ++k) compliance_[thread.pullRow(k)] = thread.segments[k].compliance;
   for (Forces* forces : {&force_, &direction_, &left_, &taken_, &last_}) forces->setZero(kYieldDofs + count);

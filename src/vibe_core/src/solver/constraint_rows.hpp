@@ -38,7 +38,8 @@ struct ContactRows {
   std::array<LinearForm, 3> form;
   std::array<Eigen::Vector3d, 3> direction;  ///< normal, two tangents; unit
   double friction = 0;                       ///< Coulomb coefficient [1]
-  bool counts = true;                        ///< false: beyond the budget of a step, without force
+  std::size_t load = 0;                      ///< its index in the loads
+  double target = 0;                         ///< of the normal, of one that does not count [m]
   double compliance = 0;                     ///< of the normal [m/N]
   /// Motion of the three targets per motion of the tool that yields.
   Eigen::Matrix<double, 3, kYieldDofs> yield = Eigen::Matrix<double, 3, kYieldDofs>::Zero();
@@ -72,10 +73,11 @@ struct ThreadRows {
 };
 
 /// The few constraints beside the big system of a step. Every form has a row number, under which vectors over rows
-/// have their entry: equations, then three per contact, then the threads.
+/// have their entry: equations, then three per contact that counts, then the threads.
 struct ConstraintRows {
   RowList<EquationRow> equations;
-  RowList<ContactRows> contacts;
+  RowList<ContactRows> contacts;  ///< from `counted` on beyond the budget of a step, without rows and force
+  std::size_t counted = 0;
   RowList<ThreadRows> threads;
   /// Of the tool: its motion is minus this times the sum over rows of yield * force. Zero: the tool is rigid.
   YieldMatrix tool_compliance = YieldMatrix::Zero();
@@ -83,7 +85,9 @@ struct ConstraintRows {
 
   void clear();
   /// Sets the first rows of the threads.
-  void number();
+  /// @param contacts_that_count  the first ones
+  void number(std::size_t contacts_that_count);
+  void number() { number(contacts.size()); }
   int count() const;
   int contactRow(std::size_t contact) const { return static_cast<int>(equations.size() + 3 * contact); }
   /// Forms of the rows whose forces are unknowns of the solver, in the order of rows: use(row, form).
@@ -91,8 +95,8 @@ struct ConstraintRows {
   void forEachMultiplier(Use use) const {
     int row = 0;
     for (const EquationRow& equation : equations) use(row++, equation.form);
-    for (const ContactRows& contact : contacts)
-      for (const LinearForm& form : contact.form) use(row++, form);
+    for (std::size_t c = 0; c < counted; ++c)
+      for (const LinearForm& form : contacts[c].form) use(row++, form);
     for (const ThreadRows& thread : threads)
       for (int k = 0; k < thread.count(); ++k) use(thread.pullRow(k), thread.segments[k].pull);
   }
@@ -102,8 +106,8 @@ struct ConstraintRows {
     if (!tool_yields) return;
     int row = 0;
     for (const EquationRow& equation : equations) use(row++, equation.yield);
-    for (const ContactRows& contact : contacts)
-      for (int k = 0; k < 3; ++k) use(row++, contact.yield.row(k).transpose());
+    for (std::size_t c = 0; c < counted; ++c)
+      for (int k = 0; k < 3; ++k) use(row++, contacts[c].yield.row(k).transpose());
   }
   /// Forms of the rows whose energy the potential has: use(row, form, compliance).
   template <class Use>

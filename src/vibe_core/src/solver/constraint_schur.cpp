@@ -21,13 +21,23 @@ void ConstraintSchur::reset(const Factor& factor) {
   rows_.clear();
   cache_ = nullptr;
   row_value_.resize(0);
-  formed_ = false;
+  formed_ = rows_formed_ = false;
 }
 
 void ConstraintSchur::addRow(const LinearForm& form, double compliance, const Factor& factor) {
   rows_.addRow(compliance);
   for (std::size_t k = 0; k < form.node.size(); ++k)
     rows_.addTerm(cache_->nodeSlot(factor, form.node[k]), form.coefficient[k]);
+}
+
+// Tangents without friction have rows without a term.
+void ConstraintSchur::addContact(const ContactRows& contact, const Factor& factor) {
+  addRow(contact.form[0], contact.compliance, factor);
+  for (std::size_t k = 1; k < 3; ++k)
+    if (contact.friction > 0)
+      addRow(contact.form[k], 0, factor);
+    else
+      rows_.addRow(1);
 }
 
 // From an attachment point to the next: the same as a form in their nodes, in fewer columns.
@@ -50,12 +60,14 @@ void ConstraintSchur::addThreadRows(const ThreadRows& thread) {
     }
 }
 
-// Of equations and of contacts that count.
+// Of equations and of contacts.
 void ConstraintSchur::findNodes(const ConstraintRows& rows) {
   nodes_.clear();
   for (const EquationRow& row : rows.equations) nodes_.insert(nodes_.end(), row.form.node.begin(), row.form.node.end());
-  for (const ContactRows& contact : rows.contacts)
-    if (contact.counts) nodes_.insert(nodes_.end(), contact.form[0].node.begin(), contact.form[0].node.end());
+  for (std::size_t c = 0; c < rows.counted; ++c) {
+    const std::vector<int>& node = rows.contacts[c].form[0].node;
+    nodes_.insert(nodes_.end(), node.begin(), node.end());
+  }
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
 }
@@ -66,20 +78,14 @@ void ConstraintSchur::setRows(const ConstraintRows& rows, const Factor& factor, 
   cache.makeRoom(nodes_);
   rows_.clear();
   for (const EquationRow& equation : rows.equations) addRow(equation.form, equation.compliance, factor);
-  for (const ContactRows& contact : rows.contacts)
-    for (int k = 0; k < 3; ++k) {
-      if (contact.counts)
-        addRow(contact.form[static_cast<std::size_t>(k)], k == 0 ? contact.compliance : 0, factor);
-      else
-        rows_.addRow(1);
-    }
+  for (std::size_t c = 0; c < rows.counted; ++c) addContact(rows.contacts[c], factor);
   for (const ThreadRows& thread : rows.threads) addThreadRows(thread);
   rows_.finish(cache);
   row_value_.setZero(rowCount());
   force_.setZero(rowCount());
   sortRows(rows);
   setYield(rows);
-  formed_ = false;
+  formed_ = rows_formed_ = false;
   contact_force_.setZero(static_cast<Eigen::Index>(inequalities_.size()));
 }
 
@@ -91,11 +97,11 @@ void ConstraintSchur::sortRows(const ConstraintRows& rows) {
   for (const ThreadRows& thread : rows.threads)
     for (int k = 0; k < 2 * thread.count(); ++k)
       if (thread.segments[k / 2].turn_missing > 0) equations_.push_back(thread.turnRow(k / 2, k % 2));
-  for (std::size_t c = 0; c < rows.contacts.size(); ++c) {
-    for (int k = 0; k < 3 && !rows.contacts[c].counts; ++k) idle_.push_back(rows.contactRow(c) + k);
-    if (!rows.contacts[c].counts) continue;
-    contact_list_.push_back({static_cast<int>(inequalities_.size()), rows.contacts[c].friction});
-    for (int k = 0; k < 3; ++k) inequalities_.push_back(rows.contactRow(c) + k);
+  for (std::size_t c = 0; c < rows.counted; ++c) {
+    const double friction = rows.contacts[c].friction;
+    contact_list_.push_back({static_cast<int>(inequalities_.size()), friction});
+    inequalities_.push_back(rows.contactRow(c));
+    for (int k = 1; k < 3; ++k) (friction > 0 ? inequalities_ : idle_).push_back(rows.contactRow(c) + k);
   }
   for (const ThreadRows& thread : rows.threads)
     if (thread.count() > 0) addThread(thread);
@@ -145,7 +151,9 @@ void ConstraintSchur::formCompliance() {
   if (formed_) return;
   formed_ = true;
   const int m = rowCount();
-  rows_.compliances(compliance_);
+  if (!rows_formed_) rows_.compliances(row_compliance_);
+  rows_formed_ = true;
+  compliance_ = row_compliance_;
   force_.setZero(m);
   gas_row_.setZero(m);
   if (gas_stiffness_ != 0 && m > 0) {

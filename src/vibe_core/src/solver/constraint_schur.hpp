@@ -56,7 +56,7 @@ class ConstraintSchur {
 
  private:
   struct Contact {
-    int first = 0;  // of inequalities_: normal, two tangents
+    int first = 0;  // of inequalities_: normal; two tangents where there is friction
     double friction = 0;
   };
   struct Thread {
@@ -66,6 +66,7 @@ class ConstraintSchur {
   };
   void findNodes(const ConstraintRows& rows);
   void addRow(const LinearForm& form, double compliance, const Factor& factor);
+  void addContact(const ContactRows& contact, const Factor& factor);
   void addRun(int attachment, const Eigen::Vector3d& along, double compliance);
   void addThreadRows(const ThreadRows& thread);
   void sortRows(const ConstraintRows& rows);
@@ -83,11 +84,12 @@ class ConstraintSchur {
   ColumnCache* cache_ = nullptr;  // null: there are no rows
   std::vector<int> nodes_;        // of the rows
   HalfRows rows_;
-  bool formed_ = false;  // the compliance is that of the rows and the gas
+  bool formed_ = false;       // the compliance is that of the rows and the gas
+  bool rows_formed_ = false;  // row_compliance_ is that of the rows
   Eigen::VectorXd row_value_;
   std::vector<int> equations_;     // row numbers: those of equations, then of springs
   std::vector<int> inequalities_;  // row numbers: normals and tangents of contacts, then pulls of threads
-  std::vector<int> idle_;          // row numbers of contacts beyond the budget
+  std::vector<int> idle_;          // row numbers of tangents without friction
   std::vector<Contact> contact_list_;
   ContactProblem contacts_;  // of inequalities_
   LimitedSlide limited_slide_;
@@ -104,7 +106,7 @@ class ConstraintSchur {
   double gas_stiffness_ = 0, gas_norm2_ = 0;
   Eigen::VectorXd gas_row_, force_, moves_, lost_;
   double gas_force_ = 0;
-  Eigen::MatrixXd compliance_, block_, cross_, coupling_,
+  Eigen::MatrixXd row_compliance_, compliance_, block_, cross_, coupling_,
       thread_compliance_;  // of equations, with contacts, of contacts
   Eigen::VectorXd residual_, equation_residual_, contact_residual_, equation_force_, contact_force_, thread_residual_;
   OrderedLdlt equation_factor_;

@@ -59,7 +59,6 @@ void ContactProblem::addGroup(int first, int rows, double friction) {
 
 void ContactProblem::addContact(int first, double friction) {
   addGroup(first, friction > 0 ? 3 : 1, friction);
-  for (int k = 1; k < 3 && friction <= 0; ++k) group_of_row_[static_cast<std::size_t>(first + k)] = kFree;
 }
 
 void ContactProblem::finish() {
@@ -81,7 +80,6 @@ void ContactProblem::finish() {
 }
 
 bool ContactProblem::holds(int row) const {
-  if (group_of_row_[static_cast<std::size_t>(row)] == kFree) return false;
   const auto group = static_cast<std::size_t>(group_of_row_[static_cast<std::size_t>(row)]);
   return mode_[group] == Mode::Sticks || (mode_[group] == Mode::Slips && row == groups_[group].first);
 }
@@ -260,8 +258,6 @@ double ContactProblem::newton(const double* lack, double* force) {
 double ContactProblem::solve(const double* lack, double* force) {
   if (n_ == 0) return 0;
   best_ = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < n_; ++i)
-    if (group_of_row_[static_cast<std::size_t>(i)] == kFree) force[i] = 0;
   if (!factored_) {
     findLeft(lack, force);
     for (int i = 0; i < kFirstSweeps; ++i) sweep(force, false);

@@ -48,7 +48,7 @@ class ContactProblem {
   /// Forgets all rows.
   /// @param rows  in total; those that no contact takes are one-sided
   void begin(int rows);
-  /// Normal and two tangents in the rows first .. first + 2. Without friction the tangents cost nothing.
+  /// Normal and two tangents in the rows first .. first + 2; without friction a normal only.
   void addContact(int first, double friction);
   /// Compliance between rows, to be set after begin() (lower and upper part) [m/N].
   double& compliance(int i, int j) { return compliance_[at(i, j)]; }
@@ -104,7 +104,7 @@ class ContactProblem {
   int n_ = 0;
   std::vector<double> compliance_;  // symmetric
   std::vector<Group> groups_;
-  static constexpr int kNone = -1, kFree = -2;  // no group yet; a tangent without friction
+  static constexpr int kNone = -1;  // no group yet
   std::vector<int> group_of_row_;
   int contact_count_ = 0;                   // of groups_, the first ones
   std::vector<Mode> mode_, factored_mode_;  // per group

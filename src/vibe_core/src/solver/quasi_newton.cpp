@@ -133,7 +133,7 @@ bool QuasiNewton::rowsStay() const {
   const Eigen::VectorXd &moves = scratch_.row_moves, &forces = scratch_.schur.forces();
   const double rounding = kRowRoundings * resolution();
   const double limit = std::max(kSmallResidual * direction_length_, rounding);
-  const int contacts_end = scratch_.rows.contactRow(scratch_.rows.contacts.size());
+  const int contacts_end = scratch_.rows.contactRow(scratch_.rows.counted);
   for (int row = 0; row < contacts_end; ++row)
     if (scratch_.schur.holds(row) && std::abs(moves[row]) > limit) return false;
   const double of_thread = std::max(kThreadShare * direction_length_, rounding);

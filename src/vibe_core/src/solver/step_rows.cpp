@@ -10,9 +10,6 @@
 namespace vibe {
 namespace {
 
-// Those with friction, which have three rows. Design choice: half of them.
-constexpr std::size_t kMaxWithFriction = kMaxContacts / 2;
-
 Eigen::Vector3d positionOf(const AttachmentPoint& attachment, const MotionView& motion) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < attachment.node.size(); ++i)
@@ -63,12 +60,13 @@ void setThread(const BodyLoads& loads, const ThreadLoad& thread, const MotionVie
   }
 }
 
-void setContact(const ContactConstraint& contact, ContactRows& rows) {
+void setContact(const BodyLoads& loads, std::size_t load, ContactRows& rows) {
+  const ContactConstraint& contact = loads.contacts[load];
   const Eigen::Vector3d normal = contact.normal, tangent = normal.unitOrthogonal();
   rows.direction = {normal, tangent, normal.cross(tangent)};
   for (std::size_t k = 0; k < 3; ++k) rows.form[k].setPoint(contact.point, rows.direction[k]);
   rows.friction = contact.friction;
-  rows.counts = true;
+  rows.load = load;
   rows.compliance = contact.compliance;
   for (int k = 0; k < 3; ++k)
     rows.yield.row(k) = rows.direction[static_cast<std::size_t>(k)].transpose() * contact.yield;
@@ -92,8 +90,8 @@ void fillShortSegments(std::vector<double>& length) {
 void setTargets(const BodyLoads& loads, const ConstraintRows& rows, Eigen::VectorXd& target) {
   target.setZero(rows.count());
   for (std::size_t i = 0; i < loads.constraints.size(); ++i) target[i] = loads.constraints[i].target;
-  for (std::size_t c = 0; c < loads.contacts.size(); ++c) {
-    const ContactConstraint& contact = loads.contacts[c];
+  for (std::size_t c = 0; c < rows.counted; ++c) {
+    const ContactConstraint& contact = loads.contacts[rows.contacts[c].load];
     const int row = rows.contactRow(c);
     target[row] = contact.offset;
     for (int k = 1; k < 3; ++k) target[row + k] = rows.contacts[c].direction[k].dot(contact.anchor);
@@ -153,7 +151,7 @@ void buildRows(const BodyLoads& loads, const MotionView& motion, StepperWorkspac
     row.compliance = constraint.compliance;
     row.yield = constraint.yield;
   }
-  for (const ContactConstraint& contact : loads.contacts) setContact(contact, rows.contacts.add());
+  for (std::size_t c = 0; c < loads.contacts.size(); ++c) setContact(loads, c, rows.contacts.add());
   for (const ThreadLoad& thread : loads.threads) setThread(loads, thread, motion, rows.threads.add());
   rows.tool_yields = loads.tool_yield.dofs > 0;
   if (rows.tool_yields) rows.tool_compliance = loads.tool_yield.compliance;
@@ -164,45 +162,52 @@ void buildRows(const BodyLoads& loads, const MotionView& motion, StepperWorkspac
 
 void setEquilibriumTargets(const BodyLoads& loads, StepperWorkspace& scratch) {
   setTargets(loads, scratch.rows, scratch.target);
-  limitContacts(scratch);
+  if (limitContacts(scratch)) setTargets(loads, scratch.rows, scratch.target);
 }
 
 void setStepTargets(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
                     const std::vector<StiffnessCoupling>& in_factor, StepperWorkspace& scratch) {
-  setTargets(loads, scratch.rows, scratch.target);
   const auto set = [&](int row, const LinearForm& form) {
     scratch.target[row] = stepTarget(form, scratch.target[row], motion, scheme);
   };
-  scratch.rows.forEachMultiplier(set);
-  scratch.rows.forEachSpring([&set](int row, const LinearForm& form, double) { set(row, form); });
+  const auto setAll = [&] {
+    setTargets(loads, scratch.rows, scratch.target);
+    scratch.rows.forEachMultiplier(set);
+    scratch.rows.forEachSpring([&set](int row, const LinearForm& form, double) { set(row, form); });
+  };
+  setAll();
   scaleCompliances(scheme.z_gain / scheme.x_gain, scratch.rows);
   findMissingTurns(loads, in_factor, scratch.rows);
-  limitContacts(scratch);
+  if (limitContacts(scratch)) setAll();
 }
 
-void limitContacts(StepperWorkspace& scratch) {
+bool limitContacts(StepperWorkspace& scratch) {
   ConstraintRows& rows = scratch.rows;
-  if (rows.contacts.size() <= kMaxWithFriction) return;
+  if (rows.contacts.size() <= kMaxWithFriction) return false;
   std::vector<std::pair<double, std::size_t>>& order = scratch.contact_order;  // minus depth, contact
   order.clear();
-  for (std::size_t c = 0; c < rows.contacts.size(); ++c)
-    order.emplace_back(rows.contacts[c].form[0].value(scratch.z) - scratch.target[rows.contactRow(c)], c);
-  std::sort(order.begin(), order.end());
-  for (std::size_t k = kMaxWithFriction; k < order.size(); ++k) {
-    ContactRows& contact = rows.contacts[order[k].second];
-    contact.friction = 0;
-    contact.counts = k < kMaxContacts;
+  for (std::size_t c = 0; c < rows.contacts.size(); ++c) {
+    rows.contacts[c].target = scratch.target[rows.contactRow(c)];
+    order.emplace_back(rows.contacts[c].form[0].value(scratch.z) - rows.contacts[c].target, c);
   }
+  std::sort(order.begin(), order.end());
+  for (std::size_t k = kMaxWithFriction; k < order.size(); ++k) rows.contacts[order[k].second].friction = 0;
+  if (order.size() <= kMaxContacts) return false;
+  std::sort(order.begin(), order.begin() + kMaxContacts,
+            [](const auto& one, const auto& other) { return one.second < other.second; });
+  for (std::size_t k = 0; k < kMaxContacts; ++k) std::swap(rows.contacts[k], rows.contacts[order[k].second]);
+  rows.number(kMaxContacts);
+  scratch.rhs.resize(rows.count());
+  return true;
 }
 
 double depthLeftOut(const StepperWorkspace& scratch) {
   const ConstraintRows& rows = scratch.rows;
   const YieldVector yielded = rows.tool_compliance * scratch.schur.pull();
   double deepest = 0;
-  for (std::size_t c = 0; c < rows.contacts.size(); ++c) {
+  for (std::size_t c = rows.counted; c < rows.contacts.size(); ++c) {
     const ContactRows& contact = rows.contacts[c];
-    if (contact.counts) continue;
-    const double target = scratch.target[rows.contactRow(c)] - fixedDot(contact.yield.row(0).transpose(), yielded);
+    const double target = contact.target - fixedDot(contact.yield.row(0).transpose(), yielded);
     deepest = std::max(deepest, target - contact.form[0].value(scratch.z));
   }
   return deepest;
@@ -212,9 +217,9 @@ void storeForces(const StepperWorkspace& scratch, double gain, BodyLoads& loads)
   const Eigen::VectorXd& force = scratch.schur.forces();
   const ConstraintRows& rows = scratch.rows;
   for (std::size_t i = 0; i < loads.constraints.size(); ++i) loads.constraints[i].force = force[i];
-  for (std::size_t c = 0; c < loads.contacts.size(); ++c) {
-    ContactConstraint& contact = loads.contacts[c];
-    contact.force.setZero();
+  for (ContactConstraint& contact : loads.contacts) contact.force.setZero();
+  for (std::size_t c = 0; c < rows.counted; ++c) {
+    ContactConstraint& contact = loads.contacts[rows.contacts[c].load];
     for (int k = 0; k < 3; ++k) contact.force += force[rows.contactRow(c) + k] * rows.contacts[c].direction[k];
   }
   for (std::size_t t = 0; t < loads.threads.size(); ++t) storeThread(scratch, rows.threads[t], gain, loads.threads[t]);

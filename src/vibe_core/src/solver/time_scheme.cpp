@@ -171,8 +171,9 @@ double workOfRows(StepperWorkspace& scratch, BodyLoads& loads) {
     work[row] = (scratch.target[row] - form.value(scratch.z)) / compliance * form.value(move);
   });
   for (std::size_t i = 0; i < loads.constraints.size(); ++i) sum += loads.constraints[i].work = work[i];
-  for (std::size_t c = 0; c < loads.contacts.size(); ++c)
-    sum += loads.contacts[c].work = work.segment<3>(rows.contactRow(c)).sum();
+  for (ContactConstraint& contact : loads.contacts) contact.work = 0;
+  for (std::size_t c = 0; c < rows.counted; ++c)
+    sum += loads.contacts[rows.contacts[c].load].work = work.segment<3>(rows.contactRow(c)).sum();
   for (std::size_t t = 0; t < loads.threads.size(); ++t)
     sum += loads.threads[t].work = work.segment(rows.threads[t].first_row, 3 * rows.threads[t].count()).sum();
   return sum;

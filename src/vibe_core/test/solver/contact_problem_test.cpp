@@ -14,7 +14,10 @@ constexpr double kLength = 1e-9;  // tolerance of the solver [m]
 struct Problem {
   /// Contacts on random directions of a body with `freedoms`, whose compliance is about 1e-3 m/N.
   Problem(int contacts, int one_sided, int freedoms, double friction_wanted, unsigned seed)
-      : contact_count(contacts), rows(3 * contacts + one_sided), friction(friction_wanted) {
+      : contact_count(contacts),
+        per_contact(friction_wanted > 0 ? 3 : 1),
+        rows(per_contact * contacts + one_sided),
+        friction(friction_wanted) {
     std::mt19937 generator(seed);
     std::normal_distribution<double> normal;
     const auto draw = [&] { return normal(generator); };
@@ -23,7 +26,7 @@ struct Problem {
     lack = 1e-3 * Eigen::VectorXd::NullaryExpr(rows, draw);
     force.setZero(rows);
     problem.begin(rows);
-    for (int c = 0; c < contacts; ++c) problem.addContact(3 * c, friction);
+    for (int c = 0; c < contacts; ++c) problem.addContact(per_contact * c, friction);
     for (int a = 0; a < rows; ++a)
       for (int b = 0; b < rows; ++b) problem.compliance(a, b) = compliance(a, b);
     problem.finish();
@@ -35,11 +38,12 @@ struct Problem {
   double violation(double softness = 1e-6) const {
     const Eigen::VectorXd rest = left();
     double max = 0;
-    for (int row = 0; row < rows; row += row < 3 * contact_count ? 3 : 1) {
+    const int contacts_end = per_contact * contact_count;
+    for (int row = 0; row < rows; row += row < contacts_end ? per_contact : 1) {
       const double give = softness * compliance(row, row) * force[row], scale = compliance(row, row);
       max = std::max({max, -force[row] * scale, rest[row] - give});
       if (force[row] * scale > kLength) max = std::max(max, std::abs(rest[row]) - give);
-      if (row >= 3 * contact_count) continue;
+      if (row >= contacts_end || per_contact == 1) continue;
       const Eigen::Vector2d drag = force.segment<2>(row + 1), slip = rest.segment<2>(row + 1);
       const double limit = friction * force[row];
       max = std::max(max, (drag.norm() - limit) * scale);
@@ -49,7 +53,7 @@ struct Problem {
     return max;
   }
 
-  int contact_count, rows;
+  int contact_count, per_contact, rows;
   double friction;
   Eigen::MatrixXd compliance;
   Eigen::VectorXd lack, force;

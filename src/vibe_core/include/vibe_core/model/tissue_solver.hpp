@@ -30,6 +30,7 @@ struct StepReport {
   int iterations = 0;          ///< of an implicit solver, in the last of them
   int evaluations = 0;         ///< of the elastic energy, by an implicit solver, in all of them
   int rows = 0;                ///< of contacts, grip and threads, in an implicit solver
+  int limited = 0;             ///< contacts of the tool without friction or force, because there were too many
   int wall_pairs = 0;          ///< pairs of points of walls that act on each other
   StageTimes stage_times{};    ///< zero unless they are measured [s]
   double residual = 0;         ///< of a further iteration, or of contacts and threads [m]
