@@ -7,6 +7,7 @@
 #include "constraints/supports.hpp"
 #include "dynamics/implicit_solver.hpp"
 #include "dynamics/xpbd_solver.hpp"
+#include "sparse/factor_plan.hpp"
 #include "tissue/shape_matching.hpp"
 #include "tissue/shell_tissue.hpp"
 #include "vibe_core/common/error.hpp"
@@ -55,6 +56,7 @@ TissueAndSolver makeShell(const TissueRequest& request) {
   settings.iterations = scene.tissue.iterations;
   settings.spectral_radius = scene.tissue.spectral_radius;
   settings.refactor_interval = std::max(settings.refactor_interval, kFactorSteps * settings.step);
+  settings.factor_rate = kFactorRate;
   return {tissue, std::make_shared<const ImplicitSolver>(tissue->elements(), std::move(body), settings)};
 }
 

@@ -20,6 +20,7 @@ class LendingPool {
     Loan(const Loan&) = delete;
     Loan& operator=(const Loan&) = delete;
     T* operator->() const { return object_; }
+    T& operator*() const { return *object_; }
 
    private:
     T* object_;

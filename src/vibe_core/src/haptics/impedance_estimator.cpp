@@ -4,13 +4,15 @@
 #include <cmath>
 
 #include "common/symmetric_eigen.hpp"
+#include "sparse/factor_plan.hpp"
 #include "vibe_core/common/fnv1a.hpp"
 
 namespace vibe {
 
 namespace {
 
-constexpr double kInterval = 0.25;       // between renewals of the stiffness; design choice [s]
+constexpr double kInterval = 0.25;       // between renewals of the stiffness, at least; design choice [s]
+constexpr double kDouble = 2;            // operations in double precision over those in single, by their time [1]
 constexpr double kFar = 5e-4;            // a larger move of a node triggers a renewal; design choice [m]
 constexpr double kShortestStep = 2e-5;   // of the tool in a frame from which a slope is taken; design choice [m]
 constexpr double kMinEigenvalue = 1e-3;  // relative to the maximum; softer directions have no equilibrium
@@ -18,6 +20,12 @@ constexpr double kMinEigenvalue = 1e-3;  // relative to the maximum; softer dire
 // Compliance of the rows for the moving mass, where several points may have the same nearest node. Design choice: a
 // thousandth of that of a wall [m/N].
 constexpr double kFirm = 1e-5;
+
+// As the factor of the steps, this one must not keep them waiting.
+int renewalSteps(const RestStiffness& rest, double step_period) {
+  const double interval = std::max(kInterval, kDouble * rest.plan->operations / kFactorRate);
+  return std::max(1, static_cast<int>(std::lround(interval / step_period)));
+}
 
 // The displacement that relieves the force, in the directions that have a stiffness.
 Eigen::Vector3d solveWhereStiff(const Eigen::Matrix3d& stiffness, const Eigen::Vector3d& force) {
@@ -81,9 +89,7 @@ Eigen::Map<Eigen::Matrix<double, static_cast<int>(N), 1>> asVector(std::array<do
 }  // namespace
 
 ImpedanceEstimator::ImpedanceEstimator(const ElasticBody& body, double step_period, const RestStiffness& rest)
-    : body_(body),
-      interval_(std::max(1, static_cast<int>(std::lround(kInterval / step_period)))),
-      making_([this] { make(next_basis_, next_); }) {
+    : body_(body), interval_(renewalSteps(rest, step_period)), making_([this] { make(next_basis_, next_); }) {
   for (Made* made : {&rest_, &current_, &next_}) made->stiffness = std::make_unique<StaticStiffness>(body, rest);
   rest_.usable = rest.factor != nullptr;
 }

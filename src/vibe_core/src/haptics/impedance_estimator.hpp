@@ -101,15 +101,17 @@ struct ToolContactRows {
 };
 
 /// Estimates a ToolImpedance from the rows of each step and a stiffness that is renewed in the background every quarter
-/// of a second. Time is counted in steps and the past is in an ImpedanceMemory, so that the results depend neither on
-/// the speed of threads nor on what an estimator has done before: its members are caches of what the memory names.
+/// of a second, less often where a factor takes more than its share of operations (kFactorRate). Time is counted in
+/// steps and the past is in an ImpedanceMemory, so that the results depend neither on the speed of threads nor on what
+/// an estimator has done before: its members are caches of what the memory names.
 class ImpedanceEstimator {
  public:
   /// @param rest  of the body; may be shared
   ImpedanceEstimator(const ElasticBody& body, double step_period, const RestStiffness& rest);
 
   /// One step in which the tool is near tissue.
-  /// @param step           its number; after 0.25 s without a step near tissue a new touch begins
+  /// @param step           its number; after the time between two renewals without a step near tissue a new touch
+  /// begins
   /// @param positions      of the nodes [m]
   /// @param gas_direction  volume gradient (4 per node) [m^2]
   /// @param gas_stiffness  [Pa/m^3]; 0: none

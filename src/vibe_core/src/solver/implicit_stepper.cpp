@@ -8,6 +8,7 @@
 #include "solver/quasi_newton.hpp"
 #include "solver/stepper_workspace.hpp"
 #include "solver/time_scheme.hpp"
+#include "sparse/factor_plan.hpp"
 
 namespace vibe {
 
@@ -87,14 +88,19 @@ double foreseenVolume(const GasLoad& gas, const MotionView& motion, const TimeSc
   return scratch.last.volume + scheme.part() * scheme.h * rate;
 }
 
-FactorSchedule scheduleOf(const StepSettings& settings, const TimeScheme& scheme) {
+// 0: the factor stays
+int factorSteps(const StepSettings& settings, const FactorPlan& plan) {
+  if (!(settings.refactor_interval > 0)) return 0;
+  const double interval = std::max(settings.refactor_interval, plan.operations / settings.factor_rate);
+  return std::max(1, static_cast<int>(std::lround(interval / settings.step)));
+}
+
+FactorSchedule scheduleOf(const StepSettings& settings, const TimeScheme& scheme, const FactorPlan& plan) {
   FactorSchedule schedule;
   schedule.inertia = scheme.inertia;
   schedule.gain = scheme.z_gain / scheme.x_gain;
   schedule.margin = settings.iterations == 1 && !settings.backward_euler ? kMarginOfOne : 1;
-  schedule.steps = settings.refactor_interval > 0
-                       ? std::max(1, static_cast<int>(std::lround(settings.refactor_interval / settings.step)))
-                       : 0;
+  schedule.steps = factorSteps(settings, plan);
   schedule.distance = settings.refactor_distance;
   return schedule;
 }
@@ -126,7 +132,7 @@ struct ImplicitStepper::Plan {
         factor_plan(makeFactorPlan(*pattern)),
         scheme(settings, body.mass_damping, body.stiffness_damping),
         fallback_scheme(fallbackOf(settings), body.mass_damping, body.stiffness_damping),
-        schedule(scheduleOf(settings, scheme)),
+        schedule(scheduleOf(settings, scheme, *factor_plan)),
         storage(factor_storage),
         free(body.foundation.empty() &&
              std::none_of(body.fixed.begin(), body.fixed.end(), [](char fixed) { return fixed != 0; })),
@@ -374,8 +380,8 @@ void ImplicitStepper::refactorHere(const BodyLoads& loads, StepperWorkspace& scr
   std::vector<StiffnessCoupling> couplings;
   collectCouplings(loads, scratch.z.data(), 1, couplings);
   scratch.returnLent();
-  if (!factorAt(body_, {positions, couplings}, 0, 1, scratch.plan, scratch.matrix, *scratch.factor))
-    factorAt(body_, {{}, {}}, 0, 1, scratch.plan, scratch.matrix, *scratch.factor);
+  if (!factorAt(body_, {positions, couplings}, 0, 1, scratch.plan, scratch.matrix, *scratch.factor, *scratch.pool))
+    factorAt(body_, {{}, {}}, 0, 1, scratch.plan, scratch.matrix, *scratch.factor, *scratch.pool);
   scratch.columns.reset();
   scratch.columns.setAttachments(*scratch.factor, loads.attachments);
   scratch.schur.reset(*scratch.factor);

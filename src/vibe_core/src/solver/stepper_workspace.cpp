@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <thread>
 #include <utility>
 
 #include "solver/couplings.hpp"
@@ -15,6 +16,11 @@ namespace vibe {
 namespace {
 // Into which a shell is divided for more than two threads. Design choice: each share costs copies along its border.
 constexpr int kMostShares = 4;
+
+// For a factor, beside the threads of the steps: as many as those have where there are processors for them.
+int spareThreads(int of_steps) {
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()) - of_steps, 1, of_steps);
+}
 }  // namespace
 
 StepperWorkspace::StepperWorkspace(const std::vector<Eigen::Vector3d>& rest_positions,
@@ -48,6 +54,9 @@ void StepperWorkspace::use(ThreadPool& threads, const ShellElements* shell) {
   pool = &threads;
   if (shared.threads == threads.threads()) return;
   shared.threads = threads.threads();
+  if (making) making->finish();
+  making_pool.reset();
+  making_threads = spareThreads(shared.threads);
   shared.shares.clear();
   if (shell == nullptr || shared.threads == 1) return;
   for (ShellPart& part : shell->partsOf(shared.threads == 2 ? 2 : kMostShares)) {
@@ -189,7 +198,7 @@ void addSprings(const ElasticBody& body, double inertia, BlockMatrix& matrix) {
 }  // namespace
 
 bool factorAt(const ElasticBody& body, const FactorPoint& point, double inertia, double margin,
-              const std::shared_ptr<const FactorPlan>& plan, BlockMatrix& matrix, Factor& factor) {
+              const std::shared_ptr<const FactorPlan>& plan, BlockMatrix& matrix, Factor& factor, ThreadPool& pool) {
   const std::vector<NodePair> pairs = coupledPairs(point.couplings, body.fixed, matrix.pattern());
   if (pairsOf(*factor.plan()) != pairs) factor.setPlan(coupledPlan(plan, pairs));
   matrix.couple(pairs);
@@ -198,12 +207,13 @@ bool factorAt(const ElasticBody& body, const FactorPoint& point, double inertia,
   addCouplings(point.couplings, body.fixed, matrix);
   for (std::size_t i = 0; i < body.rest.size(); ++i)
     if (body.fixed[i] != 0) matrix.fix(static_cast<int>(i));
-  return factor.compute(matrix);
+  return factor.compute(matrix, pool);
 }
 
 bool factorAt(const ElasticBody& body, const std::vector<float>& positions, double inertia, double margin,
               BlockMatrix& matrix, Factor& factor) {
-  return factorAt(body, {positions, {}}, inertia, margin, factor.plan(), matrix, factor);
+  ThreadPool single;
+  return factorAt(body, {positions, {}}, inertia, margin, factor.plan(), matrix, factor, single);
 }
 
 void collectCouplings(const BodyLoads& loads, const double* positions4, double gain,
@@ -242,10 +252,10 @@ void FactorSchedule::advance(const ElasticBody& body, const MotionView& motion, 
 
 // A matrix that is not positive definite gets another chance about rest.
 void FactorSchedule::factorSafely(const ElasticBody& body, const FactorPoint& point,
-                                  const std::shared_ptr<const FactorPlan>& plan, BlockMatrix& matrix,
-                                  Factor& factor) const {
-  if (factorAt(body, point, inertia, margin, plan, matrix, factor)) return;
-  if (factorAt(body, {{}, {}}, inertia, margin, plan, matrix, factor)) return;
+                                  const std::shared_ptr<const FactorPlan>& plan, BlockMatrix& matrix, Factor& factor,
+                                  ThreadPool& pool) const {
+  if (factorAt(body, point, inertia, margin, plan, matrix, factor, pool)) return;
+  if (factorAt(body, {{}, {}}, inertia, margin, plan, matrix, factor, pool)) return;
   throw Error("The stiffness of the body at rest is not positive definite; check its mesh, masses and materials.");
 }
 
@@ -262,7 +272,8 @@ void FactorSchedule::provide(const ElasticBody& body, const BodyLoads& loads, co
       scratch.factor = std::move(known);
       scratch.columns.reset();
     } else {
-      factorSafely(body, {memory.linearization_point, memory.couplings}, scratch.plan, scratch.matrix, *scratch.factor);
+      factorSafely(body, {memory.linearization_point, memory.couplings}, scratch.plan, scratch.matrix, *scratch.factor,
+                   *scratch.pool);
       scratch.columns.reset();
     }
     scratch.next_id = 0;
@@ -279,7 +290,8 @@ std::shared_ptr<const Factor> FactorSchedule::share(const ElasticBody& body, con
   if (std::shared_ptr<Factor> known = scratch.shelf->find(id)) return known;
   if (scratch.making) scratch.making->finish();  // it uses the matrix
   auto factor = std::make_shared<Factor>(scratch.plan, scratch.storage);
-  factorSafely(body, {memory.linearization_point, memory.couplings}, scratch.plan, scratch.matrix, *factor);
+  factorSafely(body, {memory.linearization_point, memory.couplings}, scratch.plan, scratch.matrix, *factor,
+               *scratch.pool);
   scratch.shelf->put(id, factor);
   return factor;
 }
@@ -302,8 +314,10 @@ void FactorSchedule::makeInBackground(const ElasticBody& body, const BodyLoads& 
 
 void FactorSchedule::makeNext(StepperWorkspace& scratch) {
   const FactorTask& task = scratch.task;
+  // made by the worker's thread, so that they have its priority and not that of the steps
+  if (!scratch.making_pool) scratch.making_pool = std::make_unique<ThreadPool>(scratch.making_threads);
   task.schedule->factorSafely(*task.body, {task.positions, task.couplings}, scratch.plan, scratch.matrix,
-                              *scratch.next_factor);
+                              *scratch.next_factor, *scratch.making_pool);
   scratch.next_columns.reset();
   scratch.next_columns.prepare(*scratch.next_factor, task.nodes, task.attachments);
 }

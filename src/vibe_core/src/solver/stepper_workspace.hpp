@@ -99,6 +99,8 @@ class StepperWorkspace {
   std::uint64_t factor_id = 0, next_id = 0;  // what they are about; 0: nothing
   FactorTask task;                           // of next_factor
   std::unique_ptr<BackgroundWorker> making;  // of next_factor; null: none was ever made
+  int making_threads = 1;                    // that share it
+  std::unique_ptr<ThreadPool> making_pool;   // these; null: there are none yet
   ColumnCache columns, next_columns;         // of `factor`, of `next_factor`
   ConstraintSchur schur;
   std::vector<double> rest;                     // positions [m]
@@ -136,9 +138,10 @@ struct FactorPoint {
 /// inertia M + margin K + foundation + couplings, fixed nodes taken out.
 /// @param plan    of the elements; the factor gets the one that belongs to the couplings
 /// @param factor  its plan is kept if it is that of the couplings already
+/// @param pool    shares the work
 /// @returns false where that is not positive definite for rounding, as about a squashed state
 bool factorAt(const ElasticBody& body, const FactorPoint& point, double inertia, double margin,
-              const std::shared_ptr<const FactorPlan>& plan, BlockMatrix& matrix, Factor& factor);
+              const std::shared_ptr<const FactorPlan>& plan, BlockMatrix& matrix, Factor& factor, ThreadPool& pool);
 /// The same without couplings, for a factor whose plan has none.
 bool factorAt(const ElasticBody& body, const std::vector<float>& positions, double inertia, double margin,
               BlockMatrix& matrix, Factor& factor);
@@ -169,7 +172,7 @@ struct FactorSchedule {
  private:
   bool farFrom(const ElasticBody& body, const MotionView& motion, const std::vector<float>& about) const;
   void factorSafely(const ElasticBody& body, const FactorPoint& point, const std::shared_ptr<const FactorPlan>& plan,
-                    BlockMatrix& matrix, Factor& factor) const;
+                    BlockMatrix& matrix, Factor& factor, ThreadPool& pool) const;
   void makeInBackground(const ElasticBody& body, const BodyLoads& loads, const StepperMemory& memory,
                         StepperWorkspace& scratch) const;
 };

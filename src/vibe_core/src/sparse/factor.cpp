@@ -121,31 +121,31 @@ struct Factor::Storage {
     kernels.backward(partOf(panels(), first, last), vector, workOfThread<float>(workSize(*plan)));
   }
 
-  void take(int s, const FrontPanel<float>& panel) { pack(s, panel, half); }
-  void take(int s, const FrontPanel<double>& panel) {
-    if (kind == FactorStorage::Half) pack(s, panel, half);
-    if (kind == FactorStorage::Float) pack(s, panel, single);
-    if (kind == FactorStorage::Double) pack(s, panel, wide);
+  void take(int s, const FrontPanel<float>& panel, ThreadPool& pool) { pack(s, panel, half, pool); }
+  void take(int s, const FrontPanel<double>& panel, ThreadPool& pool) {
+    if (kind == FactorStorage::Half) pack(s, panel, half, pool);
+    if (kind == FactorStorage::Float) pack(s, panel, single, pool);
+    if (kind == FactorStorage::Double) pack(s, panel, wide, pool);
   }
 
   template <class Real, class Number>
-  void pack(int s, const FrontPanel<Real>& panel, AlignedBuffer<Number>& numbers) {
+  void pack(int s, const FrontPanel<Real>& panel, AlignedBuffer<Number>& numbers, ThreadPool& pool) {
     const PanelStep& step = plan->steps[s];
-    packPanel(panel, step, numbers.data() + step.panel, column_scale.data() + step.first_row);
+    packPanel(panel, step, numbers.data() + step.panel, column_scale.data() + step.first_row, pool);
   }
 
-  bool compute(const BlockMatrix& matrix) {
-    const auto taking = [this](int s, const auto& panel) { take(s, panel); };
+  bool compute(const BlockMatrix& matrix, ThreadPool& pool) {
     if (!takeScale(matrix)) return false;
-    return (kind == FactorStorage::Half && eliminate<float>(matrix, taking)) || eliminate<double>(matrix, taking);
+    return (kind == FactorStorage::Half && eliminate<float>(matrix, pool)) || eliminate<double>(matrix, pool);
   }
 
   // the fronts take more memory than the factor
-  template <class Real, class Take>
-  bool eliminate(const BlockMatrix& matrix, const Take& taking) const {
+  template <class Real>
+  bool eliminate(const BlockMatrix& matrix, ThreadPool& pool) {
     const typename LendingPool<Multifrontal<Real>>::Loan elimination;
     elimination->setPlan(*plan);
-    return elimination->run(matrix, scale, taking);
+    const auto taking = [this](int s, const auto& panel, ThreadPool& threads) { take(s, panel, threads); };
+    return elimination->run(matrix, scale, taking, pool);
   }
 
   std::shared_ptr<const FactorPlan> plan;
@@ -182,8 +182,13 @@ void Factor::checkPattern(const BlockMatrix& matrix) const {
 }
 
 bool Factor::compute(const BlockMatrix& matrix) {
+  ThreadPool single;
+  return compute(matrix, single);
+}
+
+bool Factor::compute(const BlockMatrix& matrix, ThreadPool& pool) {
   checkPattern(matrix);
-  return storage_->compute(matrix);
+  return storage_->compute(matrix, pool);
 }
 
 int Factor::rows() const {

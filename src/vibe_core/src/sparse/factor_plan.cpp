@@ -27,8 +27,8 @@ class Planner {
     for (const Supernode& supernode : supernodes_) addStep(supernode);
     for (std::size_t s = 0; s < supernodes_.size(); ++s) addRuns(static_cast<int>(s));
     addEntries();
-    measureStack();
     cutBranches();
+    measureStacks();
     return plan_;
   }
 
@@ -59,6 +59,8 @@ class Planner {
     plan_->panel_size += (panelSize(step.columns, step.row_blocks) + 63) / 64 * 64;
     plan_->nonzeros += columns * (columns + 1) / 2 + columns * 3 * below;
     plan_->largest_front = std::max(plan_->largest_front, static_cast<int>(rows));
+    const auto own = static_cast<double>(columns), rest = static_cast<double>(rows - columns);
+    plan_->operations += own * (own * own / 6 + own * rest / 2 + rest * rest / 2);
   }
 
   // position of a row of the vector (the first of a node) in the front of a supernode
@@ -111,20 +113,28 @@ class Planner {
         {block, rowInFront(s, 3 * std::max(row, column)), rowInFront(s, 3 * std::min(row, column)), row < column});
   }
 
-  // update matrices are kept on a stack: a supernode pops those of its children, then pushes its own
-  void measureStack() {
-    const auto size = [this](int s) {
-      const std::int64_t rows = 3 * plan_->steps[s].below_nodes;
-      return rows * rows;
-    };
-    std::vector<std::vector<int>> children(supernodes_.size());
-    std::int64_t used = 0;
-    for (int s = 0; s < static_cast<int>(supernodes_.size()); ++s) {
-      plan_->fronts[s].child_count = static_cast<int>(children[s].size());
-      for (const int child : children[s]) used -= size(child);
-      used += size(s);
-      plan_->stack_size = std::max(plan_->stack_size, used);
-      if (plan_->fronts[s].parent != -1) children[plan_->fronts[s].parent].push_back(s);
+  // Update matrices are kept on stacks: a supernode pops those of its children, then pushes its own. That of a branch's
+  // root stays on the stack of the branch until the trunk takes it.
+  void measureStacks() {
+    const int count = static_cast<int>(supernodes_.size());
+    std::vector<std::size_t> stack_of(static_cast<std::size_t>(count), 0);  // 0: the trunk's
+    for (std::size_t b = 0; b < plan_->branches.size(); ++b)
+      std::fill(stack_of.begin() + plan_->branches[b].first, stack_of.begin() + plan_->branches[b].last, b + 1);
+    std::vector<std::int64_t> used(plan_->branches.size() + 1, 0), most = used, of_children(stack_of.size(), 0);
+    for (int s = 0; s < count; ++s) {
+      const std::size_t stack = stack_of[s];
+      const std::int64_t rows = 3 * plan_->steps[s].below_nodes, size = rows * rows;
+      used[stack] += size - of_children[s];
+      most[stack] = std::max(most[stack], used[stack]);
+      const int parent = plan_->fronts[s].parent;
+      if (parent == -1) continue;
+      ++plan_->fronts[parent].child_count;
+      if (stack_of[parent] == stack) of_children[parent] += size;
+    }
+    plan_->stack_size = most[0];
+    for (std::size_t b = 0; b < plan_->branches.size(); ++b) {
+      plan_->branches[b].stack = plan_->stack_size;
+      plan_->stack_size += most[b + 1];
     }
   }
 
@@ -148,8 +158,10 @@ class Planner {
 
   void addBranch(int first, int last) {
     const std::int32_t end_row = plan_->steps[last - 1].first_row + plan_->steps[last - 1].columns;
-    plan_->branches.push_back({first, last, end_row, plan_->record_size});
+    plan_->branches.push_back({first, last, end_row, plan_->record_size, 0, 0});
     for (int s = first; s < last; ++s) {
+      int& largest = plan_->branches.back().largest_front;
+      largest = std::max(largest, plan_->steps[s].columns + 3 * plan_->steps[s].below_nodes);
       const auto begin = plan_->row_index.begin() + plan_->steps[s].first_index;
       const auto end = begin + plan_->steps[s].below_nodes;
       plan_->record_size += 3 * (end - std::lower_bound(begin, end, end_row));

@@ -9,6 +9,10 @@
 
 namespace vibe {
 
+/// Operations per second that may go into a factor which the background renews while a wall moves [1/s]. Design choice:
+/// half of what a core does in single precision, so that stiffness, columns and a machine with other work fit in.
+constexpr double kFactorRate = 1.2e10;
+
 /// The elimination order, its supernodes, and the source and destination of all data of a supernode. Rows and columns
 /// are scalar (3 per node) and in elimination order unless stated otherwise.
 class FactorPlan {
@@ -37,6 +41,8 @@ class FactorPlan {
     int first, last;       ///< supernodes, past the last
     std::int32_t end_row;  ///< past its last row
     std::int64_t record;   ///< index of its first recorded number
+    std::int64_t stack;    ///< index of its first number among all update matrices
+    int largest_front;     ///< rows
   };
 
   std::shared_ptr<const BlockPattern> pattern;
@@ -53,7 +59,8 @@ class FactorPlan {
   std::int64_t record_size = 0;  ///< of all branches
   std::int64_t panel_size = 0;   ///< numbers in total, padding included
   std::int64_t nonzeros = 0;
-  std::int64_t stack_size = 0;  ///< maximum size of all update matrices on the stack [numbers]
+  std::int64_t stack_size = 0;  ///< of the update matrices, a stack for the trunk and one for each branch [numbers]
+  double operations = 0;        ///< to make a factor: products that are added or subtracted
   int largest_front = 0;        ///< rows
 };
 

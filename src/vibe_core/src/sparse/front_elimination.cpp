@@ -13,6 +13,10 @@ constexpr Real kSmallestPivot = 1e-14;
 template <>
 constexpr float kSmallestPivot<float> = 3e-4F;
 
+// In one piece of work. Design choice: in a front of a thousand rows, some ten microseconds.
+constexpr int kRowPanels = 8;
+constexpr int kColumnPanels = 4;
+
 constexpr int panels(int count, int size) {
   return (count + size - 1) / size;
 }
@@ -34,7 +38,8 @@ void FrontElimination<Real>::setLargestFront(int rows) {
 }
 
 template <class Real>
-bool FrontElimination<Real>::run(Real* front, int rows, int columns) {
+bool FrontElimination<Real>::run(Real* front, int rows, int columns, ThreadPool& pool) {
+  pool_ = &pool;
   front_ = front;
   rows_ = rows;
   stride_ = stride(rows);
@@ -111,50 +116,65 @@ void FrontElimination<Real>::eliminateBelow(int first, int width) {
   const int below = rows_ - first - width;
   packBelow(first, width);
   for (int j = 0; j < width; ++j) std::fill(at(first + width, first + j), at(rows_, first + j), Real(0));
-  for (int j = 0; j < width; j += kDenseColumns)
+  pool_->parallelFor(panels(width, kDenseColumns), 1, [&](int panel, int) {
+    const int j = panel * kDenseColumns;
     update_(below_.data(), panels(below, kDenseRows<Real>), negative_inverse_b_.data() + j * width, width,
             at(first + width, first + j), stride_);
+  });
   packBelow(first, width);
 }
 
 template <class Real>
 void FrontElimination<Real>::packBelow(int first, int width) {
   const int start = first + width, below = rows_ - start;
-  for (int i = 0; i < below; i += kDenseRows<Real>) {
-    Real* to = below_.data() + i * width;
-    const int count = std::min(kDenseRows<Real>, below - i);
-    for (int m = 0; m < width; ++m, to += kDenseRows<Real>) {
-      const Real* from = at(start + i, first + m);
-      for (int r = 0; r < kDenseRows<Real>; ++r) to[r] = r < count ? from[r] : Real(0);
+  pool_->parallelFor(panels(below, kDenseRows<Real>), kRowPanels, [&](int begin, int end) {
+    for (int i = begin * kDenseRows<Real>; i < std::min(end * kDenseRows<Real>, below); i += kDenseRows<Real>) {
+      Real* to = below_.data() + i * width;
+      const int count = std::min(kDenseRows<Real>, below - i);
+      for (int m = 0; m < width; ++m, to += kDenseRows<Real>) {
+        const Real* from = at(start + i, first + m);
+        for (int r = 0; r < kDenseRows<Real>; ++r) to[r] = r < count ? from[r] : Real(0);
+      }
     }
-  }
+  });
+}
+
+// own_ for all columns: of the block its inverse, of those after it what is in below_
+template <class Real>
+void FrontElimination<Real>::packRest(int first, int width) {
+  const int start = first + width;
+  const auto own_at = [&](int column, int m) -> Real& {
+    return own_.data()[column / kDenseColumns * kDenseColumns * width + m * kDenseColumns + column % kDenseColumns];
+  };
+  packOwn(first, width);
+  for (int j = 0; j < width; ++j)
+    for (int m = 0; m < width; ++m) own_at(first + j, m) = inverse_.data()[j * kBlock + m];
+  pool_->parallelFor(rows_ - start, kRowPanels * kDenseRows<Real>, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const Real* from = below_.data() + i / kDenseRows<Real> * kDenseRows<Real> * width + i % kDenseRows<Real>;
+      for (int m = 0; m < width; ++m) own_at(start + i, m) = from[m * kDenseRows<Real>];
+    }
+  });
+  for (int j = rows_; j % kDenseColumns != 0; ++j)
+    for (int m = 0; m < width; ++m) own_at(j, m) = 0;
 }
 
 template <class Real>
 void FrontElimination<Real>::updateRest(int first, int width) {
   const int start = first + width;
-  Real* own = own_.data();
-  const auto own_at = [&](int column, int m) -> Real& {
-    return own[column / kDenseColumns * kDenseColumns * width + m * kDenseColumns + column % kDenseColumns];
-  };
-  packOwn(first, width);
+  packRest(first, width);
   for (int j = 0; j < width; ++j) {
-    for (int m = 0; m < width; ++m) own_at(first + j, m) = inverse_.data()[j * kBlock + m];
     std::copy(inverse_.data() + j * kBlock, inverse_.data() + j * kBlock + width, at(first, first + j));
     std::fill(at(start, first + j), at(rows_, first + j), Real(0));
   }
-  for (int i = 0; i < rows_ - start; ++i) {
-    const Real* from = below_.data() + i / kDenseRows<Real> * kDenseRows<Real> * width + i % kDenseRows<Real>;
-    for (int m = 0; m < width; ++m) own_at(start + i, m) = from[m * kDenseRows<Real>];
-  }
-  for (int j = rows_; j % kDenseColumns != 0; ++j)
-    for (int m = 0; m < width; ++m) own_at(j, m) = 0;
   const int row_panels = panels(rows_ - start, kDenseRows<Real>);
-  for (int j = 0; j < rows_; j += kDenseColumns) {
-    const int skipped = std::max(0, j - start) / kDenseRows<Real>;
-    update_(below_.data() + skipped * kDenseRows<Real> * width, row_panels - skipped, own + j * width, width,
-            at(start + skipped * kDenseRows<Real>, j), stride_);
-  }
+  pool_->parallelFor(panels(rows_, kDenseColumns), kColumnPanels, [&](int begin, int end) {
+    for (int j = begin * kDenseColumns; j < std::min(end * kDenseColumns, rows_); j += kDenseColumns) {
+      const int skipped = std::max(0, j - start) / kDenseRows<Real>;
+      update_(below_.data() + skipped * kDenseRows<Real> * width, row_panels - skipped, own_.data() + j * width, width,
+              at(start + skipped * kDenseRows<Real>, j), stride_);
+    }
+  });
 }
 
 template class FrontElimination<float>;

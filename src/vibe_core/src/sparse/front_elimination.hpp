@@ -2,6 +2,7 @@
 
 #include "sparse/aligned_buffer.hpp"
 #include "sparse/panel_kernel.hpp"
+#include "vibe_core/common/thread_pool.hpp"
 
 namespace vibe {
 
@@ -24,14 +25,16 @@ class FrontElimination {
   FrontElimination();
   /// Makes room for fronts of so many rows.
   void setLargestFront(int rows);
+  /// @param pool  shares the columns; the bits do not depend on it
   /// @returns false if a pivot is not positive (for a matrix with a unit diagonal: not above rounding)
-  bool run(Real* front, int rows, int columns);
+  bool run(Real* front, int rows, int columns, ThreadPool& pool);
 
  private:
   bool factorDiagonal(int first, int width);
   void finishOwnRows(int first, int width);
   void eliminateBelow(int first, int width);
   void packBelow(int first, int width);
+  void packRest(int first, int width);
   void packOwn(int first, int width);
   void updateRest(int first, int width);
   Real* at(int row, int column) { return front_ + column * stride_ + row; }
@@ -41,6 +44,7 @@ class FrontElimination {
   AlignedBuffer<Real> own_;    // their factors, for every column of the front, as B
   AlignedBuffer<Real> negative_inverse_a_, negative_inverse_b_;
   AlignedBuffer<Real> lower_, inverse_;  // of the diagonal block, kBlock numbers from column to column
+  ThreadPool* pool_ = nullptr;
   Real* front_ = nullptr;
   std::int64_t stride_ = 0;
   int rows_ = 0;

@@ -12,16 +12,16 @@ namespace {
 // numbers above the diagonal that register tiles still access
 template <class Real>
 constexpr int kDiagonal = 2 * kDenseRows<Real>;
+// Of a front in one piece of work. Design choice: in a front of a thousand rows, ten microseconds.
+constexpr int kColumns = 32;
+constexpr int kTiles = kColumns / kTile;
 
 }  // namespace
 
 template <class Real>
 void Multifrontal<Real>::setPlan(const FactorPlan& plan) {
   plan_ = &plan;
-  elimination_.setLargestFront(plan.largest_front);
-  front_.grow(FrontElimination<Real>::size(plan.largest_front));
   stack_.grow(plan.stack_size);
-  waiting_.reserve(plan.steps.size());
 }
 
 template <class Real>
@@ -30,18 +30,24 @@ int Multifrontal<Real>::rows(int s) const {
 }
 
 template <class Real>
-void Multifrontal<Real>::assemble(int s, const BlockMatrix& matrix, const std::vector<double>& scale) {
+void Multifrontal<Real>::assemble(int s, const BlockMatrix& matrix, const std::vector<double>& scale, Worker& worker,
+                                  ThreadPool& pool) {
   const FactorPlan::Front& front = plan_->fronts[s];
+  Real* const numbers = worker.front.data();
   const std::int64_t stride = FrontElimination<Real>::stride(rows(s));
-  for (std::int64_t j = 0; j < rows(s); ++j) {
-    const std::int64_t first = std::max<std::int64_t>(0, j - kDiagonal<Real>);
-    std::fill(front_.data() + j * stride + first, front_.data() + (j + 1) * stride, Real(0));
-  }
-  for (int i = 0; i < front.entry_count; ++i) addEntry(plan_->entries[front.first_entry + i], s, matrix, scale);
+  pool.parallelFor(rows(s), kColumns, [=](int begin, int end) {
+    for (std::int64_t j = begin; j < end; ++j) {
+      const std::int64_t first = std::max<std::int64_t>(0, j - kDiagonal<Real>);
+      std::fill(numbers + j * stride + first, numbers + (j + 1) * stride, Real(0));
+    }
+  });
+  for (int i = 0; i < front.entry_count; ++i)
+    addEntry(plan_->entries[front.first_entry + i], s, matrix, scale, numbers);
   for (int i = 0; i < front.child_count; ++i) {
-    addUpdate(waiting_.back(), stride);
-    stack_top_ = waiting_.back().begin;
-    waiting_.pop_back();
+    const Update update = worker.waiting.back();
+    addUpdate(update, stride, numbers, pool);
+    if (update.begin < worker.stack_top) worker.stack_top = update.begin;  // else it is a branch's
+    worker.waiting.pop_back();
   }
 }
 
@@ -54,7 +60,7 @@ int Multifrontal<Real>::rowOfFront(int s, int row) const {
 
 template <class Real>
 void Multifrontal<Real>::addEntry(const FactorPlan::Entry& entry, int s, const BlockMatrix& matrix,
-                                  const std::vector<double>& scale) {
+                                  const std::vector<double>& scale, Real* front) const {
   const int known = static_cast<int>(matrix.lower().size());
   const Eigen::Matrix3d& block = entry.block < 0       ? matrix.diagonal()[-1 - entry.block]
                                  : entry.block < known ? matrix.lower()[entry.block]
@@ -62,38 +68,53 @@ void Multifrontal<Real>::addEntry(const FactorPlan::Entry& entry, int s, const B
   const double* row_scale = scale.data() + rowOfFront(s, entry.row);
   const double* column_scale = scale.data() + rowOfFront(s, entry.column);
   for (int j = 0; j < 3; ++j) {
-    Real* column = front_.data() +
-                   static_cast<std::int64_t>(entry.column + j) * FrontElimination<Real>::stride(rows(s)) + entry.row;
+    Real* column =
+        front + static_cast<std::int64_t>(entry.column + j) * FrontElimination<Real>::stride(rows(s)) + entry.row;
     for (int i = 0; i < 3; ++i)
       column[i] += static_cast<Real>((entry.transposed ? block(j, i) : block(i, j)) * row_scale[i] * column_scale[j]);
   }
 }
 
 template <class Real>
-void Multifrontal<Real>::addUpdate(const Update& update, std::int64_t front_stride) {
+void Multifrontal<Real>::addUpdate(const Update& update, std::int64_t front_stride, Real* front,
+                                   ThreadPool& pool) const {
   const FactorPlan::Front& child = plan_->fronts[update.supernode];
   const int rows = 3 * plan_->steps[update.supernode].below_nodes;
-  const FactorPlan::Run* runs = plan_->runs.data() + child.first_run;
-  for (int a = 0; a < child.run_count; ++a)
-    for (int j = 0; j < runs[a].count; ++j) {
-      const Real* from = stack_.data() + update.begin + static_cast<std::int64_t>(runs[a].from + j) * rows;
-      Real* to = front_.data() + (runs[a].to + j) * front_stride;
-      for (int i = j; i < runs[a].count; ++i) to[runs[a].to + i] += from[runs[a].from + i];
-      for (int b = a + 1; b < child.run_count; ++b)
-        for (int i = 0; i < runs[b].count; ++i) to[runs[b].to + i] += from[runs[b].from + i];
+  const FactorPlan::Run* const runs = plan_->runs.data() + child.first_run;
+  const Real* const numbers = stack_.data() + update.begin;
+  pool.parallelFor(rows, kColumns, [=, &child](int begin, int end) {
+    const auto after = [](int column, const FactorPlan::Run& run) { return column < run.from; };
+    int a = static_cast<int>(std::upper_bound(runs, runs + child.run_count, begin, after) - runs) - 1;
+    for (int column = begin; column < end; ++column) {
+      if (column == runs[a].from + runs[a].count) ++a;
+      addColumn(child, a, column, numbers + static_cast<std::int64_t>(column) * rows,
+                front + (runs[a].to + column - runs[a].from) * front_stride);
     }
+  });
+}
+
+// The rows of a column from the diagonal on.
+template <class Real>
+void Multifrontal<Real>::addColumn(const FactorPlan::Front& child, int run, int column, const Real* from,
+                                   Real* to) const {
+  const FactorPlan::Run* const runs = plan_->runs.data() + child.first_run;
+  for (int i = column - runs[run].from; i < runs[run].count; ++i) to[runs[run].to + i] += from[runs[run].from + i];
+  for (int b = run + 1; b < child.run_count; ++b)
+    for (int i = 0; i < runs[b].count; ++i) to[runs[b].to + i] += from[runs[b].from + i];
 }
 
 template <class Real>
-void Multifrontal<Real>::pushUpdate(int s) {
+void Multifrontal<Real>::pushUpdate(int s, Worker& worker, ThreadPool& pool) {
   const PanelStep& step = plan_->steps[s];
   const std::int64_t count = 3 * step.below_nodes, front_stride = FrontElimination<Real>::stride(rows(s));
-  for (std::int64_t j = 0; j < count; ++j) {
-    const Real* from = front_.data() + (step.columns + j) * front_stride + step.columns;
-    std::copy(from + j, from + count, stack_.data() + stack_top_ + j * count + j);
-  }
-  waiting_.push_back({s, stack_top_});
-  stack_top_ += count * count;
+  const Real* const front = worker.front.data() + step.columns * front_stride + step.columns;
+  Real* const update = stack_.data() + worker.stack_top;
+  pool.parallelFor(static_cast<int>(count), kColumns, [=](int begin, int end) {
+    for (std::int64_t j = begin; j < end; ++j)
+      std::copy(front + j * front_stride + j, front + j * front_stride + count, update + j * count + j);
+  });
+  worker.waiting.push_back({s, worker.stack_top});
+  worker.stack_top += count * count;
 }
 
 template class Multifrontal<float>;
@@ -159,25 +180,27 @@ struct Column<std::uint16_t> {
 }  // namespace
 
 template <class Real, class Number>
-void packPanel(const FrontPanel<Real>& panel, const PanelStep& step, Number* to, float* column_scale) {
-  thread_local Column<Number> column;
+void packPanel(const FrontPanel<Real>& panel, const PanelStep& step, Number* to, float* column_scale,
+               ThreadPool& pool) {
   const int rows = step.row_blocks * kTile;
-  for (int first = 0; first < step.columns; first += kTile) {
-    const int width = std::min(kTile, step.columns - first);
-    for (int j = 0; j < width; ++j) {
-      column_scale[first + j] = column.take(panel.numbers + (first + j) * panel.stride + first, rows - first);
-      const Number* from = column.numbers.data();
-      Number* block = to + j * kTile;
-      for (int row = first; row < rows; row += kTile, from += kTile, block += width * kTile)
-        std::memcpy(block, from, kTile * sizeof(Number));
+  pool.parallelFor((step.columns + kTile - 1) / kTile, kTiles, [=, &panel, &step](int begin, int end) {
+    thread_local Column<Number> column;
+    for (int first = begin * kTile; first < std::min(end * kTile, step.columns); first += kTile) {
+      const int width = std::min(kTile, step.columns - first);
+      for (int j = 0; j < width; ++j) {
+        column_scale[first + j] = column.take(panel.numbers + (first + j) * panel.stride + first, rows - first);
+        const Number* from = column.numbers.data();
+        Number* block = to + panelSize(first, step.row_blocks) + j * kTile;
+        for (int row = first; row < rows; row += kTile, from += kTile, block += width * kTile)
+          std::memcpy(block, from, kTile * sizeof(Number));
+      }
     }
-    to += width * (rows - first);
-  }
+  });
 }
 
-template void packPanel(const FrontPanel<float>&, const PanelStep&, std::uint16_t*, float*);
-template void packPanel(const FrontPanel<double>&, const PanelStep&, std::uint16_t*, float*);
-template void packPanel(const FrontPanel<double>&, const PanelStep&, float*, float*);
-template void packPanel(const FrontPanel<double>&, const PanelStep&, double*, float*);
+template void packPanel(const FrontPanel<float>&, const PanelStep&, std::uint16_t*, float*, ThreadPool&);
+template void packPanel(const FrontPanel<double>&, const PanelStep&, std::uint16_t*, float*, ThreadPool&);
+template void packPanel(const FrontPanel<double>&, const PanelStep&, float*, float*, ThreadPool&);
+template void packPanel(const FrontPanel<double>&, const PanelStep&, double*, float*, ThreadPool&);
 
 }  // namespace vibe

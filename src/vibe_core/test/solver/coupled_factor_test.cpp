@@ -95,7 +95,7 @@ struct Descent {
     const auto scratch = stepper.makeWorkspace();
     const std::vector<StiffnessCoupling> none;
     EXPECT_TRUE(factorAt(body, {{}, in_factor ? springs.couplings() : none}, 0, 1, scratch->plan, scratch->matrix,
-                         *scratch->factor));
+                         *scratch->factor, scratch->single));
     scratch->schur.reset(*scratch->factor);
     for (int i = 0; i < body.nodeCount(); ++i)
       for (int k = 0; k < 3; ++k) scratch->z[4 * i + k] = body.rest[i][k];
@@ -198,7 +198,8 @@ TEST(CoupledFactor, FixedNodesAreLeftOut) {
   ASSERT_TRUE(some_fixed);
   const ImplicitStepper stepper(body, {});
   const auto scratch = stepper.makeWorkspace();
-  ASSERT_TRUE(factorAt(body, {{}, springs.couplings()}, 3600, 1, scratch->plan, scratch->matrix, *scratch->factor));
+  ASSERT_TRUE(factorAt(body, {{}, springs.couplings()}, 3600, 1, scratch->plan, scratch->matrix, *scratch->factor,
+                       scratch->single));
   ASSERT_FALSE(scratch->matrix.pairs().empty());
   for (const NodePair& pair : scratch->matrix.pairs()) {
     EXPECT_EQ(body.fixed[static_cast<std::size_t>(pair.row)] + body.fixed[static_cast<std::size_t>(pair.column)], 0);

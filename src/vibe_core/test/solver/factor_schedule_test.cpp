@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/implicit_worlds.hpp"
+#include "sparse/factor_plan.hpp"
 
 namespace vibe::factor_schedule_test {
 namespace {
@@ -68,6 +69,24 @@ TEST(FactorSchedule, PositionsAreNamedWhenANodeIsFarAndTakeOverAfterTheGivenStep
   EXPECT_EQ(fixture.memory.linearization_id, next);
   EXPECT_EQ(fixture.scratch->factor_id, next);
   EXPECT_FLOAT_EQ(fixture.memory.linearization_point.back(), static_cast<float>(fixture.body.rest.back().z() + 1.1e-3));
+}
+
+// The number of operations of the plan decides, and no clock.
+TEST(FactorSchedule, AFactorThatTakesMoreOperationsTakesOverLater) {
+  Fixture fixture;
+  const double operations =
+      makeFactorPlan(blockPattern(fixture.body.nodeCount(), fixture.body.elements->nodeGroups()))->operations;
+  fixture.moveTip(1.1e-3);
+  for (const auto& [seconds, steps] : {std::pair(0.01, 6), std::pair(0.5, 30)}) {
+    StepSettings settings;
+    settings.factor_rate = operations / seconds;
+    const ImplicitStepper stepper(fixture.body, settings);
+    BodyMotion motion = fixture.motion;
+    StepperMemory memory;
+    const auto scratch = stepper.makeWorkspace();
+    stepper.step(motion.view(), fixture.loads, memory, *scratch);
+    EXPECT_EQ(memory.due, steps);
+  }
 }
 
 TEST(FactorSchedule, EqualPositionsHaveEqualNames) {

@@ -226,6 +226,7 @@ TEST(FactorTest, GivesTheSameBitsWithAnyNumberOfThreads) {
   const auto plan = makeFactorPlan(matrix.pattern());
   ASSERT_GE(plan->branches.size(), 8u);
   ASSERT_GT(plan->record_size, 0) << "branches that share nothing test nothing";
+  ASSERT_GE(plan->steps.back().columns, 64) << "a front of one piece tests nothing";
   for (const FactorStorage storage : {FactorStorage::Half, FactorStorage::Float, FactorStorage::Double}) {
     Factor factor(plan, storage);
     ASSERT_TRUE(factor.compute(matrix));
@@ -241,6 +242,12 @@ TEST(FactorTest, GivesTheSameBitsWithAnyNumberOfThreads) {
       EXPECT_EQ(vector, half_way);
       factor.backward(vector.data(), pool);
       EXPECT_EQ(vector, once);
+      Factor shared(plan, storage);
+      ASSERT_TRUE(shared.compute(matrix, pool));
+      vector.assign(start.begin(), start.end());
+      shared.forward(vector.data());
+      shared.backward(vector.data());
+      EXPECT_EQ(vector, once) << "made by " << threads << " threads";
     }
   }
 }

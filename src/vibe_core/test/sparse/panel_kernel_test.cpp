@@ -55,13 +55,14 @@ class PanelKernelTest : public ::testing::TestWithParam<std::pair<int, int>> {
     wide.resize(panelSize(columns, step.row_blocks));
     half_scale.assign(vector_size, 1.0F);
     wide_scale.assign(vector_size, 1.0F);
-    packPanel(FrontPanel<double>{numbers.data(), stride}, step, half.data(), half_scale.data() + 3);
+    ThreadPool single;
+    packPanel(FrontPanel<double>{numbers.data(), stride}, step, half.data(), half_scale.data() + 3, single);
     for (int j = 0; j < columns; ++j)  // what the halves ought to be
       for (int i = j; i < rows; ++i) {
         double& number = numbers[j * stride + i];
         number = roundedToHalf(number, std::ldexp(half_scale[3 + j], -14));
       }
-    packPanel(FrontPanel<double>{numbers.data(), stride}, step, wide.data(), wide_scale.data() + 3);
+    packPanel(FrontPanel<double>{numbers.data(), stride}, step, wide.data(), wide_scale.data() + 3, single);
     for (int i = 0; i < 3 * vector_size; ++i) start.push_back(static_cast<float>(normal(generator)));
   }
 
@@ -213,7 +214,8 @@ TYPED_TEST(DensePrecisionTest, LeavesTheInverseAndTheSchurComplement) {
       for (int i = j; i < rows; ++i) front.data()[j * stride + i] = static_cast<TypeParam>(a(i, j));
     Elimination elimination;
     elimination.setLargestFront(rows);
-    ASSERT_TRUE(elimination.run(front.data(), rows, columns));
+    ThreadPool two(2);
+    ASSERT_TRUE(elimination.run(front.data(), rows, columns, two));
     using Dense = Eigen::Matrix<TypeParam, Eigen::Dynamic, Eigen::Dynamic>;
     const Eigen::MatrixXd result =
         Eigen::Map<Dense, 0, Eigen::OuterStride<>>(front.data(), rows, rows, Eigen::OuterStride<>(stride))

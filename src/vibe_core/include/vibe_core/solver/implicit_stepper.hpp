@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -60,6 +61,9 @@ struct StepSettings {
   /// A factor about other positions takes over this long after they were, and is made in the background meanwhile; a
   /// whole number of steps, so that a replay has the same bits. 0: the factor stays [s]
   double refactor_interval = 0.1;
+  /// Operations per second that factors may take: the interval is longer where a factor needs more. Not clocked, for
+  /// the same reason [1/s]
+  double factor_rate = std::numeric_limits<double>::infinity();
   double refactor_distance = 5e-4;  ///< it is begun when a node has moved farther than this [m]
 };
 

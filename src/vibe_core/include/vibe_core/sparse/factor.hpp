@@ -61,6 +61,8 @@ class Factor {
   ///         factor is then unusable until the next success
   /// @throws Error  if pattern or pairs of the matrix are not those of the plan
   bool compute(const BlockMatrix& matrix);
+  /// The same bits by the threads of a pool.
+  bool compute(const BlockMatrix& matrix, ThreadPool& pool);
 
   /// Length of the vectors below: 3 * nodes.
   int rows() const;
