@@ -189,7 +189,7 @@ def threads(store):
 def instructions(store):
     rows = store.rows("instructions")
     parts = ("step", "energy", "inverse", "rows", "paths", "walls", "loads", "factor")
-    lines = [(f"`{row['state']}`", row["steps"], *(digits(row[part], 3) for part in parts)) for row in rows]
+    lines = [(f"`{row['state']}`", row["steps"], *(f"{number(row[part]):.2f}" for part in parts)) for row in rows]
     header = ("state", "steps", "all", "energy", "inverse", "of it rows", "paths", "walls", "loads", "factor")
     return table(header, lines), [(f"`{row['state']}`", row) for row in rows]
 
