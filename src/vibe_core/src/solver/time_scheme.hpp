@@ -58,8 +58,8 @@ void setStepTargets(const BodyLoads& loads, const MotionView& motion, const Time
 /// Contacts that count in a step at most. Design choice: three times what a press of 3 N by the scope touches; the time
 /// of a solution grows with the third power of the rows that act.
 constexpr std::size_t kMaxContacts = 128;
-/// Those with friction, which have three rows. Design choice: what a usual press has within reach; in the cases that have
-/// more, friction on all of them changes the force on the tool by no more than the last bound does.
+/// Those with friction, which have three rows. Design choice: what a usual press has within reach; in the cases that
+/// have more, friction on all of them changes the force on the tool by no more than the last bound does.
 constexpr std::size_t kMaxWithFriction = 32;
 /// Bounds the work of a step: the deepest contacts at the scratch's z keep their friction, further ones up to
 /// kMaxContacts only their normal, and the rest neither rows nor force. Needs the targets.
