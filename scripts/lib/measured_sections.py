@@ -15,6 +15,7 @@ STOMACH = "package://vibe_core/scenes/stomach.yaml"
 SCENES = {  # variants of the default scene: a text that follows its line, or (line to remove, None)
     "rigid": ("  compliance: {}", None),
     "small": (None, "geometry: {particles: 1000}\n"),
+    "fine": (None, "geometry: {particles: 16000}\n"),
     "coarse": (None, "geometry: {particles: 900}\ngas: {flow_limit: 30 L/min}\n"),
     "shape_matching": (None, "tissue: {model: shape_matching, young_modulus: 100 kPa, self_contact: false}\n"),
 }
@@ -124,6 +125,12 @@ def session_parts():
     yield Part("grabs_shape_matching", words, 1.5)
 
 
+def fine_parts():
+    for threads in ("1", "2"):
+        words = ("--scene", "{fine}", "--script", "package://vibe_core/trainees/demo/grabs.yaml", "--threads", threads)
+        yield Part("threads_" + threads, ("vibe_headless", *words), 4)
+
+
 def sections(root, meshes=()):
     """All of them, quick ones first."""
     case = ("case", "method", "setting")
@@ -146,6 +153,7 @@ def sections(root, meshes=()):
         Section("outcomes", "idealised sleeves in C, U and Z", ("trial", "pattern"), (),
                 tuple(outcome_parts())),
         Section("sessions", "the first session and a minute of grabs", (), (), tuple(session_parts())),
+        Section("fine", "a minute of grabs with 16,000 particles", (), (), tuple(fine_parts())),
         Section("organs", "an expert's sleeve on all organs", (), (), tuple(organ_parts(meshes))),
     )  # fmt: skip
 
@@ -175,6 +183,7 @@ def session_row(said, measures):
     row["steps"], row["state_hash"] = measures["steps"], measures["state_hash"]
     solver = r"^solver per step +([\d.]+) ms p50 +([\d.]+) ms p99 +([\d.]+) ms max.* of (\d+) particles"
     row["ms_p50"], row["ms_p99"], row["ms_max"], row["particles"] = re.search(solver, said, re.MULTILINE).groups()
+    row["real_time_factor"] = re.search(r"^real-time factor +([\d.]+)$", said, re.MULTILINE).group(1)
     times = [float(found) for found in re.findall(r"^ +\d+ +\w+ .* ([\d.]+)  cinched$", said, re.MULTILINE)]
     row["set_s_least"], row["set_s_most"] = (min(times), max(times)) if times else ("", "")
     return row

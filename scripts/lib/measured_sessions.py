@@ -155,3 +155,11 @@ def speed(store):
              for _, what, row in found if row]  # fmt: skip
     lines.append(("Erden et al., Intel i7-12700KF: tissue is pulled", "3,618", "16 to 18 ms", "not stated"))
     return table(("what", "particles", "p50", "p99"), lines), [(label, row) for label, _, row in found if row]
+
+
+@made_from("fine")
+def fine(store):
+    rows = store.rows("fine")
+    lines = [(row["part"].split("_")[1], *(digits(row[column]) + " ms" for column in ("ms_p50", "ms_p99")),
+              row["real_time_factor"], digits(row["cpu_s"]) + " s") for row in rows]  # fmt: skip
+    return table(("threads", "p50", "p99", "real-time factor", "processor time in all"), lines), [("", row) for row in rows]
