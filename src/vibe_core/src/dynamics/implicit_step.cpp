@@ -154,7 +154,11 @@ bool ImplicitStep::heldByGas() const {
 
 // Straight towards the rest position and without forces: a lost state has no meaningful dynamics.
 void ImplicitStep::recover() {
-  state_.energy.correction_work -= mechanicalEnergy().total() + state_.energy.contact_energy;
+  const Energies lost = mechanicalEnergy();
+  // no step will tell any more by how much the last one has foreseen its energy wrong
+  if (state_.solver.elastic_energy >= 0)
+    state_.energy.numerical_loss -= lost.elastic + lost.foundation - state_.solver.elastic_energy;
+  state_.energy.correction_work -= lost.total() + state_.energy.contact_energy;
   state_.energy.contact_energy = 0;
   StepperMemory fresh;
   fresh.steps = state_.solver.steps + 1;
