@@ -91,6 +91,8 @@ void takePlyElement(const std::vector<std::string_view>& words, int line, PlyHea
   const std::optional<double> count = words.size() == 3 ? realOf(words[2]) : std::nullopt;
   if (!count || !(*count >= 0 && *count < 1e15) || *count != std::floor(*count))
     failPly(line, "is not 'element NAME COUNT'");
+  if (std::any_of(words[1].begin(), words[1].end(), [](unsigned char c) { return c < 32 || c == 127; }))
+    failPly(line, "names the element " + shown(words[1]) + ", whose name has bytes that are no text");
   header.elements.push_back({std::string(words[1]), static_cast<std::uint64_t>(*count), {}});
 }
 

@@ -144,7 +144,7 @@ struct Factor::Storage {
   bool eliminate(const BlockMatrix& matrix, ThreadPool& pool) {
     const typename LendingPool<Multifrontal<Real>>::Loan elimination;
     elimination->setPlan(*plan);
-    const auto taking = [this](int s, const auto& panel, ThreadPool& threads) { take(s, panel, threads); };
+    const auto taking = [this](int s, const auto& panel, ThreadPool& threads) { this->take(s, panel, threads); };
     return elimination->run(matrix, scale, taking, pool);
   }
 
