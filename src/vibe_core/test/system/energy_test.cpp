@@ -90,6 +90,27 @@ void pressAndWithdraw(bool rigid, double least_work) {
   EXPECT_EQ(session.simulation.state().contact_count, 0);
   expectClosed(session);
 }
+// The first evaluation of a step settles what the step before has foreseen wrong; a recovery has none.
+TEST(Energy, ARecoverySettlesWhatTheStepBeforeHasForeseenWrong) {
+  constexpr double kWrong = 0.05;  // [J]
+  Session session(stomachScene());
+  session.run(0.1, [](const State& state) {
+    StepInput still;
+    still.joints = state.joints;
+    return still;
+  });
+  State state = session.simulation.state();
+  state.solver.elastic_energy += kWrong;
+  state.energy.numerical_loss -= kWrong;
+  state.solver.recovery_steps = 1;
+  const double settled = session.balance();
+  session.simulation.replaceState(std::move(state));
+  StepInput still;
+  still.joints = session.simulation.state().joints;
+  session.simulation.step(still);
+  EXPECT_NEAR(session.balance(), settled, 1e-3 * kWrong);
+}
+
 TEST(Energy, AccountOfAPressedScopeIsClosed) {
   pressAndWithdraw(true, 0.02);
 }
