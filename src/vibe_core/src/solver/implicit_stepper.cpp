@@ -30,6 +30,9 @@ constexpr int kFallbackSteps = 10;
 // Evaluations of the last solve of a step beyond its iterations. Design choice: one for its start and one for a
 // shorter move.
 constexpr int kLeastSpare = 2;
+// Times that contacts may take each other's rows before a step moves. Design choice: each costs a direction; what is
+// then left out stops the step's motion.
+constexpr int kExchanges = 3;
 // Iterations after which the constraints are met exactly, whatever that costs in energy. Design choice: about half of
 // what a step may take, so that as many iterations remain to reduce the energy again.
 constexpr int kSatisfyConstraints = 5;
@@ -290,10 +293,21 @@ void ImplicitStepper::iterateStep(const MotionView& motion, BodyLoads& loads, St
       newton.setGas(foreseenVolume(loads.gas, motion, scheme, scratch));
     }
   }
+  chooseContacts(motion, loads, scheme, newton, scratch);
   iterate(newton, scratch, memory, outcome);
   outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton.value());
   scratch.motion_length = outcome.arrived && !outcome.fallback ? newton.judgedBy() : 0;
   scratch.gas_stiffness = potential.gas().stiffness(scratch.last.volume);
+}
+
+// Which contacts will push is known only after a direction was found.
+void ImplicitStepper::chooseContacts(const MotionView& motion, const BodyLoads& loads, const TimeScheme& scheme,
+                                     QuasiNewton& newton, StepperWorkspace& scratch) const {
+  if (scratch.rows.counted == scratch.rows.contacts.size()) return;
+  for (int n = 0; n < kExchanges && exchangeContacts(loads, motion, scheme, newton.foreseen(), scratch); ++n) {
+    scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
+    newton.takeRows();
+  }
 }
 
 // What the solves of a step may take together leaves each of them enough for its least number of iterations.
@@ -324,7 +338,7 @@ void ImplicitStepper::iterate(QuasiNewton& newton, StepperWorkspace& scratch, St
                             ? std::max(kNearlyArrived * first_length, kPositionRoundings * newton.resolution())
                             : kArrived * first_length;
   outcome.arrived = outcome.converged || done || newton.directionLength() < enough;
-  outcome.residual = std::max({newton.residual(), scratch.schur.violation(), depthLeftOut(scratch)});
+  outcome.residual = std::max({newton.residual(), scratch.schur.violation(), depthLeftOut(scratch.z, scratch)});
   outcome.evaluations = newton.evaluations();
   scratch.spent += outcome.evaluations;
   outcome.solves = newton.solves();

@@ -326,6 +326,17 @@ void QuasiNewton::aim() {
   aimed_ = true;
 }
 
+const std::vector<double>& QuasiNewton::foreseen() {
+  aim();
+  setTrial(1);
+  return scratch_.trial;
+}
+
+void QuasiNewton::takeRows() {
+  unknowns_.begin(scratch_.rows);
+  aimed_ = false;
+}
+
 double QuasiNewton::iterate(double max, bool verify) {
   aim();
   aimed_ = false;

@@ -27,6 +27,10 @@ class QuasiNewton {
   void restart() { scratch_.pairs = 0; }
   /// Finds the direction that the next iterate takes, if it is not known yet.
   void aim();
+  /// Where that leads.
+  const std::vector<double>& foreseen();
+  /// The rows are others than when this was made, and nothing has moved since.
+  void takeRows();
   /// One step: direction, then as much of it as lowers the energy.
   /// @param most    no node moves farther [m]
   /// @param verify  false: the end point is not evaluated if the move is safe, because it is short or

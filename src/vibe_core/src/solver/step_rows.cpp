@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 
 #include "common/ordered_algebra.hpp"
 #include "solver/couplings.hpp"
@@ -9,6 +10,10 @@
 
 namespace vibe {
 namespace {
+
+// Depth in the tool at which a contact without a row is given one. Design choice: a tenth of half a wall; the guard of
+// the tool would stop wall and tool [m].
+constexpr double kLeftOut = 1e-4;
 
 Eigen::Vector3d positionOf(const AttachmentPoint& attachment, const MotionView& motion) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -115,6 +120,31 @@ double stepTarget(const LinearForm& form, double target, const MotionView& motio
   return free + scheme.z_gain / scheme.x_gain * residual;
 }
 
+void setTargetsOfStep(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
+                      StepperWorkspace& scratch) {
+  const auto set = [&](int row, const LinearForm& form) {
+    scratch.target[row] = stepTarget(form, scratch.target[row], motion, scheme);
+  };
+  setTargets(loads, scratch.rows, scratch.target);
+  scratch.rows.forEachMultiplier(set);
+  scratch.rows.forEachSpring([&set](int row, const LinearForm& form, double) { set(row, form); });
+}
+
+// @param yielded  by the tool, against its forces
+double depthOf(const ContactRows& contact, const YieldVector& yielded, const std::vector<double>& z) {
+  return contact.target - fixedDot(contact.yield.row(0).transpose(), yielded) - contact.form[0].value(z);
+}
+
+// The first ones of an order count, in the order that they have already.
+void countFirstOf(std::vector<std::pair<double, std::size_t>>& order, StepperWorkspace& scratch) {
+  ConstraintRows& rows = scratch.rows;
+  std::sort(order.begin(), order.begin() + kMaxContacts,
+            [](const auto& one, const auto& other) { return one.second < other.second; });
+  for (std::size_t k = 0; k < kMaxContacts; ++k) std::swap(rows.contacts[k], rows.contacts[order[k].second]);
+  rows.number(kMaxContacts);
+  scratch.rhs.resize(rows.count());
+}
+
 void scaleSegment(double gain, SegmentRows& segment) {
   segment.compliance *= gain;
   segment.spare *= gain;
@@ -167,24 +197,16 @@ void setEquilibriumTargets(const BodyLoads& loads, StepperWorkspace& scratch) {
 
 void setStepTargets(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
                     const std::vector<StiffnessCoupling>& in_factor, StepperWorkspace& scratch) {
-  const auto set = [&](int row, const LinearForm& form) {
-    scratch.target[row] = stepTarget(form, scratch.target[row], motion, scheme);
-  };
-  const auto setAll = [&] {
-    setTargets(loads, scratch.rows, scratch.target);
-    scratch.rows.forEachMultiplier(set);
-    scratch.rows.forEachSpring([&set](int row, const LinearForm& form, double) { set(row, form); });
-  };
-  setAll();
+  setTargetsOfStep(loads, motion, scheme, scratch);
   scaleCompliances(scheme.z_gain / scheme.x_gain, scratch.rows);
   findMissingTurns(loads, in_factor, scratch.rows);
-  if (limitContacts(scratch)) setAll();
+  if (limitContacts(scratch)) setTargetsOfStep(loads, motion, scheme, scratch);
 }
 
 bool limitContacts(StepperWorkspace& scratch) {
   ConstraintRows& rows = scratch.rows;
   if (rows.contacts.size() <= kMaxWithFriction) return false;
-  std::vector<std::pair<double, std::size_t>>& order = scratch.contact_order;  // minus depth, contact
+  std::vector<std::pair<double, std::size_t>>& order = scratch.contact_order;
   order.clear();
   for (std::size_t c = 0; c < rows.contacts.size(); ++c) {
     rows.contacts[c].target = scratch.target[rows.contactRow(c)];
@@ -193,23 +215,33 @@ bool limitContacts(StepperWorkspace& scratch) {
   std::sort(order.begin(), order.end());
   for (std::size_t k = kMaxWithFriction; k < order.size(); ++k) rows.contacts[order[k].second].friction = 0;
   if (order.size() <= kMaxContacts) return false;
-  std::sort(order.begin(), order.begin() + kMaxContacts,
-            [](const auto& one, const auto& other) { return one.second < other.second; });
-  for (std::size_t k = 0; k < kMaxContacts; ++k) std::swap(rows.contacts[k], rows.contacts[order[k].second]);
-  rows.number(kMaxContacts);
-  scratch.rhs.resize(rows.count());
+  countFirstOf(order, scratch);
   return true;
 }
 
-double depthLeftOut(const StepperWorkspace& scratch) {
+bool exchangeContacts(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
+                      const std::vector<double>& z, StepperWorkspace& scratch) {
+  const ConstraintRows& rows = scratch.rows;
+  if (!(depthLeftOut(z, scratch) > kLeftOut)) return false;
+  const YieldVector yielded = rows.tool_compliance * scratch.schur.pull();
+  std::vector<std::pair<double, std::size_t>>& order = scratch.contact_order;
+  order.clear();
+  for (std::size_t c = 0; c < rows.contacts.size(); ++c) {
+    const bool pushes = c < rows.counted && scratch.schur.forces()[rows.contactRow(c)] > 0;
+    order.emplace_back(pushes ? -std::numeric_limits<double>::max() : -depthOf(rows.contacts[c], yielded, z), c);
+  }
+  std::sort(order.begin(), order.end());
+  countFirstOf(order, scratch);
+  setTargetsOfStep(loads, motion, scheme, scratch);
+  return true;
+}
+
+double depthLeftOut(const std::vector<double>& z, const StepperWorkspace& scratch) {
   const ConstraintRows& rows = scratch.rows;
   const YieldVector yielded = rows.tool_compliance * scratch.schur.pull();
   double deepest = 0;
-  for (std::size_t c = rows.counted; c < rows.contacts.size(); ++c) {
-    const ContactRows& contact = rows.contacts[c];
-    const double target = contact.target - fixedDot(contact.yield.row(0).transpose(), yielded);
-    deepest = std::max(deepest, target - contact.form[0].value(scratch.z));
-  }
+  for (std::size_t c = rows.counted; c < rows.contacts.size(); ++c)
+    deepest = std::max(deepest, depthOf(rows.contacts[c], yielded, z));
   return deepest;
 }
 

@@ -65,8 +65,13 @@ constexpr std::size_t kMaxWithFriction = 32;
 /// kMaxContacts only their normal, and the rest neither rows nor force. Needs the targets.
 /// @returns whether rows have other numbers now; their targets are to be set again
 bool limitContacts(StepperWorkspace& scratch);
-/// How deep the contacts that do not count end in the tool, at the scratch's z [m].
-double depthLeftOut(const StepperWorkspace& scratch);
+/// How deep the contacts that do not count are in the tool at z, moved by the forces of the last elimination [m].
+double depthLeftOut(const std::vector<double>& z, const StepperWorkspace& scratch);
+/// Where a contact that does not count would be deep in the tool at z, those that are deepest take the rows of contacts
+/// without force. Sets the targets again.
+/// @returns whether rows have changed
+bool exchangeContacts(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
+                      const std::vector<double>& z, StepperWorkspace& scratch);
 /// The rows' forces back to the loads, and how far the threads slid.
 /// @param gain  of the rows' values over positions, see setStepTargets(); 1 in an equilibrium
 void storeForces(const StepperWorkspace& scratch, double gain, BodyLoads& loads);

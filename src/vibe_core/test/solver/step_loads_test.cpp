@@ -144,6 +144,28 @@ TEST(Contacts, SlideAboveIt) {
   EXPECT_GE(world.pulling, 0);
 }
 
+// A plate lies on more contacts than a step has rows for and is pressed down where there was a gap: these contacts are
+// the farthest at the start of the step, and the only ones that push.
+TEST(Contacts, ThoseThatPushTakeTheRowsWhereThereAreTooMany) {
+  ElasticBody body = block({16, 10, 1}, neoHookean(0.3));
+  body.mass_damping = 10;
+  Body run(body, steps(1.0 / 60, 6));
+  const double end = 15.5 * kSide, gap = 5e-4, pressed = 2e-3;
+  std::vector<int> over_gap;
+  for (int n = 0; n < run.nodes(); ++n) {
+    const bool below = body.rest[n].z() < 1e-9, at_end = body.rest[n].x() > end;
+    if (at_end && !below) run.loads.constraints.push_back(meanOf({n}, {0, 0, 1}, body, -pressed));
+    if (!below) continue;
+    if (at_end) over_gap.push_back(n);
+    run.loads.contacts.push_back({SurfacePoint::ofNode(n), {0, 0, 1}, at_end ? -gap : 0, 0, 0.3, run.position(n)});
+  }
+  ASSERT_GT(run.loads.contacts.size(), 150);
+  ASSERT_TRUE(run.step().finite);
+  for (const ContactConstraint& contact : run.loads.contacts)
+    EXPECT_GT(run.position(contact.point.node[0]).z(), contact.offset - 1.5e-4) << contact.point.node[0];
+  for (const int n : over_gap) EXPECT_NEAR(run.position(n).z(), -gap, 1e-5) << n;
+}
+
 TEST(Contacts, PinchFromBothSidesAndLetGo) {
   ElasticBody body = block({3, 3, 2}, neoHookean(0.3));
   body.mass_damping = 10;

@@ -132,6 +132,8 @@ class ImplicitStepper {
   static void correctStored(StepperMemory& memory, const StepperWorkspace& scratch, StepOutcome& outcome);
   void iterateStep(const MotionView& motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch,
                    StepOutcome& outcome) const;
+  void chooseContacts(const MotionView& motion, const BodyLoads& loads, const TimeScheme& scheme, QuasiNewton& newton,
+                      StepperWorkspace& scratch) const;
   int evaluationsLeft(bool fallback, int spent) const;
   void iterate(QuasiNewton& newton, StepperWorkspace& scratch, StepperMemory& memory, StepOutcome& outcome) const;
   void startFromHere(const MotionView& motion, QuasiNewton& newton, StepperWorkspace& scratch) const;
