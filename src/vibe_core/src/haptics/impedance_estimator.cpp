@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "common/symmetric_eigen.hpp"
 #include "sparse/factor_plan.hpp"
@@ -76,6 +77,15 @@ void setRow(const Point& point, const Eigen::Vector3d& direction, double complia
   row.compliance = compliance;
 }
 
+void listNodes(const ToolContactRows& touch, std::vector<int>& nodes) {
+  nodes.clear();
+  for (const ToolRow& row : touch.rows)
+    if (row.patch)
+      nodes.insert(nodes.end(), row.patch->node.begin(), row.patch->node.end());
+    else
+      nodes.insert(nodes.end(), row.surface.node.begin(), row.surface.node.end());
+}
+
 void setGas(const std::vector<float>& direction, double stiffness, ImpedanceBasis& basis) {
   basis.gas_direction = direction;
   basis.gas_stiffness = stiffness;
@@ -89,7 +99,9 @@ Eigen::Map<Eigen::Matrix<double, static_cast<int>(N), 1>> asVector(std::array<do
 }  // namespace
 
 ImpedanceEstimator::ImpedanceEstimator(const ElasticBody& body, double step_period, const RestStiffness& rest)
-    : body_(body), interval_(renewalSteps(rest, step_period)), making_([this] { make(next_basis_, next_); }) {
+    : body_(body),
+      interval_(renewalSteps(rest, step_period)),
+      making_([this] { make(next_basis_, next_nodes_, next_); }) {
   for (Made* made : {&rest_, &current_, &next_}) made->stiffness = std::make_unique<StaticStiffness>(body, rest);
   rest_.usable = rest.factor != nullptr;
 }
@@ -151,7 +163,8 @@ void ImpedanceEstimator::renew(const ToolContactRows& touch, const std::array<co
     asVector(next.row_motion.emplace_back()) = row.motion.transpose();
   }
   next.id = idOf(next);
-  makeInBackground(next);
+  listNodes(touch, nodes_);
+  makeInBackground(next, nodes_);
 }
 
 // Makes or finds the stiffness of the current basis, and has the next one made. After a step of the same session both
@@ -168,11 +181,11 @@ void ImpedanceEstimator::provide(const ImpedanceMemory& memory) {
     }
     if (current_.id != basis.id) {
       current_.id = basis.id;
-      make(basis, current_);
+      make(basis, {}, current_);
     }
     present_ = current_.usable ? &current_ : nullptr;
   }
-  if (memory.next.id != 0 && next_.id != memory.next.id) makeInBackground(memory.next);
+  if (memory.next.id != 0 && next_.id != memory.next.id) makeInBackground(memory.next, memory.last_nodes);
 }
 
 void ImpedanceEstimator::provideAtRest(const ImpedanceBasis& basis) {
@@ -187,14 +200,17 @@ void ImpedanceEstimator::finishNext() {
   making_.finish();
 }
 
-void ImpedanceEstimator::makeInBackground(const ImpedanceBasis& basis) {
+void ImpedanceEstimator::makeInBackground(const ImpedanceBasis& basis, const std::vector<int>& nodes) {
   finishNext();
   next_basis_ = basis;
+  next_nodes_.clear();
+  std::copy_if(nodes.begin(), nodes.end(), std::back_inserter(next_nodes_), [](int node) { return node >= 0; });
   next_.id = basis.id;
   making_.start();
 }
 
-void ImpedanceEstimator::make(const ImpedanceBasis& basis, Made& out) const {
+// @param nodes  that rows will probably have when it is used: their columns are made as well
+void ImpedanceEstimator::make(const ImpedanceBasis& basis, const std::vector<int>& nodes, Made& out) const {
   out.mass.setZero();
   out.usable = out.stiffness->make(basis.positions);
   if (!out.usable) return;
@@ -207,6 +223,7 @@ void ImpedanceEstimator::make(const ImpedanceBasis& basis, Made& out) const {
   out.stiffness->setRows(rows);
   out.stiffness->setGas(basis.gas_direction, basis.gas_stiffness);
   if (body_.mass_damping > 0 && rows.count() > 0) out.mass = out.stiffness->movingMass(motion);
+  out.stiffness->prepare(nodes);
 }
 
 bool ImpedanceEstimator::farFrom(const std::vector<float>& linearization_point,
@@ -244,12 +261,7 @@ std::optional<ToolImpedance> ImpedanceEstimator::respond(const ToolContactRows& 
   Motions stiffness = 0.5 * (found + found.transpose());
   if (!factor_.succeeded() || !factor_.isPositive() || !stiffness.allFinite()) return std::nullopt;
 
-  nodes_.clear();
-  for (const ToolRow& row : touch.rows)
-    if (row.patch)
-      nodes_.insert(nodes_.end(), row.patch->node.begin(), row.patch->node.end());
-    else
-      nodes_.insert(nodes_.end(), row.surface.node.begin(), row.surface.node.end());
+  listNodes(touch, nodes_);
   const bool comparable = touch.smooth && consecutive && nodes_ == memory.last_nodes;
   memory.has_last = memory.has_last && consecutive;
   memory.last_nodes.swap(nodes_);

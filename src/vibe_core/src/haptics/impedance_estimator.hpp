@@ -142,8 +142,8 @@ class ImpedanceEstimator {
   void provide(const ImpedanceMemory& memory);
   void provideAtRest(const ImpedanceBasis& basis);
   void finishNext();
-  void makeInBackground(const ImpedanceBasis& basis);
-  void make(const ImpedanceBasis& basis, Made& out) const;
+  void makeInBackground(const ImpedanceBasis& basis, const std::vector<int>& nodes);
+  void make(const ImpedanceBasis& basis, const std::vector<int>& nodes, Made& out) const;
   bool farFrom(const std::vector<float>& linearization_point, const std::array<const double*, 3>& positions) const;
   void setRows(const ToolContactRows& touch);
   MotionVector calmForce(const ToolContactRows& touch, const Eigen::Matrix3d& k_tip, const Eigen::Matrix3d& b_tip,
@@ -153,10 +153,11 @@ class ImpedanceEstimator {
                          ImpedanceMemory& memory);
 
   const ElasticBody& body_;
-  int interval_;                // steps
-  Made rest_, current_, next_;  // `rest_` serves bases without positions
-  Made* present_ = nullptr;     // of the memory's current basis; null: not usable
-  ImpedanceBasis next_basis_;   // read by `making_`
+  int interval_;                 // steps
+  Made rest_, current_, next_;   // `rest_` serves bases without positions
+  Made* present_ = nullptr;      // of the memory's current basis; null: not usable
+  ImpedanceBasis next_basis_;    // read by `making_`
+  std::vector<int> next_nodes_;  // likewise
   ConstraintRows rows_;
   Eigen::MatrixXd motion_;  // (rows x kToolMotions)
   Eigen::MatrixXd solved_;  // force of each row per motion (rows x kToolMotions)

@@ -62,6 +62,10 @@ void StaticStiffness::setRows(const ConstraintRows& rows) {
   schur_.setRows(rows, *factor_, columns_);
 }
 
+void StaticStiffness::prepare(const std::vector<int>& nodes) {
+  columns_.prepare(*factor_, nodes, {});
+}
+
 Eigen::MatrixXd StaticStiffness::movingMass(const Eigen::MatrixXd& motion) {
   const auto modes = static_cast<int>(motion.cols());
   std::vector<std::vector<float>> shape(modes, std::vector<float>(4 * body_.rest.size()));

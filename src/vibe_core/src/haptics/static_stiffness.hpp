@@ -32,6 +32,9 @@ class StaticStiffness {
   /// Sets the rows, all equations. Nodes that had rows before cost nothing.
   void setRows(const ConstraintRows& rows);
 
+  /// Makes the columns of nodes and their products, which setRows() would make. Nodes may come more than once.
+  void prepare(const std::vector<int>& nodes);
+
   /// Compliance between the rows [m/N].
   const Eigen::MatrixXd& compliance() { return schur_.compliance(); }
   /// The mass that moves along when the rows' values are moved slowly, by Guyan reduction: T^T M T, with T the
