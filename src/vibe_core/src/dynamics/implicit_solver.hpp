@@ -99,6 +99,8 @@ class ImplicitStep {
   void recoverAround();
   SurfacePath pathOfStep() const;
   bool solve();
+  StepOutcome advance();
+  void note(const StepOutcome& outcome);
   void yieldTool();
   bool missesTool() const;
   void expectAgain();
@@ -131,6 +133,7 @@ class ImplicitStep {
   std::optional<ScopeSpringStep> springs_;  // of it
   ToolDisplacement expected_{};             // of it at the end of the step
   bool expected_again_ = false;             // after a first solve
+  bool refused_ = false;                    // the last solve, before anything has moved
   std::optional<ToolMotion> yielded_;       // its motion, after the solve
   std::optional<ToolMotion> limited_;       // to where it can go; empty: it goes where the solve has it
   StepContext context_;

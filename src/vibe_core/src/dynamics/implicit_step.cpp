@@ -82,7 +82,7 @@ void ImplicitStep::run() {
   }
   if (state_.solver.recovery_steps > 0) return recover();
   if (!solve()) return;
-  if (missesTool()) {
+  if (refused_ || (report_.arrived && !report_.fallback && missesTool())) {
     expectAgain();
     if (!solve()) return;
   }
@@ -189,12 +189,23 @@ bool ImplicitStep::solve() {
   }
   contact_energy_ = state_.energy.contact_energy;
   scratch_.loads.extra = scratch_.terms.simplest();
-  const StepOutcome outcome = limited_ || expected_again_
-                                  ? stepper_.stepAgain(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper)
-                                  : stepper_.step(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper);
-  report_.iterations = outcome.iterations;
+  const StepOutcome outcome = advance();
   report_.evaluations += outcome.evaluations;
+  refused_ = outcome.refused;
+  if (!refused_) note(outcome);
+  return outcome.finite;
+}
+
+StepOutcome ImplicitStep::advance() {
+  StepperWorkspace& scratch = *scratch_.stepper;
+  if (limited_ || expected_again_) return stepper_.stepAgain(motionOf(), scratch_.loads, state_.solver, scratch);
+  const auto accepts = [this] { return state_.solver.fallback > 0 || !missesTool(); };
+  return stepper_.step(motionOf(), scratch_.loads, state_.solver, scratch, accepts);
+}
+
+void ImplicitStep::note(const StepOutcome& outcome) {
   ++report_.solves;
+  report_.iterations = outcome.iterations;
   report_.rows = scratch_.stepper->rows.count();
   report_.limited = static_cast<int>(std::max(scratch_.loads.contacts.size(), kMaxWithFriction) - kMaxWithFriction);
   report_.wall_pairs = scratch_.terms.pairCount();
@@ -204,7 +215,6 @@ bool ImplicitStep::solve() {
   work_ = outcome.work;
   if (!outcome.finite) std::fill(state_.x.begin(), state_.x.end(), std::numeric_limits<double>::quiet_NaN());
   if (outcome.finite && context_.bend != nullptr) yieldTool();
-  return outcome.finite;
 }
 
 // Whatever the solve left, walls and tool end on their sides.

@@ -21,9 +21,10 @@ constexpr double kMiss = 6e-3;
 // The same above which it is not. Design choice: 1 mm at 60 Hz, a few degrees; a tool that is thrown about is not where
 // any guess has it, and the guard keeps it out of the wall [m/s].
 constexpr double kFar = 0.06;
-// Way to where the tool is then expected, over how far it came in the first solve. Design choice: normals turn with the
-// tip that they push aside, and where it slides each solve finds 0.2 to 0.6 of what the one before has missed [1].
-constexpr double kFollow = 1.6;
+// Way to where the tool is then expected, over how far it came in the first direction or in the first solve. Design
+// choice: normals turn with the tip that they push aside, and where it slides each solve finds 0.2 to 0.6 of what the
+// one before has missed; a direction finds less [1].
+constexpr double kFollowForeseen = 2, kFollow = 1.6;
 // Times that nodes are held back which would lead a recovering wall through the tool, before the whole wall waits.
 // Design choice: what is held back spreads by a ring of triangles each time.
 constexpr int kRecoveryAttempts = 8;
@@ -63,11 +64,10 @@ ToolDisplacement ImplicitStep::expectedDisplacement() const {
   return end;
 }
 
-// Whether the forces of the step have brought the tool elsewhere than where its contacts were looked for. That is so
+// Whether the forces of the step bring the tool elsewhere than where its contacts were looked for. That is so
 // while a tip is pushed aside ever faster: the pull of the last step lags behind.
 bool ImplicitStep::missesTool() const {
-  if (context_.bend == nullptr || !report_.arrived || report_.fallback) return false;
-  if (scratch_.loads.contacts.size() > kMaxContacts) return false;  // some have no force, so the miss is not known
+  if (context_.bend == nullptr) return false;
   double miss = 0;
   for (const ContactConstraint& contact : scratch_.loads.contacts)
     if (!contact.force.isZero())
@@ -77,7 +77,8 @@ bool ImplicitStep::missesTool() const {
 
 void ImplicitStep::expectAgain() {
   expected_again_ = true;
-  for (int d = 0; d < kYieldDofs; ++d) expected_[d] += kFollow * scratch_.loads.tool_yield.displacement[d];
+  const double follow = refused_ ? kFollowForeseen : kFollow;
+  for (int d = 0; d < kYieldDofs; ++d) expected_[d] += follow * scratch_.loads.tool_yield.displacement[d];
   startAgain();
 }
 

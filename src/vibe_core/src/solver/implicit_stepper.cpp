@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "solver/couplings.hpp"
 #include "solver/quasi_newton.hpp"
@@ -173,19 +174,19 @@ void ImplicitStepper::refactor(const MotionView& motion, StepperMemory& memory) 
   FactorSchedule::nameHere(body_, motion, memory);
 }
 
-StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMemory& memory,
-                                  StepperWorkspace& scratch) const {
+StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch,
+                                  const std::function<bool()>& accepts) const {
   {
     const InStage stage(scratch.stages, StepStage::Factor);
     plan_->schedule.advance(body_, motion, loads, memory, scratch);
     plan_->schedule.provide(body_, loads, memory, scratch);
   }
   ++memory.steps;
-  scratch.solved = false;
+  scratch.solved = scratch.refused = false;
   scratch.spent = 0;
   scratch.elastic_energy = memory.elastic_energy;
   scratch.usual_length = memory.usual_length;
-  return advance(motion, loads, memory, scratch);
+  return advance(motion, loads, memory, scratch, accepts);
 }
 
 StepOutcome ImplicitStepper::stepAgain(MotionView motion, BodyLoads& loads, StepperMemory& memory,
@@ -193,15 +194,16 @@ StepOutcome ImplicitStepper::stepAgain(MotionView motion, BodyLoads& loads, Step
   scratch.solved = scratch.motion_length > 0 && memory.fallback == 0 && !extrapolates(false);
   memory.elastic_energy = scratch.elastic_energy;
   if (!scratch.solved) memory.usual_length = scratch.usual_length;
-  return advance(motion, loads, memory, scratch);
+  return advance(motion, loads, memory, scratch, {});
 }
 
 StepOutcome ImplicitStepper::advance(MotionView motion, BodyLoads& loads, StepperMemory& memory,
-                                     StepperWorkspace& scratch) const {
+                                     StepperWorkspace& scratch, const std::function<bool()>& accepts) const {
   StepOutcome outcome;
   outcome.fallback = settings_.backward_euler || memory.fallback > 0;
+  iterateStep(motion, loads, memory, scratch, accepts, outcome);
+  if (outcome.refused) return outcome;
   if (memory.fallback > 0) --memory.fallback;
-  iterateStep(motion, loads, memory, scratch, outcome);
   if (!outcome.finite) return outcome;
   if (!outcome.arrived && !settings_.backward_euler) memory.fallback = kFallbackSteps;
   const TimeScheme& scheme = outcome.fallback ? plan_->fallback_scheme : plan_->scheme;
@@ -265,15 +267,17 @@ double ImplicitStepper::predict(const MotionView& motion, const TimeScheme& sche
 }
 
 void ImplicitStepper::iterateStep(const MotionView& motion, BodyLoads& loads, StepperMemory& memory,
-                                  StepperWorkspace& scratch, StepOutcome& outcome) const {
+                                  StepperWorkspace& scratch, const std::function<bool()>& accepts,
+                                  StepOutcome& outcome) const {
   const TimeScheme& scheme = outcome.fallback ? plan_->fallback_scheme : plan_->scheme;
-  const double foreseen = guess(motion, outcome.fallback, scratch);
+  const bool again = std::exchange(scratch.refused, false);
+  const double foreseen = again ? scratch.foreseen : guess(motion, outcome.fallback, scratch);
   buildRows(loads, motion, scratch);
   setStepTargets(loads, motion, scheme, memory.couplings, scratch);
   Potential potential(body_, loads, scheme.inertia, scratch, scheme.part());
   QuasiNewton newton(body_, potential, loads, scratch, std::min(plan_->safe_length, kUsualGrowth * memory.usual_length),
                      evaluationsLeft(outcome.fallback, scratch.spent));
-  newton.start();
+  again ? newton.start(scratch.value) : newton.start();
   newton.judgeBy(foreseen);
   const bool guessed = !scratch.solved && (foreseen > 0 || extrapolates(outcome.fallback));
   // a guess with far more energy may be tangled and lead to a tangled minimum: then start from the present positions
@@ -294,10 +298,26 @@ void ImplicitStepper::iterateStep(const MotionView& motion, BodyLoads& loads, St
     }
   }
   chooseContacts(motion, loads, scheme, newton, scratch);
+  if (accepts) {
+    newton.aim();
+    storeToolForces(scratch, loads);
+    if (!accepts()) return refuse(newton, scratch, outcome);
+  }
   iterate(newton, scratch, memory, outcome);
   outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton.value());
   scratch.motion_length = outcome.arrived && !outcome.fallback ? newton.judgedBy() : 0;
   scratch.gas_stiffness = potential.gas().stiffness(scratch.last.volume);
+}
+
+// The next solve begins at the same guess, if that was of use, so that its evaluation is known.
+void ImplicitStepper::refuse(const QuasiNewton& newton, StepperWorkspace& scratch, StepOutcome& outcome) {
+  outcome.refused = true;
+  scratch.refused = newton.judgedBy() > 0;
+  outcome.evaluations = newton.evaluations();
+  scratch.spent += outcome.evaluations;
+  scratch.value = newton.value();
+  scratch.foreseen = newton.judgedBy();
+  scratch.motion_length = 0;
 }
 
 // Which contacts will push is known only after a direction was found.

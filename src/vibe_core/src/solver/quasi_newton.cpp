@@ -93,10 +93,14 @@ QuasiNewton::QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoad
 }
 
 void QuasiNewton::start() {
+  start(evaluate(scratch_.z, scratch_.gradient));
+}
+
+void QuasiNewton::start(double value) {
   restart();
   aimed_ = false;
   last_length_ = -1;
-  value_ = evaluate(scratch_.z, scratch_.gradient);
+  value_ = value;
 }
 
 double QuasiNewton::evaluate(const std::vector<double>& z, std::vector<float>& gradient) {

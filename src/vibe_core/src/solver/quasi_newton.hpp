@@ -16,6 +16,8 @@ class QuasiNewton {
 
   /// Evaluates at the scratch's z.
   void start();
+  /// The same where that is known: with the value and the scratch's gradient of another start() there.
+  void start(double value);
   /// Eliminates the gas with the stiffness that it has at a foreseen volume. Where an insufflator's law turns out to
   /// have another, iterations change it.
   void setGas(double volume);

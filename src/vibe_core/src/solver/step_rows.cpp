@@ -245,19 +245,25 @@ double depthLeftOut(const std::vector<double>& z, const StepperWorkspace& scratc
   return deepest;
 }
 
-void storeForces(const StepperWorkspace& scratch, double gain, BodyLoads& loads) {
+void storeToolForces(const StepperWorkspace& scratch, BodyLoads& loads) {
   const Eigen::VectorXd& force = scratch.schur.forces();
   const ConstraintRows& rows = scratch.rows;
-  for (std::size_t i = 0; i < loads.constraints.size(); ++i) loads.constraints[i].force = force[i];
   for (ContactConstraint& contact : loads.contacts) contact.force.setZero();
   for (std::size_t c = 0; c < rows.counted; ++c) {
     ContactConstraint& contact = loads.contacts[rows.contacts[c].load];
     for (int k = 0; k < 3; ++k) contact.force += force[rows.contactRow(c) + k] * rows.contacts[c].direction[k];
   }
-  for (std::size_t t = 0; t < loads.threads.size(); ++t) storeThread(scratch, rows.threads[t], gain, loads.threads[t]);
   YieldVector pull = YieldVector::Zero();
   rows.forEachYield([&](int row, const YieldVector& yield) { pull += force[row] * yield; });
   if (rows.tool_yields) loads.tool_yield.displacement = loads.tool_yield.free - loads.tool_yield.compliance * pull;
+}
+
+void storeForces(const StepperWorkspace& scratch, double gain, BodyLoads& loads) {
+  storeToolForces(scratch, loads);
+  const Eigen::VectorXd& force = scratch.schur.forces();
+  const ConstraintRows& rows = scratch.rows;
+  for (std::size_t i = 0; i < loads.constraints.size(); ++i) loads.constraints[i].force = force[i];
+  for (std::size_t t = 0; t < loads.threads.size(); ++t) storeThread(scratch, rows.threads[t], gain, loads.threads[t]);
   loads.gas.volume = scratch.last.volume;
   loads.gas.pressure = scratch.last.pressure;
   loads.gas.stiffness = scratch.gas_stiffness;

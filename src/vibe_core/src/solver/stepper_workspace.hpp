@@ -126,6 +126,8 @@ class StepperWorkspace {
   ThreadPool* pool = &single;                   // outlives what uses it
   double elastic_energy = 0, usual_length = 0;  // of the memory before the step [J], [m]
   bool solved = false;                          // z is that of an earlier solve of the step
+  bool refused = false;                         // z and its evaluation are those of a refused solve of the step
+  double value = 0, foreseen = 0;               // of that: the potential [J], length of the motion [m]
   double motion_length = 0;  // by which the convergence of that solve was judged; 0: it may not be continued [m]
 };
 

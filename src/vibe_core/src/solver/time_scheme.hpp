@@ -72,7 +72,9 @@ double depthLeftOut(const std::vector<double>& z, const StepperWorkspace& scratc
 /// @returns whether rows have changed
 bool exchangeContacts(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
                       const std::vector<double>& z, StepperWorkspace& scratch);
-/// The rows' forces back to the loads, and how far the threads slid.
+/// The forces of contacts back to the loads, and how far the tool yields.
+void storeToolForces(const StepperWorkspace& scratch, BodyLoads& loads);
+/// All forces of rows back to the loads, and how far the threads slid.
 /// @param gain  of the rows' values over positions, see setStepTargets(); 1 in an equilibrium
 void storeForces(const StepperWorkspace& scratch, double gain, BodyLoads& loads);
 

@@ -153,7 +153,7 @@ TEST(Contacts, ThoseThatPushTakeTheRowsWhereThereAreTooMany) {
   const double end = 15.5 * kSide, gap = 5e-4, pressed = 2e-3;
   std::vector<int> over_gap;
   for (int n = 0; n < run.nodes(); ++n) {
-    const bool below = body.rest[n].z() < 1e-9, at_end = body.rest[n].x() > end;
+    const bool below = body.rest[n].z()<1e-9, at_end = body.rest[n].x()> end;
     if (at_end && !below) run.loads.constraints.push_back(meanOf({n}, {0, 0, 1}, body, -pressed));
     if (!below) continue;
     if (at_end) over_gap.push_back(n);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -40,11 +41,12 @@ struct StepOutcome {
   bool converged = false;    ///< last_move is below the tolerance
   bool fallback = false;     ///< backward Euler, because of the settings or because one of the last did not arrive
   bool arrived = true;       ///< false: the step ended because its work is limited; the next steps go on
-  double residual = 0;  ///< how far the next iteration would have moved a node, or a contact or thread is violated [m]
-  int evaluations = 0;  ///< of the energy and its gradient
-  int solves = 0;       ///< with the factor
-  bool finite = true;   ///< false: the state is not usable
-  StepWork work;        ///< of a step
+  double residual = 0;   ///< how far the next iteration would have moved a node, or a contact or thread is violated [m]
+  int evaluations = 0;   ///< of the energy and its gradient
+  int solves = 0;        ///< with the factor
+  bool finite = true;    ///< false: the state is not usable
+  bool refused = false;  ///< nothing has moved: the caller wants other loads, see step()
+  StepWork work;         ///< of a step
 };
 
 struct StepSettings {
@@ -108,7 +110,11 @@ class ImplicitStepper {
   /// kSpareInFallback with backward Euler, and at most two solves for each. A step that does not arrive ends at the
   /// best point it has found, with the mean velocity over the step, and the next few steps take backward Euler. Forces
   /// of the loads are their means over the step.
-  StepOutcome step(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
+  /// @param accepts  asked once, before anything moves, with the forces of contacts and the displacement of the tool in
+  ///                 the loads that the first direction foresees; where it says no, stepAgain() must follow. Empty: not
+  ///                 asked
+  StepOutcome step(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch,
+                   const std::function<bool()>& accepts = {}) const;
 
   /// The last step() once more, with other loads, from where that has ended if it arrived. All solves of a step
   /// together take as many evaluations as two without backward Euler may, but each has some at least.
@@ -124,16 +130,18 @@ class ImplicitStepper {
   double elasticEnergy(const MotionView& motion, StepperWorkspace& scratch) const;
 
  private:
-  StepOutcome advance(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
+  StepOutcome advance(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch,
+                      const std::function<bool()>& accepts) const;
   struct Plan;
   bool extrapolates(bool fallback) const;
   double guess(const MotionView& motion, bool fallback, StepperWorkspace& scratch) const;
   double predict(const MotionView& motion, const TimeScheme& scheme, StepperWorkspace& scratch) const;
   static void correctStored(StepperMemory& memory, const StepperWorkspace& scratch, StepOutcome& outcome);
   void iterateStep(const MotionView& motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch,
-                   StepOutcome& outcome) const;
+                   const std::function<bool()>& accepts, StepOutcome& outcome) const;
   void chooseContacts(const MotionView& motion, const BodyLoads& loads, const TimeScheme& scheme, QuasiNewton& newton,
                       StepperWorkspace& scratch) const;
+  static void refuse(const QuasiNewton& newton, StepperWorkspace& scratch, StepOutcome& outcome);
   int evaluationsLeft(bool fallback, int spent) const;
   void iterate(QuasiNewton& newton, StepperWorkspace& scratch, StepperMemory& memory, StepOutcome& outcome) const;
   void startFromHere(const MotionView& motion, QuasiNewton& newton, StepperWorkspace& scratch) const;
