@@ -25,9 +25,9 @@ constexpr double kGuessGrowth = 2;
 // First direction from the predicted positions over the predicted motion, above which the step starts from the present
 // positions. Design choice: half; where the motion goes on as it was, it is a few hundredths to a third [1].
 constexpr double kMisled = 0.5;
-// Steps with backward Euler after a step that did not arrive. Design choice: a sixth of a second at 60 Hz, in which
-// backward Euler damps what made the step fail.
-constexpr int kFallbackSteps = 10;
+// Steps with backward Euler after a step that did not arrive. Design choice: three, in which backward Euler damps what
+// made the step fail; more cost twice as many iterations each and take energy from folds that snap on.
+constexpr int kFallbackSteps = 3;
 // Evaluations of the last solve of a step beyond its iterations. Design choice: one for its start and one for a
 // shorter move.
 constexpr int kLeastSpare = 2;

@@ -76,6 +76,28 @@ TEST(BoundedStep, TheSolvesOfAStepShareTheirEvaluations) {
   EXPECT_GT(most, kShared) << "negative control: no step needed the limit";
 }
 
+TEST(BoundedStep, ARefusedStepHasMovedNothingAndCostsAtMostItsFirstEvaluation) {
+  const std::unique_ptr<Body> taken = disturbedBeam(0.1), refused = disturbedBeam(0.1);
+  int for_nothing = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    const StepOutcome one = taken->step();
+    const BodyMotion start = refused->motion;
+    const StepOutcome no = refused->stepper.step(refused->motion.view(), refused->loads, refused->memory,
+                                                 *refused->scratch, [] { return false; });
+    ASSERT_TRUE(no.refused);
+    ASSERT_EQ(refused->motion.x, start.x);
+    const StepOutcome again =
+        refused->stepper.stepAgain(refused->motion.view(), refused->loads, refused->memory, *refused->scratch);
+    ASSERT_FALSE(again.refused);
+    ASSERT_EQ(refused->motion.x, taken->motion.x) << frame;
+    ASSERT_EQ(refused->motion.v, taken->motion.v) << frame;
+    const int more = no.evaluations + again.evaluations - one.evaluations;
+    ASSERT_TRUE(more == 0 || more == 1) << frame;
+    for_nothing += more;
+  }
+  EXPECT_LT(for_nothing, 15) << "most steps start along a motion, and keep the evaluation there";
+}
+
 TEST(BoundedStep, AStepThatDoesNotArriveIsFollowedByBackwardEuler) {
   const std::unique_ptr<Body> beam = disturbedBeam(0.7);
   Body& run = *beam;
