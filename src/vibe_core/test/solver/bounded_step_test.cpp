@@ -13,10 +13,11 @@ using namespace test;
 constexpr int kIterations = 2;
 constexpr int kFrames = 240;
 
-std::unique_ptr<Body> disturbedBeam(double amount) {
+std::unique_ptr<Body> disturbedBeam(double amount, double step = 1.0 / 60) {
   ElasticBody body = cantilever({8, 2, 2});
   body.mass_damping = 30;
   StepSettings settings;
+  settings.step = step;
   settings.iterations = kIterations;
   auto run = std::make_unique<Body>(body, settings);
   const Eigen::VectorXd moved = randomDisplacement(run->nodes(), amount * kSide);
@@ -76,9 +77,9 @@ TEST(BoundedStep, TheSolvesOfAStepShareTheirEvaluations) {
   EXPECT_GT(most, kShared) << "negative control: no step needed the limit";
 }
 
-TEST(BoundedStep, ARefusedStepHasMovedNothingAndCostsAtMostItsFirstEvaluation) {
-  const std::unique_ptr<Body> taken = disturbedBeam(0.1), refused = disturbedBeam(0.1);
-  int for_nothing = 0;
+TEST(BoundedStep, ARefusedStepHasMovedNothingAndCostsAtMostItsStart) {
+  const std::unique_ptr<Body> taken = disturbedBeam(0.1, 1e-3), refused = disturbedBeam(0.1, 1e-3);
+  int kept = 0;
   for (int frame = 0; frame < 20; ++frame) {
     const StepOutcome one = taken->step();
     const BodyMotion start = refused->motion;
@@ -92,10 +93,10 @@ TEST(BoundedStep, ARefusedStepHasMovedNothingAndCostsAtMostItsFirstEvaluation) {
     ASSERT_EQ(refused->motion.x, taken->motion.x) << frame;
     ASSERT_EQ(refused->motion.v, taken->motion.v) << frame;
     const int more = no.evaluations + again.evaluations - one.evaluations;
-    ASSERT_TRUE(more == 0 || more == 1) << frame;
-    for_nothing += more;
+    ASSERT_TRUE(more >= 0 && more <= 2) << frame;  // 2: the guess is given up, in both solves
+    kept += more == 0 ? 1 : 0;
   }
-  EXPECT_LT(for_nothing, 15) << "most steps start along a motion, and keep the evaluation there";
+  EXPECT_GE(kept, 3) << "a step that starts along a motion keeps the evaluation there";
 }
 
 TEST(BoundedStep, AStepThatDoesNotArriveIsFollowedByBackwardEuler) {
