@@ -43,6 +43,8 @@ class InverseKinematics {
   Inputs solve(const Eigen::Isometry3d& target, const Inputs& start);
   /// The solution found by descent from `start` alone.
   Inputs follow(const Eigen::Isometry3d& target, const Inputs& start);
+  /// Where scope_tip is, in the root frame.
+  const Eigen::Isometry3d& place(const Inputs& inputs) { return chain_.place(inputs); }
 
  private:
   static constexpr int kFree = kScopeJointCount;
@@ -66,7 +68,7 @@ class InverseKinematics {
                     Step& right) const;
 
   const ToolModel& tool_;
-  TipChain chain_;  // at the inputs last given to residual()
+  TipChain chain_;  // at the inputs last tried
   Eigen::Vector3d target_position_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d target_direction_ = Eigen::Vector3d::UnitX();
 };

@@ -1,6 +1,7 @@
 #include "contact/tip_chain.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "common/turn.hpp"
 
@@ -32,9 +33,11 @@ TipChain::TipChain(const ToolModel& tool) {
     const auto first = std::find_if(joints_.begin(), joints_.end(),
                                     [joint](const ToolJoint* other) { return turnAlike(*joint, *other); });
     alike_.push_back(first == joints_.end() ? -1 : static_cast<int>(first - joints_.begin()));
+    straight_.push_back(joint->origin.linear() == Eigen::Matrix3d::Identity());
   }
   rotation_.resize(joints_.size());
-  poses_.resize(joints_.size());
+  placed_at_.fill(std::numeric_limits<double>::quiet_NaN());
+  poses_.assign(joints_.size(), Eigen::Isometry3d::Identity());
 }
 
 void TipChain::turnAll(const Inputs& inputs) {
@@ -43,16 +46,24 @@ void TipChain::turnAll(const Inputs& inputs) {
 }
 
 const Eigen::Isometry3d& TipChain::place(const Inputs& inputs) {
+  if (inputs == placed_at_) return tip();
+  placed_at_ = inputs;
   turnAll(inputs);
-  Eigen::Isometry3d parent = Eigen::Isometry3d::Identity();
+  const Eigen::Isometry3d root = Eigen::Isometry3d::Identity();
+  const Eigen::Isometry3d* parent = &root;
   for (int link = 0; link < count(); ++link) {
+    const Eigen::Isometry3d& origin = joint(link).origin;
     Eigen::Isometry3d& pose = poses_[link];
-    pose = parent * joint(link).origin;
+    Eigen::Matrix3d turned = parent->linear();
+    if (!straight_[link]) turned *= origin.linear();
+    pose.translation() = parent->linear() * origin.translation() + parent->translation();
     if (alike_[link] >= 0)
-      pose.rotate(rotation_[alike_[link]]);
-    else if (joint(link).type == ToolJoint::Type::Prismatic)
-      pose.translate(positionOf(joint(link), inputs) * joint(link).axis);
-    parent = pose;
+      pose.linear().noalias() = turned * rotation_[alike_[link]];
+    else
+      pose.linear() = turned;
+    if (joint(link).type == ToolJoint::Type::Prismatic)
+      pose.translation() += turned * (positionOf(joint(link), inputs) * joint(link).axis);
+    parent = &pose;
   }
   return tip();
 }

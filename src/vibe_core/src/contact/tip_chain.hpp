@@ -34,8 +34,10 @@ class TipChain {
 
   std::vector<const ToolJoint*> joints_;   // that carry the links
   std::vector<int> alike_;                 // first link whose joint turns by the same rotation; -1: turns by none
+  std::vector<bool> straight_;             // the origin of the joint is not turned, as in most tools
   std::vector<Eigen::Matrix3d> rotation_;  // of those first ones
   std::vector<Eigen::Isometry3d> poses_;
+  Inputs placed_at_;  // not a number before the first time
 };
 
 }  // namespace vibe

@@ -80,8 +80,12 @@ Eigen::Vector3d outwardAt(const WallPoint& point, const std::vector<std::array<i
     return (vertices[v[1]] - vertices[v[0]]).cross(vertices[v[2]] - vertices[v[0]]);
   };
   const Eigen::Vector3d own = normalOf(triangles[static_cast<std::size_t>(point.triangle)]);
+  constexpr double kBeside =
+      3 * kNormalRadius * (1 + 1e-6);  // of three corners together, beyond which no middle is near
   Eigen::Vector3d sum = own;
   for (const auto& v : triangles) {
+    const double beside = vertices[v[0]].x() + vertices[v[1]].x() + vertices[v[2]].x() - 3 * centre.x();
+    if (beside * beside > kBeside * kBeside) continue;
     const Eigen::Vector3d middle = (vertices[v[0]] + vertices[v[1]] + vertices[v[2]]) / 3;
     if ((middle - centre).squaredNorm() > kNormalRadius * kNormalRadius) continue;
     const Eigen::Vector3d normal = normalOf(v);
@@ -90,10 +94,8 @@ Eigen::Vector3d outwardAt(const WallPoint& point, const std::vector<std::array<i
   return sum.normalized();
 }
 
-WallPoint nearestIn(int triangle, const Eigen::Vector3d& place, const std::vector<std::array<int, 3>>& triangles,
-                    const std::vector<Eigen::Vector3d>& vertices) {
-  const auto& v = triangles[static_cast<std::size_t>(triangle)];
-  const Eigen::Vector3d &a = vertices[v[0]], &b = vertices[v[1]], &c = vertices[v[2]];
+WallPoint nearestIn(int triangle, const Eigen::Vector3d& place, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                    const Eigen::Vector3d& c) {
   return {triangle, weightsIn(closestPointOnTriangle(place, a, b, c), a, b, c)};
 }
 
@@ -107,7 +109,7 @@ WallPoint nearestOn(const Eigen::Vector3d& place, const WallPoint& same_side,
                           &c = vertices[triangles[t][2]];
     if ((b - a).cross(c - a).dot(outward) <= 0) continue;
     const double distance = (closestPointOnTriangle(place, a, b, c) - place).squaredNorm();
-    if (distance < min) min = distance, best = nearestIn(static_cast<int>(t), place, triangles, vertices);
+    if (distance < min) min = distance, best = nearestIn(static_cast<int>(t), place, a, b, c);
   }
   return best;
 }

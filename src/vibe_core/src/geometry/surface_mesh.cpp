@@ -65,7 +65,9 @@ std::vector<Eigen::Vector3d> vertexNormals(const SurfaceMesh& mesh) {
 }
 
 std::vector<std::vector<int>> vertexNeighbours(const SurfaceMesh& mesh) {
+  constexpr std::size_t kUsual = 12;  // six neighbours, each of two triangles
   std::vector<std::vector<int>> neighbours(mesh.vertices.size());
+  for (auto& list : neighbours) list.reserve(kUsual);
   for (const auto& t : mesh.triangles) {
     for (int k = 0; k < 3; ++k) {
       neighbours[t[k]].push_back(t[(k + 1) % 3]);

@@ -45,16 +45,32 @@ double reachOfPath(const SurfaceView& wall, const Eigen::Vector3d& begin, const 
   return std::sqrt(min);
 }
 
+// A bit for each side of a box beyond which a point lies: a triangle all of whose corners share one is outside.
+std::vector<std::uint8_t> sidesBeyond(const SurfaceView& wall, const Eigen::AlignedBox3d& box) {
+  const Eigen::Vector3d &low = box.min(), &high = box.max();
+  std::vector<std::uint8_t> sides(wall.x.size());
+  for (std::size_t v = 0; v < sides.size(); ++v)
+    sides[v] = static_cast<std::uint8_t>((wall.x[v] < low.x()) | (wall.x[v] > high.x()) << 1 |
+                                         (wall.y[v] < low.y()) << 2 | (wall.y[v] > high.y()) << 3 |
+                                         (wall.z[v] < low.z()) << 4 | (wall.z[v] > high.z()) << 5);
+  return sides;
+}
+
+// Those that may be the nearest of a point of the path, or touch such a triangle where it is nearest.
 std::vector<Candidate> trianglesNear(const SurfaceView& wall, const Eigen::Vector3d& begin,
                                      const Eigen::Vector3d& end) {
-  const double reach = reachOfPath(wall, begin, end);
+  const double reach = reachOfPath(wall, begin, end) + kTouching;
+  const Eigen::AlignedBox3d box(begin.cwiseMin(end).array() - reach - kTouching,
+                                begin.cwiseMax(end).array() + reach + kTouching);
+  const std::vector<std::uint8_t> sides = sidesBeyond(wall, box);
   std::vector<Candidate> near;
   for (int t = 0; t < static_cast<int>(wall.triangles.size()); ++t) {
     const auto& v = wall.triangles[t];
+    if ((sides[v[0]] & sides[v[1]] & sides[v[2]]) != 0) continue;
     Candidate c{t, {wall.position(v[0]), wall.position(v[1]), wall.position(v[2])}, Eigen::Vector3d::Zero(), 0};
     c.centre = (c.corners[0] + c.corners[1] + c.corners[2]) / 3;
     for (const Eigen::Vector3d& corner : c.corners) c.radius = std::max(c.radius, (corner - c.centre).norm());
-    if (distanceFromSegment(c.centre, begin, end) - c.radius <= reach + kTouching) near.push_back(c);
+    if (distanceFromSegment(c.centre, begin, end) - c.radius <= reach) near.push_back(c);
   }
   return near;
 }
@@ -89,17 +105,19 @@ Eigen::Vector3d pseudonormal(const std::vector<Candidate>& near, const Eigen::Ve
   return sum;
 }
 
-DeepestPoint signedDistance(const std::vector<Candidate>& near, const Eigen::Vector3d& p) {
+// Without a sign.
+// @param within  some triangle is nearer to p than this [m]
+DeepestPoint nearestTo(const Eigen::Vector3d& p, double within, const std::vector<Candidate>& near) {
   DeepestPoint best;
   best.distance = std::numeric_limits<double>::infinity();
   for (const Candidate& c : near) {
-    if ((c.centre - p).norm() - c.radius >= best.distance) continue;
+    const double reached = std::min(within, best.distance) + c.radius;
+    if ((c.centre - p).squaredNorm() > reached * reached) continue;
     const Eigen::Vector3d point = closestPointOnTriangle(p, c.corners[0], c.corners[1], c.corners[2]);
     const double distance = (point - p).norm();
     if (distance >= best.distance) continue;
     best = {c.triangle, point, distance};
   }
-  if (best.triangle >= 0 && (p - best.point).dot(pseudonormal(near, best.point)) < 0) best.distance = -best.distance;
   return best;
 }
 
@@ -107,11 +125,18 @@ DeepestPoint signedDistance(const std::vector<Candidate>& near, const Eigen::Vec
 
 DeepestPoint deepestPoint(const SurfaceView& wall, const Eigen::Vector3d& begin, const Eigen::Vector3d& end) {
   const std::vector<Candidate> near = trianglesNear(wall, begin, end);
+  const double apart = (end - begin).norm() / kSamples;
+  double within = std::numeric_limits<double>::infinity();
   DeepestPoint deepest;
   for (int k = 0; k <= kSamples; ++k) {
     const double part = static_cast<double>(k) / kSamples;
-    const DeepestPoint at = signedDistance(near, begin + part * (end - begin));
-    if (at.triangle >= 0 && (deepest.triangle < 0 || at.distance > deepest.distance)) deepest = at;
+    const Eigen::Vector3d p = begin + part * (end - begin);
+    DeepestPoint at = nearestTo(p, within, near);
+    if (at.triangle < 0) continue;
+    within = at.distance + apart + kTouching;                                // of the next point
+    if (deepest.triangle >= 0 && at.distance <= deepest.distance) continue;  // whatever its sign
+    if ((p - at.point).dot(pseudonormal(near, at.point)) < 0) at.distance = -at.distance;
+    if (deepest.triangle < 0 || at.distance > deepest.distance) deepest = at;
   }
   return deepest;
 }

@@ -252,20 +252,17 @@ std::vector<double> ShellElements::lumpedMass(double density) const {
 }
 
 void ShellElements::strain(const double* displacement, float* out) const {
-  std::vector<double> now(mesh_.nodes.size(), 0.0), rest(mesh_.nodes.size(), 0.0);
+  std::vector<double> now(mesh_.nodes.size(), 0.0);
   for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
     const auto& t = mesh_.triangles[e];
     Eigen::Vector3d x[3];
     for (std::size_t a = 0; a < 3; ++a)
       x[a] = mesh_.nodes[static_cast<std::size_t>(t[a])] + Eigen::Map<const Eigen::Vector3d>(displacement + 3 * t[a]);
     const double area = (x[1] - x[0]).cross(x[2] - x[0]).norm() / 2;
-    for (const int node : t) {
-      now[static_cast<std::size_t>(node)] += area;
-      rest[static_cast<std::size_t>(node)] += areaOf(e);
-    }
+    for (const int node : t) now[static_cast<std::size_t>(node)] += area;
   }
   for (std::size_t i = 0; i < now.size(); ++i)
-    out[i] = rest[i] > 0 ? static_cast<float>(std::sqrt(now[i] / rest[i]) - 1) : 0.0f;
+    out[i] = rest_area_[i] > 0 ? static_cast<float>(std::sqrt(now[i] / rest_area_[i]) - 1) : 0.0f;
 }
 
 ShellKernel shellKernel(KernelPath path) {

@@ -145,7 +145,9 @@ double ShellElements::areaOf(std::size_t triangle) const {
 
 void ShellElements::measure() {
   rest_.assign(mesh_.triangles.size() * kShellGhostRows, 0.0);
+  rest_area_.assign(mesh_.nodes.size(), 0.0);
   for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
+    for (const int node : mesh_.triangles[e]) rest_area_[static_cast<std::size_t>(node)] += areaOf(e);
     double* rest = rest_.data() + e * kShellGhostRows;
     const PatchMatrix patch = restPatch(e);
     for (int k = 0; k < 5; ++k)

@@ -1,7 +1,9 @@
 #include "trainee/bite_plan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "common/turn.hpp"
 #include "trainee/ik_solution.hpp"
@@ -42,39 +44,38 @@ class Planner {
  public:
   Planner(const WallPoint& target, Operator& me) : target_(target), me_(me), map_(*me.seen_map) {}
 
-  /// Where to take hold with the tip in an orientation, and how far to draw the wall in: as little as gives depth. A
-  /// needle that goes through the middle of a narrow fold may come out on either side of it.
-  BitePlan aimed(const Eigen::Quaterniond& turn, const WallPoint& held) const {
-    BitePlan best;
-    for (const double drawn : kDrawn) {
-      if (drawn < me_.tries.least_drawn && std::isfinite(best.cost)) break;
-      const BitePlan plan = aimed(turn, held, drawn);
-      if (plan.cost < best.cost) best = plan;
-      if (plan.depth >= kGoodDepth && plan.cost <= best.cost) break;
-    }
-    if (std::isfinite(best.cost)) best.cost += kMissCost * uncertainty(best, turn);
-    best.held = foreseen(best.held, turn);
-    return best;
-  }
+  /// Of the device as it lies.
+  BitePlan fromHere() const { return onTheOrgan(sought(me_.view().tip_turn, target_), me_.view().tip_turn); }
 
-  BitePlan withRoll(const TraineeHand::Joints& rolled) const {
-    BitePlan plan = aimed(turnOf(me_.model(), rolled), target_);
-    if (!std::isfinite(plan.cost)) return plan;
-    const IkSolution reached = reachHeld(plan.held, rolled);
-    plan = aimed(turnOf(me_.model(), reached.joints), plan.held);
+  /// @param least  of infinite cost, or without its uncertainty, where it would not cost less than this
+  BitePlan withRoll(const TraineeHand::Joints& rolled, double least) const {
+    const Eigen::Quaterniond about = turnOf(me_.model(), rolled);
+    const BitePlan first = onTheOrgan(sought(about, target_), about);
+    if (!std::isfinite(first.cost)) return first;
+    const IkSolution reached = reachHeld(first.held, rolled);
+    const Eigen::Quaterniond turn = turnOf(me_.model(), reached.joints);
+    const auto withWay = [&](double cost, double in_the_way) {
+      cost += kMissCost * (reached.miss + failed(turn)) + kHindranceCost * in_the_way;
+      for (int j = Rotation; j <= TipLeftRight; ++j)
+        cost += kMotionCost * std::abs(reached.joints[j] - me_.hand.joints()[j]);
+      return cost;
+    };
+    if (withWay(0, 0) >= least) return {};
+    BitePlan plan = sought(turn, first.held);
+    if (withWay(plan.cost, 0) >= least) return {};
     plan.joints = reached.joints;
-    plan.turn = turnOf(me_.model(), plan.joints);
     plan.in_the_way = inTheWay(plan.joints);
-    plan.cost += kMissCost * (reached.miss + failed(plan.turn)) + kHindranceCost * plan.in_the_way;
-    for (int j = Rotation; j <= TipLeftRight; ++j)
-      plan.cost += kMotionCost * std::abs(plan.joints[j] - me_.hand.joints()[j]);
+    if (withWay(plan.cost, plan.in_the_way) < least) plan.cost += kMissCost * uncertainty(plan, turn);
+    plan.cost = withWay(plan.cost, plan.in_the_way);
+    plan.turn = turn;
+    plan.held = foreseen(plan.held, turn);
     return plan;
   }
 
   /// Of infinite cost where a way along the wall leaves the organ.
-  BitePlan withRollOnTheOrgan(const TraineeHand::Joints& rolled) const {
+  BitePlan withRollOnTheOrgan(const TraineeHand::Joints& rolled, double least) const {
     try {
-      return withRoll(rolled);
+      return withRoll(rolled, least);
     } catch (const Error&) {
       return {};
     }
@@ -83,10 +84,10 @@ class Planner {
   /// Straight before the wall where the scope has room there, else as it comes best.
   BitePlan anyWay() const {
     const Eigen::Vector3d at = me_.position(target_), outward = me_.outward(target_);
-    BitePlan best = anyRoll(outward);
+    BitePlan best = anyRoll(outward, std::numeric_limits<double>::infinity());
     if (best.in_the_way < kRoomy || me_.skill().foresight <= 0) return best;
     for (const Eigen::Vector3d& ahead : obliqueWays(at, outward, me_.model())) {
-      const BitePlan plan = anyRoll(ahead);
+      const BitePlan plan = anyRoll(ahead, best.cost);
       if (plan.cost < best.cost) best = plan;
     }
     return best;
@@ -94,7 +95,8 @@ class Planner {
 
  private:
   /// @param ahead  direction of the tip's axis
-  BitePlan anyRoll(const Eigen::Vector3d& ahead) const {
+  /// @param least  what costs no less is not wanted
+  BitePlan anyRoll(const Eigen::Vector3d& ahead, double least) const {
     const Eigen::Vector3d at = me_.position(target_);
     TraineeHand::Joints joints = aimAt(me_.model(), at, ahead, helixInTip(kHelixOut), me_.hand.joints()).joints;
     joints[HelixAdvance] = kHelixOut;
@@ -103,7 +105,7 @@ class Planner {
     for (int k = 0; k < considered; ++k) {  // 0, 1, -1, 2, ...
       const auto one = rolled(me_.model(), joints, 2 * M_PI * (k % 2 == 1 ? k / 2 + 1 : -k / 2) / kRolls);
       if (!one) continue;
-      const BitePlan plan = withRollOnTheOrgan(*one);
+      const BitePlan plan = withRollOnTheOrgan(*one, std::min(least, best.cost));
       if (plan.cost < best.cost) best = plan;
       me_.hand.wait(me_.model().scene.step_period);  // one turn per step: all at once would stop a real-time session
     }
@@ -133,7 +135,20 @@ class Planner {
                            [&](int particle) { return (map_.vertices()[particle] - target).norm() < kAtTarget; });
   }
 
-  BitePlan aimed(const Eigen::Quaterniond& turn, WallPoint held, double drawn) const {
+  /// Where to take hold with the tip in an orientation, and how far to draw the wall in: as little as gives depth. A
+  /// needle that goes through the middle of a narrow fold may come out on either side of it.
+  BitePlan sought(const Eigen::Quaterniond& turn, const WallPoint& held) const {
+    BitePlan best;
+    for (const double drawn : kDrawn) {
+      if (drawn < me_.tries.least_drawn && std::isfinite(best.cost)) break;
+      const BitePlan plan = soughtWith(drawn, turn, held);
+      if (plan.cost < best.cost) best = plan;
+      if (plan.depth >= kGoodDepth && plan.cost <= best.cost) break;
+    }
+    return best;
+  }
+
+  BitePlan soughtWith(double drawn, const Eigen::Quaterniond& turn, WallPoint held) const {
     BitePlan best;
     for (int round = 0; round < kAimingRounds; ++round) {
       const std::optional<NeedleView> needle =
@@ -145,6 +160,15 @@ class Planner {
       held = map_.walk(held, -kStep * miss[0], -kStep * miss[1]);
     }
     return best;
+  }
+
+  /// With the place as it is foreseen.
+  /// @throws Error if the organ ends beside it
+  BitePlan onTheOrgan(BitePlan plan, const Eigen::Quaterniond& turn) const {
+    if (!std::isfinite(plan.cost)) return plan;
+    placesBeside(plan.held);
+    plan.held = foreseen(plan.held, turn);
+    return plan;
   }
 
   /// Between where the needle is beside the helix as the device looks now, and a place that is right with foresight.
@@ -167,10 +191,14 @@ class Planner {
       sum += std::max(0.0, (needle ? missOf(*needle).norm() : kLost) - plan.miss);
       ++count;
     };
-    for (const auto& [distal, anterior] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
-      add({map_.walk(plan.held, distal * kBeside, anterior * kBeside), turn, kHelixOut, plan.drawn, me_.follows});
+    for (const WallPoint& held : placesBeside(plan.held)) add({held, turn, kHelixOut, plan.drawn, me_.follows});
     add({plan.held, turn, kHelixOut, plan.drawn, kLessFollows * me_.follows});
     return sum / count;
+  }
+
+  std::array<WallPoint, 4> placesBeside(const WallPoint& held) const {
+    return {map_.walk(held, kBeside, 0), map_.walk(held, -kBeside, 0), map_.walk(held, 0, kBeside),
+            map_.walk(held, 0, -kBeside)};
   }
 
   /// Of a needle from the target, distal and anterior [m].
@@ -202,7 +230,7 @@ BitePlan planBite(const WallPoint& target, Operator& me) {
 }
 
 BitePlan planBiteFromHere(const WallPoint& target, Operator& me) {
-  return Planner(target, me).aimed(me.view().tip_turn, target);
+  return Planner(target, me).fromHere();
 }
 
 }  // namespace vibe

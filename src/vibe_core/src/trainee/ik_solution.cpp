@@ -7,7 +7,6 @@
 
 #include "common/elementary.hpp"
 #include "contact/kinematics.hpp"
-#include "contact/tip_chain.hpp"
 #include "vibe_core/common/rotation.hpp"
 
 namespace vibe {
@@ -31,15 +30,14 @@ constexpr double kMaxStep = 0.3;   // [rad]
 
 /// The scope of a model without loads, in the frame of its base.
 struct Scope {
-  explicit Scope(const Model& of) : model(of), to_base(of.tool_base.inverse()), chain(*of.tool), kinematics(*of.tool) {}
+  explicit Scope(const Model& of) : model(of), to_base(of.tool_base.inverse()), kinematics(*of.tool) {}
 
   Eigen::Vector3d pointAt(const std::array<double, kJointCount>& joints, const Eigen::Vector3d& offset) {
-    return model.tool_base * (chain.place(joints) * offset);
+    return model.tool_base * (kinematics.place(joints) * offset);
   }
 
   const Model& model;
   const Eigen::Isometry3d to_base;
-  TipChain chain;
   InverseKinematics kinematics;
 };
 
@@ -50,7 +48,7 @@ IkSolution aimFrom(Scope& scope, const Eigen::Vector3d& point, const Eigen::Vect
   IkSolution aim{start};
   for (const bool directed : {true, false})
     for (int round = 0; round < kIkRounds; ++round) {
-      Eigen::Isometry3d target = scope.chain.place(aim.joints);
+      Eigen::Isometry3d target = scope.kinematics.place(aim.joints);
       target.translation() = scope.to_base * point - target.linear() * offset;
       if (directed)
         target.linear() = rotationBetween(target.linear().col(0), ahead).toRotationMatrix() * target.linear();
@@ -58,7 +56,7 @@ IkSolution aimFrom(Scope& scope, const Eigen::Vector3d& point, const Eigen::Vect
           std::exchange(aim.joints, scope.kinematics.follow(target, aim.joints));
       if (aim.joints == before) break;
     }
-  const Eigen::Isometry3d tip = scope.model.tool_base * scope.chain.place(aim.joints);
+  const Eigen::Isometry3d tip = scope.model.tool_base * scope.kinematics.place(aim.joints);
   aim.miss = (tip * offset - point).norm();
   aim.turn = math::acos(std::clamp(tip.linear().col(0).dot(direction), -1.0, 1.0));
   return aim;

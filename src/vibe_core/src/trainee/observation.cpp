@@ -58,12 +58,16 @@ int imageInterval(double step_period) {
   return std::max(1, static_cast<int>(std::lround(1 / (kImageRate * step_period))));
 }
 
-Observation observe(const Simulation& simulation) {
+bool hasImage(const Simulation& simulation) {
+  return simulation.state().step % imageInterval(simulation.stepPeriod()) == 0;
+}
+
+Observation observe(const Simulation& simulation, bool wall) {
   const State& state = simulation.state();
   Observation seen;
   seen.step = state.step;
   seen.time = state.time;
-  if (state.step % imageInterval(simulation.stepPeriod()) == 0) observeWall(state, seen);
+  if (wall && hasImage(simulation)) observeWall(state, seen);
   if (simulation.model().tool) observeTool(simulation.model(), state, seen);
   seen.pressure = state.pressure;
   seen.pressure_reached = state.pressure_reached;

@@ -113,7 +113,8 @@ WallPoint Operator::withAimError(const WallPoint& target) {
 }
 
 const AnatomicalMap& Operator::map() {
-  if (!seen_map || view().sets == 0) seen_map = std::make_shared<AnatomicalMap>(model().organ, view().wall);
+  if (!seen_map || (view().sets == 0 && seen_map->vertices() != view().wall))
+    seen_map = std::make_shared<AnatomicalMap>(model().organ, view().wall);
   return *seen_map;
 }
 

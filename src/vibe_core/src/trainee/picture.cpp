@@ -15,26 +15,45 @@
 
 namespace vibe {
 
-std::optional<NeedleView> lookAtNeedle(const Model& model, const Observation& seen) {
+namespace {
+
+/// Positions of the wall's particles, by coordinate [m].
+struct Coordinates {
+  explicit Coordinates(const std::vector<Eigen::Vector3d>& wall) : x(wall.size()), y(wall.size()), z(wall.size()) {
+    for (std::size_t v = 0; v < wall.size(); ++v) x[v] = wall[v].x(), y[v] = wall[v].y(), z[v] = wall[v].z();
+  }
   std::vector<double> x, y, z;
-  for (const Eigen::Vector3d& p : seen.wall) x.push_back(p.x()), y.push_back(p.y()), z.push_back(p.z());
-  // the path is fixed to the tip, which is seen where it is, also if the scope gives way
+};
+
+using Path = std::pair<Eigen::Vector3d, Eigen::Vector3d>;
+
+// The path is fixed to the tip, which is seen where it is, also if the scope gives way.
+Path pathOfNeedle(const Model& model, const TraineeHand::Joints& joints, const Eigen::Vector3d& tip,
+                  const Eigen::Quaterniond& turn) {
   std::vector<Eigen::Isometry3d> poses;
-  model.tool->forwardKinematics(seen.joints, poses);
+  model.tool->forwardKinematics(joints, poses);
   const auto [begin, end] = needlePath(model, poses);
   const Eigen::Isometry3d from_tip = poses[model.tip_link].inverse();
-  const auto inWorld = [&](const Eigen::Vector3d& p) {
-    return Eigen::Vector3d(seen.tip + seen.tip_turn * (from_tip * p));
-  };
-  const SurfaceView wall{model.organ.surface.triangles, x, y, z};
-  const DeepestPoint deepest = deepestPoint(wall, inWorld(begin), inWorld(end));
+  return {tip + turn * (from_tip * begin), tip + turn * (from_tip * end)};
+}
+
+std::optional<NeedleView> viewOfNeedle(const Model& model, const Coordinates& at, const Path& path) {
+  const auto& triangles = model.organ.surface.triangles;
+  const SurfaceView wall{triangles, at.x, at.y, at.z};
+  const DeepestPoint deepest = deepestPoint(wall, path.first, path.second);
   if (deepest.triangle < 0) return {};
   NeedleView view;
-  const auto& corners = model.organ.surface.triangles[deepest.triangle];
-  for (int corner : corners) view.thickness += model.organ.thickness[corner] / 3;
+  for (int corner : triangles[deepest.triangle]) view.thickness += model.organ.thickness[corner] / 3;
   view.depth = deepest.distance + 0.5 * view.thickness;
-  view.where = nearestIn(deepest.triangle, deepest.point, model.organ.surface.triangles, seen.wall);
+  const auto& [a, b, c] = triangles[deepest.triangle];
+  view.where = nearestIn(deepest.triangle, deepest.point, wall.position(a), wall.position(b), wall.position(c));
   return view;
+}
+
+}  // namespace
+
+std::optional<NeedleView> lookAtNeedle(const Model& model, const Observation& seen) {
+  return viewOfNeedle(model, Coordinates(seen.wall), pathOfNeedle(model, seen.joints, seen.tip, seen.tip_turn));
 }
 
 double distanceOfWall(const Eigen::Vector3d& place, const Model& model, const Observation& seen) {
@@ -61,13 +80,15 @@ std::optional<NeedleView> imagineNeedle(const Model& model, const Observation& s
   const auto& triangles = model.organ.surface.triangles;
   const Eigen::Vector3d held = positionOf(draw.held, triangles, seen.wall);
   const Eigen::Vector3d outward = outwardAt(draw.held, triangles, seen.wall);
-  Observation imagined = seen;
-  imagined.tip_turn = draw.turn;
-  imagined.tip = held + kHelixDepth * outward - draw.turn * helixInTip(draw.from);
+  const Eigen::Vector3d tip = held + kHelixDepth * outward - draw.turn * helixInTip(draw.from);
   const Eigen::Vector3d pull = draw.turn * Eigen::Vector3d(draw.drawn - draw.from, 0, 0);
   const double none2 = draw.follows * draw.follows;
-  for (Eigen::Vector3d& p : imagined.wall) p += following((p - held).squaredNorm(), none2) * pull;
-  return lookAtNeedle(model, imagined);
+  Coordinates at(seen.wall);
+  for (std::size_t v = 0; v < seen.wall.size(); ++v) {
+    const double part = following((seen.wall[v] - held).squaredNorm(), none2);
+    at.x[v] += part * pull.x(), at.y[v] += part * pull.y(), at.z[v] += part * pull.z();
+  }
+  return viewOfNeedle(model, at, pathOfNeedle(model, seen.joints, tip, draw.turn));
 }
 
 namespace {
@@ -135,8 +156,10 @@ class ViewChoice {
  private:
   void consider(const TraineeHand::Joints& joints) {
     const View view = viewWith(joints, place_, me_.model());
+    const double beside = view.angle + std::abs(math::log(view.distance / distance_));
+    if (beside >= min_) return;
     const double overlap = overlapWithWall(me_.model(), me_.view().wall, joints);
-    const double cost = view.angle + std::abs(math::log(view.distance / distance_)) + kHindrance * overlap;
+    const double cost = beside + kHindrance * overlap;
     if (cost < min_) min_ = cost, best_ = joints, in_the_way_ = overlap;
   }
 

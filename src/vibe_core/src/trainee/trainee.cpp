@@ -42,10 +42,9 @@ struct Trainee::Impl {
         delay(std::lround(skill.reaction_time / model->scene.step_period)) {}
 
   /// Between images the wall is where it was seen last.
-  void perceive(const Observation& now) {
-    std::vector<Eigen::Vector3d> last_wall = std::move(seen.wall);
-    seen = now;
-    if (seen.wall.empty()) seen.wall = std::move(last_wall);
+  void perceive(Observation&& now) {
+    if (now.wall.empty()) now.wall = std::move(seen.wall);
+    seen = std::move(now);
   }
 
   void say(const std::string& what) {
@@ -144,12 +143,12 @@ void Trainee::cancel(int number) {
   if (number >= current()) impl_->cancelled.insert(number);
 }
 
-StepInput Trainee::next(const Observation& seen) {
+StepInput Trainee::next(Observation seen) {
   Impl& me = *impl_;
-  me.perceive(seen);
+  me.perceive(std::move(seen));
   if (me.seen.wall.empty()) {  // it acts from the first image on
     StepInput still;
-    still.joints = seen.joints;
+    still.joints = me.seen.joints;
     return still;
   }
   me.hand.perceive(me.seen);
@@ -158,7 +157,7 @@ StepInput Trainee::next(const Observation& seen) {
   me.decided.push_back(me.hand.command());
   StepInput input = me.decided.front();
   me.decided.pop_front();
-  for (int j = 0; j < kJointCount; ++j) input.joints[j] += me.tremor.at(j, seen.time);
+  for (int j = 0; j < kJointCount; ++j) input.joints[j] += me.tremor.at(j, me.seen.time);
   return input;
 }
 

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "procedure/procedure_bench.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe::needle_test {
 namespace {
@@ -107,6 +108,27 @@ TEST(NeedlePath, FindsAFoldThatItPassesThrough) {
   const DeepestPoint deepest = deepestPoint(surface.view(), begin, end);
   EXPECT_NEAR(deepest.distance, 0.0025, 0.3e-3) << "above the waist, which has a radius of 9 mm";
   EXPECT_LT(std::abs(deepest.point.x()), 2e-3);
+}
+
+// What is left out because it cannot be the nearest, or the deepest, makes no difference.
+TEST(NeedlePath, IsTheDeepestOfItsPointsByThemselves) {
+  constexpr int kPoints = 64;  // of a path, beside its begin
+  SurfaceMesh bumpy = icosphere(0.03, 3);
+  std::mt19937 generator(3);
+  for (Eigen::Vector3d& v : bumpy.vertices) v += randomPoint(generator, 1.5e-3);
+  const Positions surface(bumpy);
+  const TriangleTree tree(bumpy);
+  for (int k = 0; k < 20; ++k) {
+    const Eigen::Vector3d begin = randomPoint(generator, 0.03), end = begin + randomPoint(generator, 0.01);
+    double max = -1;
+    for (int i = 0; i <= kPoints; ++i) {
+      const Eigen::Vector3d p = begin + static_cast<double>(i) / kPoints * (end - begin);
+      const double distance = signedDistance(surface, p);
+      EXPECT_NEAR(std::abs(distance), tree.closest(p).distance, 1e-15);
+      max = std::max(max, distance);
+    }
+    EXPECT_EQ(deepestPoint(surface.view(), begin, end).distance, max);
+  }
 }
 
 TEST(NeedlePath, WithoutNumbersThereIsNoSurface) {

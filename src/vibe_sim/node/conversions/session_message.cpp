@@ -111,14 +111,14 @@ vibe_msgs::StateSnapshot makeStateSnapshot(const TimedSimulation& simulation) {
 }
 
 vibe_msgs::StepResult makeStepResult(const TimedSimulation& simulation, bool whole) {
-  const Observation seen = observe(simulation.simulation());
+  const Observation seen = observe(simulation.simulation(), false);  // the wall is in tissue/particles
   vibe_msgs::StepResult message;
   message.header.stamp = toRosTime(simulation.now());
   message.header.frame_id = kWorldFrame;
   message.step = static_cast<std::uint64_t>(seen.step);
   message.time = seen.time;
   message.revision = simulation.revision();
-  message.has_particles = whole || !seen.wall.empty();
+  message.has_particles = whole || hasImage(simulation.simulation());
   addTool(seen, simulation, message);
   addSituation(seen, simulation.state(), message);
   for (const Event& event : simulation.events())

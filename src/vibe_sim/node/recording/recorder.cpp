@@ -40,10 +40,11 @@ int stampPlace(const topic_tools::ShapeShifter& message) {
 }
 
 // By its own stamp, since messages may arrive in bursts.
-ros::Time timeOf(const topic_tools::ShapeShifter& message, int place) {
+// @param bytes  buffer, as large as the largest message so far
+ros::Time timeOf(const topic_tools::ShapeShifter& message, int place, std::vector<std::uint8_t>& bytes) {
   if (place < 0 || message.size() < static_cast<std::size_t>(place) + sizeof(std::uint64_t)) return ros::Time::now();
-  std::vector<std::uint8_t> bytes(message.size());
-  ros::serialization::OStream out(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  if (bytes.size() < message.size()) bytes.resize(message.size());
+  ros::serialization::OStream out(bytes.data(), message.size());
   message.write(out);
   std::array<std::uint32_t, 2> stamp{};  // seconds, nanoseconds
   std::memcpy(&stamp, bytes.data() + place, sizeof stamp);
@@ -157,7 +158,7 @@ void Recorder::receive(const std::string& topic, const Event& event) {
   if (thinned == thinned_.end()) return write(topic, event);
   Thinning& thinning = thinned->second;
   if (!thinning.stamp_place) thinning.stamp_place = stampPlace(*event.getMessage());
-  const ros::Time now = timeOf(*event.getMessage(), *thinning.stamp_place);
+  const ros::Time now = timeOf(*event.getMessage(), *thinning.stamp_place, bytes_);
   const double since = (now - thinning.last).toSec();
   if (thinning.last != ros::TIME_MIN && since >= 0 && since < kEarly * thinning.period) {
     thinning.left_out.emplace(event);

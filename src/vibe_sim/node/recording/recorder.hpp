@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <ros/callback_queue.h>
 #include <ros/master.h>
@@ -74,6 +75,7 @@ class Recorder {
   ros::CallbackQueue queue_;
   std::map<std::string, ros::Subscriber> subscribers_;  // by topic; invalid where a topic is not recorded
   std::map<std::string, Thinning> thinned_;
+  std::vector<std::uint8_t> bytes_;  // of a message whose stamp is looked for
   RecordingDepth depth_;
   std::unique_ptr<rosbag::Bag> bag_ = std::make_unique<rosbag::Bag>();
   std::string file_;

@@ -23,9 +23,9 @@ Eigen::Vector3d positionOf(const WallPoint& point, const std::vector<std::array<
 Eigen::Vector3d outwardAt(const WallPoint& point, const std::vector<std::array<int, 3>>& triangles,
                           const std::vector<Eigen::Vector3d>& vertices);
 
-/// The nearest point of one triangle to a place.
-WallPoint nearestIn(int triangle, const Eigen::Vector3d& place, const std::vector<std::array<int, 3>>& triangles,
-                    const std::vector<Eigen::Vector3d>& vertices);
+/// The nearest point of one triangle, with the corners a, b, c [m], to a place.
+WallPoint nearestIn(int triangle, const Eigen::Vector3d& place, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                    const Eigen::Vector3d& c);
 
 /// The nearest point of the wall to a place, on the side of the wall on which another point lies.
 WallPoint nearestOn(const Eigen::Vector3d& place, const WallPoint& same_side,

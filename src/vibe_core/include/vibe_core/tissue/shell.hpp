@@ -145,6 +145,7 @@ class ShellElements : public ElasticElements {
   std::vector<int> patch_nodes_;         // (triangles * 6), -1: ghost
   std::vector<char> released_;           // (triangles * 3) sides hinged by ShellMesh::hinged
   std::vector<double> rest_;             // (triangles * kShellGhostRows)
+  std::vector<double> rest_area_;        // (nodes) of the triangles around the node [m^2]
   int batch_count_ = 0, piece_count_ = 1;
   std::vector<Run> runs_;
   std::vector<BatchOffsets> batch_node_;

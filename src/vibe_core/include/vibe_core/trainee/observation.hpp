@@ -44,6 +44,10 @@ struct Observation {
 int imageInterval(double step_period);
 
 /// Without ROS.
-Observation observe(const Simulation& simulation);
+/// @param wall  false: without the image of the wall also where one belongs to the step
+Observation observe(const Simulation& simulation, bool wall = true);
+
+/// Whether an image of the wall belongs to the present step.
+bool hasImage(const Simulation& simulation);
 
 }  // namespace vibe

@@ -36,7 +36,7 @@ class Trainee {
   void cancel(int number);
   /// Perceives the end of a step.
   /// @return the input of the next step, which is decided on what was perceived Skill::reaction_time ago
-  StepInput next(const Observation& seen);
+  StepInput next(Observation seen);
 
   bool done() const;                               ///< every goal has ended
   int current() const;                             ///< number of the goal that is pursued, or of goals, if none is left
