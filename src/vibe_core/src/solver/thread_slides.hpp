@@ -15,7 +15,7 @@ namespace vibe {
 ///
 /// Which eyelets stick, which let thread slide, and which parts are slack is guessed from the last solution; all
 /// tensions follow from one dense system, and what contradicts them changes the guess. Only where that does not end,
-/// threads are solved one after the other with slideThread(): none of 5,000 problems of a sixth set that is cinched,
+/// threads are solved one after the other with slideThread(): none of 4,800 problems of a sixth set that is cinched,
 /// which took 1.7 to 2.5 guesses. The dense factor is kept while the guess stays. Keeps its memory.
 class ThreadSlides {
  public:
