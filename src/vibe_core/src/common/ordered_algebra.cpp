@@ -13,6 +13,7 @@ using Eigen::Index;
 
 constexpr Index kPanel = 8;           // unknowns of a triangular system that are eliminated together
 constexpr Index kAllColumns = 128;    // a product with fewer columns adds up all of them at once
+constexpr Index kSideBySide = 4;      // rows of a product that are added up side by side, each in its order
 constexpr Index kLargeStride = 4000;  // of a matrix whose columns are added up in small groups
 
 /// Even and odd terms are added up apart.
@@ -58,12 +59,23 @@ void addProduct(const MatrixView& a, const VectorView& x, double factor, Eigen::
   const Index columns = a.cols();
   const bool at_once = columns < kAllColumns || a.rows() == 1;
   const Index group = at_once ? columns : a.outerStride() < kLargeStride ? 16 : 4;
-  for (Index begin = 0; begin < columns; begin += group)
-    for (Index i = 0; i < a.rows(); ++i) {
+  for (Index begin = 0; begin < columns; begin += group) {
+    const Index end = std::min(columns, begin + group);
+    Index i = 0;
+    for (; i + kSideBySide <= a.rows(); i += kSideBySide) {
+      double sum[kSideBySide] = {};
+      for (Index j = begin; j < end; ++j) {
+        const double* const column = &a.coeffRef(i, j);
+        for (Index r = 0; r < kSideBySide; ++r) sum[r] += column[r] * x[j];
+      }
+      for (Index r = 0; r < kSideBySide; ++r) out[i + r] += factor * sum[r];
+    }
+    for (; i < a.rows(); ++i) {
       double sum = 0;
-      for (Index j = begin; j < std::min(columns, begin + group); ++j) sum += a(i, j) * x[j];
+      for (Index j = begin; j < end; ++j) sum += a(i, j) * x[j];
       out[i] += factor * sum;
     }
+  }
 }
 
 void addTransposedProduct(const MatrixView& a, const VectorView& x, double factor, Eigen::Ref<Eigen::VectorXd> out) {

@@ -91,7 +91,6 @@ void ConstraintSchur::setRows(const ConstraintRows& rows, const Factor& factor, 
 
 void ConstraintSchur::sortRows(const ConstraintRows& rows) {
   equations_.clear(), inequalities_.clear(), contact_list_.clear(), idle_.clear();
-  thread_count_ = 0;
   threads_held_ = false;
   for (int i = 0; i < static_cast<int>(rows.equations.size()); ++i) equations_.push_back(i);
   for (const ThreadRows& thread : rows.threads)
@@ -103,8 +102,15 @@ void ConstraintSchur::sortRows(const ConstraintRows& rows) {
     inequalities_.push_back(rows.contactRow(c));
     for (int k = 1; k < 3; ++k) (friction > 0 ? inequalities_ : idle_).push_back(rows.contactRow(c) + k);
   }
-  for (const ThreadRows& thread : rows.threads)
-    if (thread.count() > 0) addThread(thread);
+  first_pull_ = static_cast<int>(inequalities_.size());
+  thread_slides_.clear();
+  for (const ThreadRows& thread : rows.threads) {
+    thread_slides_.addThread();
+    for (int k = 0; k < thread.count(); ++k) {
+      inequalities_.push_back(thread.pullRow(k));
+      thread_slides_.addSegment(thread.segments[k].capstan, thread.segments[k].spare);
+    }
+  }
 }
 
 void ConstraintSchur::setYield(const ConstraintRows& rows) {
@@ -116,20 +122,6 @@ void ConstraintSchur::setYield(const ConstraintRows& rows) {
   tool_compliance_ = rows.tool_compliance;
   given_.resize(kYieldDofs, rowCount());
   for (int i = 0; i < rowCount(); ++i) given_.col(i) = tool_compliance_ * yield_.col(i);
-}
-
-void ConstraintSchur::addThread(const ThreadRows& rows) {
-  if (threads_.size() == static_cast<std::size_t>(thread_count_)) threads_.emplace_back();
-  Thread& thread = threads_[thread_count_++];
-  thread.first = static_cast<int>(inequalities_.size());
-  thread.count = rows.count();
-  for (int k = 0; k < thread.count; ++k) inequalities_.push_back(rows.pullRow(k));
-  thread.capstan.resize(thread.count - 1);
-  for (int k = 0; k + 1 < thread.count; ++k) thread.capstan[k] = rows.segments[k].capstan;
-  thread.spare.resize(thread.count);
-  for (int k = 0; k < thread.count; ++k) thread.spare[k] = rows.segments[k].spare;
-  thread.slide.tension.setZero(thread.count);
-  thread.slide.slide.setZero(thread.count - 1);
 }
 
 void ConstraintSchur::setGas(const float* direction4, double stiffness, const Factor& factor) {
@@ -181,6 +173,10 @@ void ConstraintSchur::formBlocks() {
   if (e > 0) eliminateEquations(e, c);
   for (const Contact& contact : contact_list_) contacts_.addContact(contact.first, contact.friction);
   contacts_.finish();
+  thread_slides_.beginCompliance();
+  for (int j = 0; j < thread_slides_.size(); ++j)
+    for (int i = 0; i < thread_slides_.size(); ++i)
+      thread_slides_.compliance(i, j) = contacts_.compliance(first_pull_ + i, first_pull_ + j);
 }
 
 void ConstraintSchur::eliminateEquations(Eigen::Index e, Eigen::Index c) {
@@ -212,46 +208,36 @@ void ConstraintSchur::solveContacts() {
   }
 }
 
-// How far threads slide through their eyelets. Each thread is solved for given forces of the others.
+// How far threads slide through their eyelets, in turn with what contacts take from them.
 void ConstraintSchur::slideThreads() {
-  if (thread_count_ == 0 || threads_held_) return;
+  const int count = thread_slides_.size();
+  if (count == 0 || threads_held_) return;
+  thread_lack_.resize(static_cast<std::size_t>(count));
   double moved = 2 * kSlideMove;
-  for (int sweep = 0; sweep < kSlideSweeps && moved > kSlideMove; ++sweep) {
+  for (int sweep = 0; sweep < kSlideSweeps && moved > kSlideMove;) {
     moved = contact_list_.empty() ? 0 : contacts_.sweepContacts(contact_residual_.data(), contact_force_.data());
-    for (int t = 0; t < thread_count_; ++t) moved = std::max(moved, slideThread(threads_[t]));
-    if (contact_list_.empty() && thread_count_ == 1) break;  // it is alone
-  }
-  for (int t = 0; t < thread_count_; ++t) {
-    const Thread& thread = threads_[t];
-    for (int k = 0; k < thread.count; ++k) {
-      const double lost = (k + 1 < thread.count ? thread.slide.slide[k] : 0) - (k > 0 ? thread.slide.slide[k - 1] : 0);
-      lost_[inequalities_[thread.first + k]] = lost;
-      moves_[inequalities_[thread.first + k]] += lost;  // its spots have to come nearer
-      contact_residual_[thread.first + k] += lost;
+    for (int k = 0; k < count; ++k) {
+      double& lack = thread_lack_[static_cast<std::size_t>(k)] = contact_residual_[first_pull_ + k];
+      for (int j = 0; j < first_pull_; ++j) lack -= contacts_.compliance(first_pull_ + k, j) * contact_force_[j];
     }
+    sweep += thread_slides_.solve(thread_lack_.data());
+    for (int k = 0; k < count; ++k) {
+      double& force = contact_force_[first_pull_ + k];
+      moved = std::max(moved, std::abs(thread_slides_.tension(k) - force) * thread_slides_.compliance(k, k));
+      force = thread_slides_.tension(k);
+    }
+    if (contact_list_.empty()) break;  // they are alone
   }
+  noteSlides();
 }
 
-double ConstraintSchur::slideThread(Thread& thread) {
-  thread_residual_.resize(thread.count);
-  thread_compliance_.resize(thread.count, thread.count);
-  for (int k = 0; k < thread.count; ++k) {
-    const int i = thread.first + k;
-    double residual = contact_residual_[i];
-    for (int j = 0; j < contacts_.size(); ++j)
-      if (j < thread.first || j >= thread.first + thread.count)
-        residual -= contacts_.compliance(i, j) * contact_force_[j];
-    thread_residual_[k] = residual;
-    for (int j = 0; j < thread.count; ++j) thread_compliance_(k, j) = contacts_.compliance(i, thread.first + j);
+void ConstraintSchur::noteSlides() {
+  for (int k = 0; k < thread_slides_.size(); ++k) {
+    const double lost = thread_slides_.lost(k);
+    lost_[inequalities_[static_cast<std::size_t>(first_pull_ + k)]] = lost;
+    moves_[inequalities_[static_cast<std::size_t>(first_pull_ + k)]] += lost;  // its spots have to come nearer
+    contact_residual_[first_pull_ + k] += lost;
   }
-  limited_slide_.solve(thread_residual_, thread_compliance_, thread.capstan, thread.spare, thread.slide);
-  double moved = 0;
-  for (int k = 0; k < thread.count; ++k) {
-    double& force = contact_force_[thread.first + k];
-    moved = std::max(moved, std::abs(thread.slide.tension[k] - force) * thread_compliance_(k, k));
-    force = thread.slide.tension[k];
-  }
-  return moved;
 }
 
 // The rows' forces from what each of them lacks.

@@ -8,7 +8,7 @@
 #include "solver/column_cache.hpp"
 #include "solver/constraint_rows.hpp"
 #include "solver/contact_problem.hpp"
-#include "suture/thread_run.hpp"
+#include "solver/thread_slides.hpp"
 #include "vibe_core/sparse/factor.hpp"
 
 namespace vibe {
@@ -59,25 +59,19 @@ class ConstraintSchur {
     int first = 0;  // of inequalities_: normal; two tangents where there is friction
     double friction = 0;
   };
-  struct Thread {
-    int first = 0, count = 0;  // of inequalities_
-    Eigen::VectorXd capstan, spare;
-    ThreadSlide slide;
-  };
   void findNodes(const ConstraintRows& rows);
   void addRow(const LinearForm& form, double compliance, const Factor& factor);
   void addContact(const ContactRows& contact, const Factor& factor);
   void addRun(int attachment, const Eigen::Vector3d& along, double compliance);
   void addThreadRows(const ThreadRows& thread);
   void sortRows(const ConstraintRows& rows);
-  void addThread(const ThreadRows& thread);
   void setYield(const ConstraintRows& rows);
   void formCompliance();
   void formBlocks();
   void eliminateEquations(Eigen::Index equations, Eigen::Index inequalities);
   void solveContacts();
   void slideThreads();
-  double slideThread(Thread& thread);
+  void noteSlides();
   void solveRows();
   void solveEquations();
 
@@ -92,9 +86,8 @@ class ConstraintSchur {
   std::vector<int> idle_;          // row numbers of tangents without friction
   std::vector<Contact> contact_list_;
   ContactProblem contacts_;  // of inequalities_
-  LimitedSlide limited_slide_;
-  std::vector<Thread> threads_;
-  int thread_count_ = 0;
+  ThreadSlides thread_slides_;
+  int first_pull_ = 0;  // of inequalities_, of the segments of all threads
   bool threads_held_ = false;
   double violation_ = 0;
   std::vector<char> holds_;  // per row
@@ -106,9 +99,9 @@ class ConstraintSchur {
   double gas_stiffness_ = 0, gas_norm2_ = 0;
   Eigen::VectorXd gas_row_, force_, moves_, lost_;
   double gas_force_ = 0;
-  Eigen::MatrixXd row_compliance_, compliance_, block_, cross_, coupling_,
-      thread_compliance_;  // of equations, with contacts, of contacts
-  Eigen::VectorXd residual_, equation_residual_, contact_residual_, equation_force_, contact_force_, thread_residual_;
+  Eigen::MatrixXd row_compliance_, compliance_, block_, cross_, coupling_;  // of equations, with contacts
+  Eigen::VectorXd residual_, equation_residual_, contact_residual_, equation_force_, contact_force_;
+  std::vector<double> thread_lack_;
   OrderedLdlt equation_factor_;
 };
 

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "common/elementary.hpp"
@@ -124,46 +123,15 @@ class SlideProblem {
     const int m = static_cast<int>(residual_.size());
     slack_ = shortened() - residual_;
     for (int r = 0; r < run_count_; ++r)
-      if (!tight_[runs_[r].first]) dealOut(runs_[r]);
+      if (const Run& run = runs_[r]; !tight_[run.first]) {
+        slide_.segment(run.first, run.size() - 1).setZero();
+        dealOut(run.size(), factor_.data() + run.first, slack_.data() + run.first, slide_.data() + run.first);
+      }
     for (int k = 0; k + 1 < m; ++k) {
       if (!tight_[k] || !tight_[k + 1]) continue;
       slack_[k] -= slide_[k];
       slack_[k + 1] += slide_[k];
     }
-  }
-
-  /// A slack run has enough thread in total: segments that lack length take it from the parts with the least friction
-  /// in between.
-  void dealOut(const Run& run) {
-    slide_.segment(run.first, run.size() - 1).setZero();
-    for (int k = run.first; k <= run.last; ++k) {
-      while (slack_[k] < 0) {
-        const int giver = nearestGiver(run, k);
-        if (giver < 0) break;  // rounding error
-        const double amount = std::min(slack_[giver], -slack_[k]);
-        slack_[giver] -= amount;
-        slack_[k] += amount;
-        for (int e = std::min(giver, k); e < std::max(giver, k); ++e) slide_[e] += giver < k ? amount : -amount;
-      }
-    }
-  }
-
-  int nearestGiver(const Run& run, int taker) const {
-    int giver = -1;
-    double min = std::numeric_limits<double>::infinity();
-    for (const int direction : {-1, 1}) {
-      double friction = 0;
-      for (int k = taker + direction; k >= run.first && k <= run.last; k += direction) {
-        friction += math::log(factor_[direction < 0 ? k : k - 1]);
-        if (slack_[k] <= 0) continue;
-        if (friction < min) {
-          min = friction;
-          giver = k;
-        }
-        break;
-      }
-    }
-    return giver;
   }
 
   bool isSolution() const {
