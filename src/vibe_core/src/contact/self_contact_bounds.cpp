@@ -29,9 +29,10 @@ using self_contact::Group;
 using self_contact::kGroup;
 using self_contact::Vectors;
 
-// Balls, in slacks. Design choice: vertices that move together fast are searched anew once in about ten steps.
-constexpr double kSteps = 5;        // a ball holds for about twice so many steps [1]
-constexpr double kFarthest = 3;     // radius for such a time
+// Balls, in slacks. Design choice: vertices that move together are searched anew once in about eight steps, fast ones
+// more often.
+constexpr double kSteps = 4;        // a ball holds for about twice so many steps [1]
+constexpr double kFarthest = 1.5;   // radius for such a time, at most: more is near a larger ball
 constexpr double kFastSpare = 0.5;  // of a ball around a faster path: it may end so much farther
 constexpr double kLead = 0.8;       // of a ball ahead of its vertex, in radii
 constexpr double kWide = 1.9;       // radius of a ball that is made smaller, over the one for its vertex now

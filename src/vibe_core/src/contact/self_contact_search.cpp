@@ -15,7 +15,6 @@ namespace {
 constexpr double kListedOverAsked = 1.05, kTooFar = 0.3;
 // Entries of a list for which there is memory from the start. Design choice: those of a surface with a few folds.
 constexpr std::size_t kPerTriangle = 4;
-constexpr int kNotOwned = -1;
 constexpr float kRoundedDown = 1 - 1e-6F, kRoundedUp = 1 + 1e-6F;  // of a distance in single precision
 
 /// Distance between the parts of two triangles at one vertex that do not contain it [m].
@@ -48,8 +47,6 @@ SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const Settings& se
       bounds_(triangles_, tree_.parts(), settings.slack),
       vertex_off_(rest.vertices.size()),
       triangle_off_(triangles_.size()) {
-  for (std::size_t t = 0; t < triangles_.size(); ++t)
-    for (const int v : triangles_[t]) owned_.push_back(rings_.first(v) == static_cast<int>(t) ? v : kNotOwned);
   tree_.setWalls(walls_);
   for (std::vector<Near>* list : {&near_, &new_near_, &old_near_}) list->reserve(kPerTriangle * triangles_.size());
   for (std::vector<Meeting>* list : {&meetings_, &new_meetings_, &old_meetings_})
@@ -76,30 +73,25 @@ bool SelfContactSearch::adapt(const NodeVectors& start, const NodeVectors& end, 
 void SelfContactSearch::renewNear() {
   old_near_.clear();
   for (const Near& near : near_)
-    if (!tree_.hasNewNear(rings_.first(near.vertex)) && !tree_.hasNewNear(near.triangle)) old_near_.push_back(near);
+    if (!tree_.hasNewBall(near.vertex) && !tree_.hasNewBox(near.triangle)) old_near_.push_back(near);
   new_near_.clear();
-  tree_.visitFacing(static_cast<float>(cosine_), static_cast<float>(distance_), [this](int one, int other) {
-    addNear(one, other);
-    addNear(other, one);
-  });
+  tree_.visitFacing(static_cast<float>(cosine_), static_cast<float>(distance_),
+                    [this](int vertex, int triangle) { addNear(vertex, triangle); });
   std::sort(new_near_.begin(), new_near_.end());
   near_.resize(old_near_.size() + new_near_.size());
-  std::merge(old_near_.begin(), old_near_.end(), new_near_.begin(), new_near_.end(), near_.begin());
+  const auto end =
+      std::set_union(old_near_.begin(), old_near_.end(), new_near_.begin(), new_near_.end(), near_.begin());
+  near_.erase(end, near_.end());
 }
 
-// Each vertex belongs to the first of its triangles.
-void SelfContactSearch::addNear(int owner, int triangle) {
+void SelfContactSearch::addNear(int v, int triangle) {
   const auto& n = triangles_[triangle];
   const std::vector<Eigen::Vector3d>& at = bounds_.centre();
-  for (int k = 3 * owner; k < 3 * owner + 3; ++k) {
-    const int v = owned_[k];
-    if (v == kNotOwned || tree_.isFartherThan(at[v], triangle, distance_ + bounds_.radius(v))) continue;
-    const double distance = distance_ + bounds_.radius(v) + radius(triangle);
-    const TriangleFoot foot = triangleFoot(at[v], at[n[0]], at[n[1]], at[n[2]]);
-    if (!(foot.away.squaredNorm() < distance * distance)) continue;
-    if (!walls_.oneWall(v, n[0]) && !walls_.oneWall(v, n[1]) && !walls_.oneWall(v, n[2]))
-      new_near_.push_back({v, triangle, kRoundedDown * static_cast<float>(foot.away.norm())});
-  }
+  const double distance = distance_ + bounds_.radius(v) + radius(triangle);
+  const TriangleFoot foot = triangleFoot(at[v], at[n[0]], at[n[1]], at[n[2]]);
+  if (!(foot.away.squaredNorm() < distance * distance)) return;
+  if (!walls_.oneWall(v, n[0]) && !walls_.oneWall(v, n[1]) && !walls_.oneWall(v, n[2]))
+    new_near_.push_back({v, triangle, kRoundedDown * static_cast<float>(foot.away.norm())});
 }
 
 void SelfContactSearch::measure(const NodeVectors& at) {

@@ -60,7 +60,7 @@ class SelfContactSearch {
 
  private:
   void renewNear();
-  void addNear(int owner, int triangle);
+  void addNear(int vertex, int triangle);
   void renewMeetings();
   bool mayMeet(int one, int other) const;
   bool apart(int one, int other, double distance) const;
@@ -70,7 +70,6 @@ class SelfContactSearch {
   const SurfaceWalls& walls_;
   double cosine_, floor_;
   VertexTriangles rings_;
-  std::vector<int> owned_;  // three per triangle: its vertices that belong to it, kNotOwned
   SelfContactTree tree_;
   SelfContactBounds bounds_;
   double distance_ = -1;  // for which near_ holds; < 0: both lists are to be made [m]

@@ -47,6 +47,7 @@ SelfContactTree::SelfContactTree(const SurfaceMesh& rest, const VertexTriangles&
   around_.resize(triangles_.size());
   changed_.resize(triangles_.size());
   ring_.resize(rest.vertices.size());
+  ball_.resize(rest.vertices.size());
   renewed_.reserve(triangles_.size());
   renewed_nodes_.reserve(nodes_.size());
   stack_.reserve(nodes_.size());
@@ -56,9 +57,12 @@ SelfContactTree::SelfContactTree(const SurfaceMesh& rest, const VertexTriangles&
 int SelfContactTree::build(int first, int count, const std::vector<Eigen::Vector3d>& centre) {
   const int index = static_cast<int>(nodes_.size());
   limits_.emplace_back();
-  nodes_.push_back({{}, {}, {}, first, count, 0, 0, false});
+  nodes_.push_back({{}, {}, {}, {}, first, count, 0, 0, 0, 0, 0, 0});
   listVertices(nodes_[index]);
-  if (count <= kLeaf) return index;
+  if (count <= kLeaf) {
+    listOwned(nodes_[index]);
+    return index;
+  }
   Eigen::Vector3d low = centre[order_[first]], high = low;
   for (int i = first; i < first + count; ++i) {
     low = low.cwiseMin(centre[order_[i]]);
@@ -85,6 +89,14 @@ void SelfContactTree::listVertices(Node& node) {
   node.vertices = static_cast<int>(vertex_.size()) - node.first_vertex;
 }
 
+void SelfContactTree::listOwned(Node& leaf) {
+  leaf.first_owned = static_cast<int>(owned_.size());
+  for (int i = leaf.first; i < leaf.first + leaf.count; ++i)
+    for (const int v : triangles_[order_[i]])
+      if (rings_.first(v) == order_[i]) owned_.push_back(v);
+  leaf.owned = static_cast<int>(owned_.size()) - leaf.first_owned;
+}
+
 bool SelfContactTree::isConnected(const Node& node) const {
   std::vector<char> reached(node.count, 0);
   std::vector<int> next(1, 0);
@@ -105,11 +117,50 @@ bool SelfContactTree::isConnected(const Node& node) const {
 }
 
 void SelfContactTree::setWalls(const SurfaceWalls& walls) {
-  for (Node& node : nodes_) {
-    const int *first = vertex_.data() + node.first_vertex, *last = first + node.vertices;
-    const auto nearAll = [&](int v) { return std::all_of(first, last, [&](int w) { return walls.oneWall(v, w); }); };
-    node.one_wall = node.vertices > 0 && std::all_of(first, last, nearAll);
-  }
+  same_wall_.clear();
+  for (std::size_t n = 0; n < nodes_.size(); ++n) listSameWall(static_cast<int>(n), walls);
+}
+
+void SelfContactTree::listSameWall(int index, const SurfaceWalls& walls) {
+  Node& node = nodes_[index];
+  node.first_same = static_cast<int>(same_wall_.size());
+  if (node.vertices > 0 && meetsOneWall(node, node, walls)) same_wall_.push_back(index);
+  if (limits_[index].right == 0)
+    for (const int other : laterLeavesAround(index))
+      if (meetsOneWall(node, nodes_[other], walls) && meetsOneWall(nodes_[other], node, walls))
+        same_wall_.push_back(other);
+  node.same = static_cast<int>(same_wall_.size()) - node.first_same;
+}
+
+// Within two edges.
+std::vector<int> SelfContactTree::laterLeavesAround(int leaf) const {
+  std::vector<int> later;
+  const auto add = [&](int t) {
+    if (leaf_of_[t] > leaf) later.push_back(leaf_of_[t]);
+  };
+  for (int k = nodes_[leaf].first_vertex, end = k + nodes_[leaf].vertices; k < end; ++k)
+    rings_.visit(vertex_[k], [&](int t) {
+      for (const int v : triangles_[t]) rings_.visit(v, add);
+    });
+  std::sort(later.begin(), later.end());
+  later.erase(std::unique(later.begin(), later.end()), later.end());
+  return later;
+}
+
+// Whether each vertex of one, as far as its first triangle is there, belongs to the same wall as each triangle of the
+// other.
+bool SelfContactTree::meetsOneWall(const Node& a, const Node& b, const SurfaceWalls& walls) const {
+  const int *first = &order_[b.first], *last = first + b.count;
+  const auto reaches = [&](int v) {
+    return std::all_of(first, last, [&](int u) {
+      const auto& n = triangles_[u];
+      return std::any_of(n.begin(), n.end(), [&](int w) { return walls.oneWall(v, w); });
+    });
+  };
+  return std::all_of(&order_[a.first], &order_[a.first] + a.count, [&](int t) {
+    const auto& n = triangles_[t];
+    return std::all_of(n.begin(), n.end(), [&](int v) { return rings_.first(v) != t || reaches(v); });
+  });
 }
 
 std::vector<int> SelfContactTree::parts() const {
@@ -143,6 +194,7 @@ void SelfContactTree::forgetChanges() {
   for (const int t : renewed_) changed_[t] = 0;
   for (const int n : renewed_nodes_) {
     if ((limits_[n].changed & kOwn) != 0) nodes_[n].before = nodes_[n].own;
+    if ((limits_[n].changed & kAround) != 0) nodes_[n].around_before = nodes_[n].around;
     limits_[n].changed = 0;
   }
   renewed_.clear();
@@ -151,9 +203,13 @@ void SelfContactTree::forgetChanges() {
 
 void SelfContactTree::markChanges(const SelfContactBounds& bounds, bool all) {
   if (all) {
+    for (std::size_t v = 0; v < ball_.size(); ++v) encloseVertex(static_cast<int>(v), bounds);
     for (std::size_t t = 0; t < triangles_.size(); ++t) mark(static_cast<int>(t), kEverything);
   } else {
-    for (const int v : bounds.moved()) rings_.visit(v, [this](int t) { mark(t, kBox); });
+    for (const int v : bounds.moved()) {
+      encloseVertex(v, bounds);
+      rings_.visit(v, [this](int t) { mark(t, kBox); });
+    }
     for (const int t : bounds.turned()) mark(t, kOwn);
   }
 }
@@ -163,14 +219,18 @@ void SelfContactTree::mark(int triangle, char change) {
   changed_[triangle] = static_cast<char>(changed_[triangle] | change);
 }
 
+void SelfContactTree::encloseVertex(int vertex, const SelfContactBounds& bounds) {
+  ball_[vertex].head<3>() = bounds.centre()[vertex].cast<float>().array();
+  ball_[vertex][3] = static_cast<float>(bounds.radius(vertex));
+}
+
 void SelfContactTree::encloseTriangle(int triangle, const SelfContactBounds& bounds) {
   if ((changed_[triangle] & kBox) != 0) {
     TreeBox& box = box_[triangle];
     for (std::size_t k = 0; k < 3; ++k) {
-      const int v = triangles_[triangle][k];
-      Eigen::Array4f centre = Eigen::Array4f::Zero(), radius = Eigen::Array4f::Zero();
-      centre.head<3>() = bounds.centre()[v].cast<float>().array();
-      radius.head<3>() = kPositionRounding * centre.head<3>().abs() + static_cast<float>(bounds.radius(v));
+      Eigen::Array4f centre = ball_[triangles_[triangle][k]], radius = Eigen::Array4f::Zero();
+      radius.head<3>() = kPositionRounding * centre.head<3>().abs() + centre[3];
+      centre[3] = 0;
       const TreeBox ball{centre - radius, -centre - radius};
       box = k == 0 ? ball : joinBoxes(box, ball);
     }

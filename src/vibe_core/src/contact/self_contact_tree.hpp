@@ -39,17 +39,18 @@ class SelfContactTree {
   /// Renews boxes and cones where the bounds have changed in their last adapt(); everywhere if `all`.
   void adapt(const SelfContactBounds& bounds, bool all);
 
-  /// Calls visit(a, b), a < b, for pairs of triangles that are nearer than about a distance and of which a normal of
-  /// one, or of a triangle at its corners, and such a normal of the other may have a cosine below `cosine`. Only pairs
-  /// of which one hasNewNear().
+  /// Calls visit(v, t) for vertices and triangles that may be nearer than about a distance, where the normals of some
+  /// triangle at the vertex and of the other one may have a cosine below `cosine`; seldom for those of one wall. Of
+  /// those for which this was so before the last adapt(), only where one hasNewBall() or hasNewBox() now.
   template <class Visit>
   void visitFacing(float cosine, float distance, Visit visit) const {
     const auto one_way = [&](const Node& a, const Node& b) {
-      if (&a == &b && a.one_wall) return Part::Skip;
-      return keepsCosine(a.around, b.around, cosine) ? Part::Skip : Part::Changes;
+      return isOneWall(a, b) || keepsCosine(a.around, b.around, cosine) ? Part::Skip : Part::Changes;
     };
-    traverse(kBox | kAround, distance, one_way, [&](int a, int b) {
-      if (!keepsCosine(around_[a], around_[b], cosine)) visit(a, b);
+    traverse(kBox | kAround, distance, one_way, [&](int a, int b, bool) {
+      const bool all = keepsCosine(nodes_[a].around_before, nodes_[b].around_before, cosine - kCosineSpare);
+      visitVertices(a, b, all, distance, visit);
+      if (a != b) visitVertices(b, a, all, distance, visit);
     });
   }
   /// Calls visit(a, b), a < b, for pairs of triangles that are nearer than about a distance, except where both belong
@@ -64,10 +65,12 @@ class SelfContactTree {
       if (&a != &b && !adjacent(a, b)) return Part::Changes;
       return now ? Part::Skip : Part::All;
     };
-    traverse(kBox | kOwn, distance, graph, visit);
+    traverse(kBox | kOwn, distance, graph, [&](int a, int b, bool all) { visitTriangles(a, b, all, distance, visit); });
   }
-  /// Whether the last adapt() has changed what visitFacing() and visitCrossing() look at.
-  bool hasNewNear(int triangle) const { return (changed_[triangle] & (kBox | kAround)) != 0; }
+  /// Whether the last adapt() may have changed the place of a vertex, that of a triangle, or that or the cone of its
+  /// normals.
+  bool hasNewBall(int vertex) const { return hasNewBox(rings_.first(vertex)); }
+  bool hasNewBox(int triangle) const { return (changed_[triangle] & kBox) != 0; }
   bool hasNewPath(int triangle) const { return (changed_[triangle] & (kBox | kOwn)) != 0; }
   /// Calls visit(triangle) for each triangle of which the last adapt() has changed something.
   template <class Visit>
@@ -76,19 +79,11 @@ class SelfContactTree {
   }
   /// Whether the normals of a triangle and those around it differ so much that they tell nothing about what it faces.
   bool isRough(int triangle) const { return around_[triangle].cosine < kRough; }
-  /// All that may be within it [m].
-  const Box& box(int triangle) const { return box_[triangle]; }
-  /// Whether a point is certainly farther than a distance from all that may be within a triangle [m].
-  bool isFartherThan(const Eigen::Vector3d& point, int triangle, double distance) const {
-    const Eigen::Array4f p(static_cast<float>(point[0]), static_cast<float>(point[1]), static_cast<float>(point[2]), 0);
-    const Eigen::Array4f off = (box_[triangle].low - p).max(p + box_[triangle].minus_high).max(0);
-    const float most = static_cast<float>(distance) + kPointRounding;
-    return (off * off).sum() > most * most;
-  }
 
  private:
   static constexpr float kPointRounding = 1e-6F;  // above that of positions within metres in single precision [m]
-  static constexpr float kRough = 0.82F;  // half of the largest angle between normals that do not face each other
+  static constexpr float kRough = 0.82F;        // half of the largest angle between normals that do not face each other
+  static constexpr float kCosineSpare = 1e-4F;  // far above rounding in the cones of parts and of their parts [1]
   enum Change : char { kBox = 1, kOwn = 2, kAround = 4, kEverything = 7 };
   enum class Part { Skip, Changes, All };
   struct Limits {
@@ -97,10 +92,12 @@ class SelfContactTree {
     char changed = 0;  // Change
   };
   struct Node {
-    Cone own, before, around;    // of the triangles; before the last adapt(); with those at their corners
+    Cone own, before;            // of the triangles; before the last adapt()
+    Cone around, around_before;  // with the triangles at their corners
     int first, count;            // triangles in order_
     int first_vertex, vertices;  // in vertex_; none: too large or not connected
-    bool one_wall;               // whether all its vertices belong to one wall
+    int first_owned, owned;      // in owned_, of leaves
+    int first_same, same;        // in same_wall_
   };
   static bool apart(const Box& a, const Box& b, float distance) {
     return (a.low + b.minus_high).max(b.low + a.minus_high).maxCoeff() > distance;
@@ -116,20 +113,30 @@ class SelfContactTree {
   static Cone join(const Cone& a, const Cone& b);
   static bool isGraph(const Cone& a, const Cone& b);
   bool adjacent(const Node& a, const Node& b) const;
+  /// Whether no vertex of one and triangle of the other belong to different walls; false also where that is not known.
+  bool isOneWall(const Node& a, const Node& b) const {
+    const int *first = same_wall_.data() + a.first_same, *last = first + a.same;
+    return first != last && std::find(first, last, static_cast<int>(&b - nodes_.data())) != last;
+  }
 
   int build(int first, int count, const std::vector<Eigen::Vector3d>& centre);
   void listVertices(Node& node);
+  void listOwned(Node& leaf);
   bool isConnected(const Node& node) const;
+  void listSameWall(int index, const SurfaceWalls& walls);
+  std::vector<int> laterLeavesAround(int leaf) const;
+  bool meetsOneWall(const Node& a, const Node& b, const SurfaceWalls& walls) const;
   void forgetChanges();
   void markChanges(const SelfContactBounds& bounds, bool all);
   void mark(int triangle, char change);
+  void encloseVertex(int vertex, const SelfContactBounds& bounds);
   void encloseTriangle(int triangle, const SelfContactBounds& bounds);
   void spread(const SelfContactBounds& bounds, bool all);
   void joinChildren();
   void joinTriangles(const Node& leaf, Limits& limits, Cone& own, Cone& around) const;
 
   template <class Judge, class Visit>
-  void traverse(char changes, float distance, const Judge& judge, const Visit& visit) const {
+  void traverse(char changes, float distance, const Judge& judge, const Visit& visitLeaves) const {
     stack_.assign(1, {0, 0, 0});
     while (!stack_.empty()) {
       auto [a, b, all] = stack_.back();
@@ -141,7 +148,7 @@ class SelfContactTree {
       if (part == Part::Skip) continue;
       if (part == Part::All) all = 1;
       if (one.right == 0 && other.right == 0) {
-        visitLeaves(a, b, changes, all != 0, distance, visit);
+        visitLeaves(a, b, all != 0);
       } else if (a == b) {
         stack_.push_back({a + 1, one.right, all});
         stack_.push_back({one.right, one.right, all});
@@ -155,15 +162,34 @@ class SelfContactTree {
       }
     }
   }
+  /// Whether a ball is certainly farther than a distance from all that may be within a box.
+  static bool isFar(const Eigen::Array4f& ball, const Box& box, float distance) {
+    Eigen::Array4f off = (box.low - ball).max(ball + box.minus_high).max(0);
+    off[3] = 0;
+    const float most = distance + ball[3] + kPointRounding;
+    return (off * off).sum() > most * most;
+  }
+  /// Vertices of one leaf and triangles of another.
   template <class Visit>
-  void visitLeaves(int a, int b, char changes, bool all, float distance, const Visit& visit) const {
+  void visitVertices(int a, int b, bool all, float distance, const Visit& visit) const {
+    const Node &one = nodes_[a], &other = nodes_[b];
+    for (const int *v = owned_.data() + one.first_owned, *end = v + one.owned; v != end; ++v) {
+      const Eigen::Array4f& ball = ball_[*v];
+      const bool whole = all || hasNewBall(*v);
+      if (!(whole || (limits_[b].changed & kBox) != 0) || isFar(ball, limits_[b].box, distance)) continue;
+      for (const int *t = &order_[other.first], *last = t + other.count; t != last; ++t)
+        if ((whole || hasNewBox(*t)) && !isFar(ball, box_[*t], distance)) visit(*v, *t);
+    }
+  }
+  template <class Visit>
+  void visitTriangles(int a, int b, bool all, float distance, const Visit& visit) const {
     const Node &one = nodes_[a], &other = nodes_[b];
     for (int i = 0; i < one.count; ++i) {
       const int t = order_[one.first + i];
       if (a != b && apart(box_[t], limits_[b].box, distance)) continue;
       for (int j = a == b ? i + 1 : 0; j < other.count; ++j) {
         const int u = order_[other.first + j];
-        if (!all && ((changed_[t] | changed_[u]) & changes) == 0) continue;
+        if (!all && !hasNewPath(t) && !hasNewPath(u)) continue;
         if (!apart(box_[t], box_[u], distance)) visit(std::min(t, u), std::max(t, u));
       }
     }
@@ -175,7 +201,10 @@ class SelfContactTree {
   std::vector<Node> nodes_;
   std::vector<int> order_;                    // triangles
   std::vector<int> vertex_;                   // ascending, of the nodes that have a list
+  std::vector<int> owned_;                    // vertices of each leaf that has their first triangle
+  std::vector<int> same_wall_;                // nodes of the same wall: small ones themselves, leaves and later leaves
   std::vector<Box> box_;                      // per triangle
+  std::vector<Eigen::Array4f> ball_;          // per vertex: centre, radius
   std::vector<Cone> own_, around_, ring_;     // per triangle, per triangle, per vertex
   std::vector<char> changed_;                 // Change, per triangle
   std::vector<int> leaf_of_, parent_;         // per triangle, per node: node

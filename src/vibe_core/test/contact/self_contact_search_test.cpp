@@ -101,6 +101,26 @@ TEST(SelfContactSearch, RenewsAllThatMatters) {
   EXPECT_GT(stopped, 50U);
 }
 
+// Without leaving the places for which the lists hold.
+TEST(SelfContactSearch, FindsWallsThatTurnToEachOther) {
+  ContactWorld old(plates(8, 2, 0.75e-3)), fresh(old.rest);
+  const auto tilt = [](ContactWorld& world, double between_normals) {
+    const Eigen::AngleAxisd turn(M_PI - between_normals, Eigen::Vector3d::UnitX());
+    for (std::size_t i = plateSize(8); i < world.count(); ++i) {
+      const Eigen::Vector3d& at_rest = world.rest.vertices[i];
+      world.set(i, turn * Eigen::Vector3d(at_rest.x(), at_rest.y(), 0) + Eigen::Vector3d(0, 0, 2e-3));
+    }
+    world.detect(0.5e-3);
+  };
+  tilt(old, 0.8);
+  EXPECT_TRUE(old.contact.pairs().empty());
+  tilt(old, 1.5);
+  tilt(fresh, 1.5);
+  EXPECT_GT(fresh.contact.pairs().size(), 0U);
+  ASSERT_EQ(old.contact.pairs().size(), fresh.contact.pairs().size());
+  EXPECT_EQ(old.evaluate(), fresh.evaluate());
+}
+
 TEST(SelfContactSearch, SearchesOnlyWhenSomethingCanHaveComeNear) {
   ContactWorld world(plates(8, 6));
   world.detect(1e-3);
