@@ -7,6 +7,8 @@
 #include <limits>
 #include <random>
 
+#include "contact/self_contact_distance.hpp"
+#include "contact/self_contact_search.hpp"
 #include "contact/self_contact_worlds.hpp"
 #include "vibe_core/common/error.hpp"
 
@@ -119,6 +121,68 @@ TEST(SelfContactSearch, FindsWallsThatTurnToEachOther) {
   EXPECT_GT(fresh.contact.pairs().size(), 0U);
   ASSERT_EQ(old.contact.pairs().size(), fresh.contact.pairs().size());
   EXPECT_EQ(old.evaluate(), fresh.evaluate());
+}
+
+/// What SelfContactSearch::near() promises, pair by pair.
+class NearByForce {
+ public:
+  NearByForce(const SurfaceMesh& mesh, const SurfaceWalls& walls, double cosine, const std::vector<double>& at)
+      : mesh_(mesh), walls_(walls), cosine_(cosine), normals_(mesh.vertices.size()) {
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) at_.push_back({at[4 * v], at[4 * v + 1], at[4 * v + 2]});
+    for (const auto& n : mesh.triangles) {
+      const Eigen::Vector3d normal = (at_[n[1]] - at_[n[0]]).cross(at_[n[2]] - at_[n[0]]).normalized();
+      normal_.push_back(normal);
+      for (const int v : n) normals_[v].push_back(normal);
+    }
+  }
+  bool has(int v, int t, double distance) const {
+    const auto& n = mesh_.triangles[t];
+    if ((at_[v] - at_[n[0]]).norm() > distance + 0.03) return false;
+    if (walls_.oneWall(v, n[0]) || walls_.oneWall(v, n[1]) || walls_.oneWall(v, n[2])) return false;
+    const auto faces = [&](const Eigen::Vector3d& normal) { return normal.dot(normal_[t]) < cosine_; };
+    return std::any_of(normals_[v].begin(), normals_[v].end(), faces) &&
+           triangleFoot(at_[v], at_[n[0]], at_[n[1]], at_[n[2]]).away.norm() < distance;
+  }
+
+ private:
+  const SurfaceMesh& mesh_;
+  const SurfaceWalls& walls_;
+  double cosine_;
+  std::vector<Eigen::Vector3d> at_, normal_;
+  std::vector<std::vector<Eigen::Vector3d>> normals_;  // of the triangles at each vertex
+};
+
+TEST(SelfContactSearch, ListsAllThatIsNear) {
+  constexpr double kCosine = 0.3, kDistance = 4e-3;
+  ContactWorld world(sphere(0.03, 9));
+  const SurfaceWalls walls(world.rest, 1.6 * kWallThickness);
+  SelfContactSearch search(world.rest, {walls, kCosine, 0.1 * kWallThickness, 0.5 * kWallThickness});
+  std::mt19937 random(6);
+  const auto columns = [&](const std::vector<double>& at) {
+    std::array<std::vector<double>, 3> x;
+    for (std::size_t i = 0; i < at.size(); ++i)
+      if (i % 4 < 3) x[i % 4].push_back(at[i]);
+    return x;
+  };
+  int missed = 0, expected = 0;
+  for (int step = 0; step < 30; ++step) {
+    const auto from = columns(world.at);
+    const std::vector<double> move = pushAbout(world, step, random);
+    for (std::size_t i = 0; i < move.size(); ++i) world.at[i] += move[i];
+    const auto to = columns(world.at);
+    ASSERT_TRUE(search.adapt({from[0].data(), from[1].data(), from[2].data()},
+                             {to[0].data(), to[1].data(), to[2].data()}, kDistance));
+    const NearByForce near(world.rest, walls, kCosine, world.at);
+    for (int v = 0; v < static_cast<int>(world.count()); ++v)
+      for (int t = 0; t < static_cast<int>(world.rest.triangles.size()); ++t) {
+        if (!near.has(v, t, kDistance)) continue;
+        ++expected;
+        const SelfContactSearch::Near pair{v, t, 0};
+        missed += std::binary_search(search.near().begin(), search.near().end(), pair) ? 0 : 1;
+      }
+  }
+  EXPECT_GT(expected, 10000);
+  EXPECT_EQ(missed, 0);
 }
 
 TEST(SelfContactSearch, SearchesOnlyWhenSomethingCanHaveComeNear) {
