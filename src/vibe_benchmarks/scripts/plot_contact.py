@@ -45,7 +45,7 @@ def draw_errors(axis, rows, column, title):
     axis.axvline(FRAME, color="tab:red", linestyle="--", linewidth=0.9, label="a 60 Hz frame")
     label_log_axes(axis, "median CPU time of a 60 Hz frame [ms]; labels: steps per second", title + " [%]")
     axis.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    axis.legend(fontsize=7)
+    axis.legend(fontsize=7, loc="lower right")
 
 
 def draw_growth(axis, rows):
