@@ -184,8 +184,8 @@ TEST(HardStomach, ARecoveryDoesNotLeadTheWallThroughTheTool) {
 }
 
 // From limit to limit, with a hand that feels no force. Where the guard stops the tool, the wall has to make room for
-// it within the step: solved once only, the wall stands still in each of these steps, and in some scenes for good. So it
-// does where contacts that push have no rows: with this seed in 38 of 39 steps in which the guard stopped the tool.
+// it within the step: solved once only, the wall stands still in each of these steps, and in some scenes for good. So
+// it does where contacts that push have no rows: with this seed in 38 of 39 steps in which the guard stopped the tool.
 TEST(HardStomach, WhereTheToolStopsTheWallMakesRoom) {
   Scene scene = stomachScene();
   scene.geometry.particles = 900;
