@@ -26,7 +26,7 @@ struct StepReport {
   std::array<int, kJointCount> stopped{};                 ///< joints that tissue has stopped: sign of their motion
   int blocking_particle = -1;  ///< nearest to what has stopped the whole tool; -1: it goes on, or rests by itself
   int contact_count = 0;       ///< see State
-  int solves = 0;              ///< of an implicit solver: 1, more where the tool was elsewhere than expected
+  int solves = 0;              ///< of an implicit solver: 1, more where the wall stops the tool or it ends elsewhere
   int iterations = 0;          ///< of an implicit solver, in the last of them
   int evaluations = 0;         ///< of the elastic energy, by an implicit solver, in all of them
   int rows = 0;                ///< of contacts, grip and threads, in an implicit solver

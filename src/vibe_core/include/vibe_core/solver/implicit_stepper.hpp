@@ -116,8 +116,8 @@ class ImplicitStepper {
   StepOutcome step(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch,
                    const std::function<bool()>& accepts = {}) const;
 
-  /// The last step() once more, with other loads, from where that has ended if it arrived. All solves of a step
-  /// together take as many evaluations as two without backward Euler may, but each has some at least.
+  /// The last step() once more, with other loads, from where that has ended if it arrived, or where it was refused. All
+  /// solves of a step together take as many evaluations as two without backward Euler may, but each has some at least.
   /// @param motion  as before that step
   StepOutcome stepAgain(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
 
