@@ -22,6 +22,10 @@ constexpr double kGivesWay = 0.1;
 // Stretch of the wall for which that is so at least, so that edges have the same points from step to step; points are
 // added where the wall is stretched more. Design choice: that of an insufflated stomach [1].
 constexpr double kUsualStretch = 1.15;
+// How much longer than where they begin such an edge is until added points keep the whole distance. Points that came
+// and went at once would take the load from the vertices, the edge would be shorter in the next step without it, and
+// the wall would never come to rest. Design choice: the edge follows a point's distance by less than a third [1].
+constexpr double kFadeIn = 0.5;
 // Parts of a triangle through which a shape already passes, because it was put there: points within are pushed aside.
 constexpr int kPierced = 4;
 // Most parts into which an edge is divided. Design choice: a needle of half a millimetre in a mesh of 10 mm.
@@ -167,18 +171,18 @@ void SurfaceContacts::addBetween(const SurfacePath& path, double margin, int sha
   for (const Pair& pair : pairs_) {
     const std::array<int, 3>& n = triangles_[pair.triangle];
     if (excluded[n[0]] != 0 && excluded[n[1]] != 0 && excluded[n[2]] != 0) continue;
-    int most = pair.approach.nearest == 0 ? kPierced : 1;
+    Division most;
+    if (pair.approach.nearest == 0) most = {kPierced, kPierced, 1};
     for (std::size_t k = 0; k < 3; ++k) {
       const double length = (path.start(n[(k + 1) % 3]) - path.start(n[k])).norm();
-      const double usual = std::max(length, kUsualStretch * length_[static_cast<std::size_t>(pair.triangle)][k]);
-      const int parts = partsOf(shape, usual);
-      most = std::max(most, parts);
+      const Division division = divide(shape, length_[static_cast<std::size_t>(pair.triangle)][k], length);
+      if (most < division) most = division;
       const int across = neighbour_[pair.triangle][k];
       if (isDrawnIn(shape, {n[k], n[(k + 1) % 3]}, excluded)) continue;
-      if (parts > 1 && !(across >= 0 && pair_of_[across] >= 0 && across < pair.triangle))
-        addEdge(path, margin, shape, pair, static_cast<int>(k), parts);
+      if (division.parts > 1 && !(across >= 0 && pair_of_[across] >= 0 && across < pair.triangle))
+        addEdge(path, margin, shape, pair, static_cast<int>(k), division);
     }
-    if (most > 2 && !isDrawnIn(shape, {n[0], n[1], n[2]}, excluded)) addInterior(path, margin, shape, pair, most);
+    if (most.parts > 2 && !isDrawnIn(shape, {n[0], n[1], n[2]}, excluded)) addInterior(path, margin, shape, pair, most);
   }
 }
 
@@ -201,36 +205,57 @@ void SurfaceContacts::addNearest(int shape, const std::vector<char>& excluded) {
 // Vertices that touch keep the square of the distance of a point between them from the core of a shape at least at
 // touching^2 - sum over edges of w_j w_k length^2, because the square of the distance from a convex set grows no faster
 // than that from a point. In the middle of an even triangle the sum is length^2 / 3.
-int SurfaceContacts::partsOf(int shape, double length) const {
+double SurfaceContacts::spacing(int shape) const {
   const double radius = tool_.radius(shape), touching = radius + half_, least = radius + kKeptBetweenVertices * half_;
-  const double spacing = std::sqrt(3 * (touching * touching - least * least));
-  return std::clamp(static_cast<int>(std::ceil(length / spacing)), 1, kMaxParts);
+  return std::sqrt(3 * (touching * touching - least * least));
+}
+
+// Points stay where they are when the edge becomes longer; more come between them.
+SurfaceContacts::Division SurfaceContacts::divide(int shape, double rest, double length) const {
+  const double apart = spacing(shape);
+  const int usual = std::clamp(static_cast<int>(std::ceil(kUsualStretch * rest / apart)), 1, kMaxParts);
+  Division division{usual, usual, 1};
+  for (; division.parts < kMaxParts && length > division.parts * apart; division.parts *= 2) {
+    division.whole = division.parts;
+    division.share = std::min(1.0, (length / (division.parts * apart) - 1) / kFadeIn);
+  }
+  return division;
+}
+
+// Of the distance that a contact keeps.
+double SurfaceContacts::Division::shareOf(int part) const {
+  return part % (parts / whole) == 0 ? 1 : kKeptBetweenVertices + (1 - kKeptBetweenVertices) * share;
 }
 
 void SurfaceContacts::addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge,
-                              int parts) {
+                              const Division& division) {
   const std::array<int, 3>& n = triangles_[pair.triangle];
   const int across = neighbour_[pair.triangle][static_cast<std::size_t>(edge)];
   const bool hit = pair.approach.fraction < 1 ||
                    (across >= 0 && pair_of_[across] >= 0 && pairs_[pair_of_[across]].approach.fraction < 1);
   int from = n[static_cast<std::size_t>(edge)], to = n[static_cast<std::size_t>((edge + 1) % 3)];
   if (from > to) std::swap(from, to);
-  for (int k = 1; k < parts; ++k) {
-    const double weight = static_cast<double>(k) / parts;
-    offer({2, {from, to, -1}, {1 - weight, weight, 0}}, path, shape, hit, margin);
+  for (int k = 1; k < division.parts; ++k) {
+    const double weight = static_cast<double>(k) / division.parts;
+    offer({2, {from, to, -1}, {1 - weight, weight, 0}}, path, shape, hit, margin, division.shareOf(k));
   }
 }
 
-void SurfaceContacts::addInterior(const SurfacePath& path, double margin, int shape, const Pair& pair, int parts) {
+void SurfaceContacts::addInterior(const SurfacePath& path, double margin, int shape, const Pair& pair,
+                                  const Division& division) {
+  const int parts = division.parts;
   for (int i = 1; i < parts; ++i)
     for (int j = 1; i + j < parts; ++j) {
       const double u = static_cast<double>(i) / parts, v = static_cast<double>(j) / parts;
-      offer({3, triangles_[pair.triangle], {1 - u - v, u, v}}, path, shape, pair.approach.fraction < 1, margin);
+      offer({3, triangles_[pair.triangle], {1 - u - v, u, v}}, path, shape, pair.approach.fraction < 1, margin,
+            std::min(division.shareOf(i), division.shareOf(j)));
     }
 }
 
-// @param hit  the shape would pass through the wall there
-void SurfaceContacts::offer(const SurfacePoint& point, const SurfacePath& path, int shape, bool hit, double margin) {
+// @param hit    the shape would pass through the wall there
+// @param share  of the distance that it keeps
+void SurfaceContacts::offer(const SurfacePoint& point, const SurfacePath& path, int shape, bool hit, double margin,
+                            double share) {
   const auto placeAt = [&](double when) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k)
@@ -239,7 +264,7 @@ void SurfaceContacts::offer(const SurfacePoint& point, const SurfacePath& path, 
   };
   double clearance = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k)
-    clearance += point.weight[k] * half_thickness_[point.node[k]];
+    clearance += share * point.weight[k] * half_thickness_[point.node[k]];
   const auto gapAt = [&](double when) { return tool_.gap(shape, when, placeAt(when)); };
   const double reach = tool_.radius(shape) + clearance + margin;
   double fraction = fraction_;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <numeric>
 #include <random>
 
@@ -156,19 +157,66 @@ TEST(SurfaceContacts, AMotionAlongTheShapeDoesNoWorkWithTheNormalOfTheMiddle) {
   }
 }
 
+Points stretched(const Points& points, double stretch) {
+  Points wider = points;
+  for (auto& x : wider)
+    for (double& value : x) value *= stretch;
+  return wider;
+}
+
 // Contacts that all touch leave no room for the shape to come to the mid-surface, wherever it is.
 TEST(SurfaceContacts, BetweenVerticesThereAreEnoughForAThinShape) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(-5e-3, 5e-3);
-  for (const double radius : {0.2e-3, 0.5e-3, 2e-3}) {
-    Scene scene(radius, 6);  // 5 mm between vertices
-    for (int trial = 0; trial < 200; ++trial) {
-      const Vector3d at(-0.2 * kThickness, place(random), place(random));
-      const auto poses = scene.posesAt(at);
-      const auto& found = scene.contacts.find(poses, poses, pathOf(scene.start, scene.start), 0, scene.none);
-      ASSERT_FALSE(found.empty()) << "a fifth of the wall from the mid-surface at " << at.transpose();
-      for (const SurfaceContact& contact : found) EXPECT_LT(contact.distance, kThickness / 2 + 1e-12);
+  for (const double radius : {0.2e-3, 0.5e-3, 2e-3, 8e-3})
+    for (const double stretch : {1.0, 1.2, 1.4, 2.0, 2.7}) {
+      Scene scene(radius, 6);  // 5 mm between vertices at rest
+      const Points at_present = stretched(scene.start, stretch);
+      for (int trial = 0; trial < 200; ++trial) {
+        const Vector3d at(-0.2 * kThickness, place(random), place(random));
+        const auto poses = scene.posesAt(at);
+        const auto& found = scene.contacts.find(poses, poses, pathOf(at_present, at_present), 0, scene.none);
+        ASSERT_FALSE(found.empty()) << "a fifth of the wall from the mid-surface at " << at.transpose();
+        for (const SurfaceContact& contact : found) EXPECT_LT(contact.distance, kThickness / 2 + 1e-12);
+      }
     }
+}
+
+using Place = std::pair<std::array<int, 3>, std::array<double, 3>>;  // nodes, weights
+
+/// How deep the points of the wall are in what keeps them off [m].
+std::map<Place, double> depths(Scene& scene, const Vector3d& at, double stretch) {
+  const auto poses = scene.posesAt(at);
+  const Points wall = stretched(scene.start, stretch);
+  std::map<Place, double> depth;
+  for (const SurfaceContact& contact : scene.contacts.find(poses, poses, pathOf(wall, wall), 0, scene.none))
+    if (contact.point.count == 2)
+      depth[{contact.point.node, contact.point.weight}] = contact.clearance - contact.distance;
+  return depth;
+}
+
+// Otherwise a pressed wall never rests: a point that comes takes the load from its neighbours, the edge becomes shorter
+// without it, and it goes again.
+TEST(SurfaceContacts, PointsOfAStretchedEdgeComeAndGoWithoutAJump) {
+  constexpr double kFiner = 1.002, kMost = 2.6;
+  constexpr double kJump = 0.1e-3;  // in one of these steps vertices move by a tenth of it [m]
+  for (const double radius : {2e-3, 8e-3}) {
+    Scene scene(radius, 6);
+    const Vector3d at(-0.1 * kThickness, 2.3e-3, 0.4e-3);  // near the middle of an edge
+    std::map<Place, double> before = depths(scene, at, 1);
+    std::size_t most = before.size();
+    for (double stretch = kFiner; stretch < kMost; stretch *= kFiner) {
+      const std::map<Place, double> now = depths(scene, at, stretch);
+      for (const auto& [place, depth] : now)
+        EXPECT_NEAR(depth, before.count(place) != 0 ? before.at(place) : 0, kJump) << stretch << ", radius " << radius;
+      for (const auto& [place, depth] : before)
+        if (now.count(place) == 0) {
+          EXPECT_LT(depth, kJump) << stretch << ", radius " << radius;
+        }
+      most = std::max(most, now.size());
+      before = now;
+    }
+    EXPECT_GT(most, 0u);
   }
 }
 
