@@ -68,10 +68,11 @@ class Potential {
 
  private:
   void startSums(const std::vector<double>& z, std::vector<float>& gradient);
-  double addElements(std::vector<float>& gradient, double& volume);
+  double addElements(const std::vector<double>& z, std::vector<float>& gradient, double& volume);
+  void sumNodes(const std::vector<double>& z);
   double gasEnergy();
-  double addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient);
-  double addRareTerms(const std::vector<double>& z, std::vector<float>& gradient) const;
+  void addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient);
+  void addRareTerms(const std::vector<double>& z, std::vector<float>& gradient) const;
   double addExtra(const std::vector<double>& z, std::vector<float>& gradient) const;
   double addSprings(const std::vector<double>& z, std::vector<float>& gradient) const;
 
@@ -82,6 +83,7 @@ class Potential {
   double inertia_;
   StepperWorkspace& scratch_;
   double noise_ = 0, elastic_ = 0;
+  double rare_ = 0, body_terms_ = 0;  // energies of the nodes [J]
 };
 
 }  // namespace vibe
