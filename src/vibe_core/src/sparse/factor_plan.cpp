@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
-#include <tuple>
+#include <utility>
 
 #include "sparse/elimination.hpp"
 
@@ -226,40 +226,47 @@ class Planner {
     receive(plan_->root);
   }
 
-  // Large ones first among those that may begin at the same time. Branches have no children.
+  // Forward, those with the longest way to the root first; backward, branches last, and else those near the root first.
   void orderTasks() {
     std::vector<FactorPlan::Task>& tasks = plan_->tasks;
     const int count = static_cast<int>(tasks.size());
-    std::vector<int> task_of(supernodes_.size(), -1), height(count, 0), depth(count, 0), place(count);
-    for (int t = 0; t < count; ++t) std::fill(task_of.begin() + tasks[t].first, task_of.begin() + tasks[t].last, t);
-    for (FactorPlan::Task& task : tasks) {
-      const int parent = plan_->fronts[task.last - 1].parent;
-      task.parent = parent == -1 ? -1 : task_of[parent];
+    findParents();
+    std::vector<std::int64_t> way(count), later(count), depth(count, 0);
+    for (int t = count - 1; t >= 0; --t) {
+      const int parent = tasks[t].parent;
+      way[t] = size(tasks[t]) + (parent == -1 ? 0 : way[parent]);
+      depth[t] = parent == -1 ? 0 : depth[parent] + 1;
+      later[t] = tasks[t].children == 0 ? count : depth[t];
     }
-    for (int t = 0; t < count; ++t) {
-      if (tasks[t].parent == -1) continue;
-      ++tasks[tasks[t].parent].children;
-      height[tasks[t].parent] = std::max(height[tasks[t].parent], height[t] + 1);
-    }
-    for (int t = count - 1; t >= 0; --t) depth[t] = tasks[t].parent == -1 ? 0 : depth[tasks[t].parent] + 1;
     const auto ordered = [&](const auto& key) {
       std::vector<int> order(count);
       std::iota(order.begin(), order.end(), 0);
-      std::sort(order.begin(), order.end(), [&](int a, int b) {
-        return std::make_tuple(key(a), -size(tasks[a]), a) < std::make_tuple(key(b), -size(tasks[b]), b);
-      });
+      std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
       return order;
     };
-    const std::vector<int> forward = ordered([&](int t) { return height[t]; });
+    const std::vector<int> forward = ordered([&](int t) { return -way[t]; });
+    std::vector<int> place(count);
     for (int k = 0; k < count; ++k) place[forward[k]] = k;
-    for (const int t : ordered([&](int t) { return height[t] == 0 ? count : depth[t]; }))
+    for (const int t : ordered([&](int t) { return std::make_pair(later[t], -size(tasks[t])); }))
       plan_->backward.push_back(place[t]);
     std::vector<FactorPlan::Task> sorted;
     for (const int t : forward) {
       sorted.push_back(tasks[t]);
       if (tasks[t].parent != -1) sorted.back().parent = place[tasks[t].parent];
     }
-    tasks = sorted;
+    tasks.swap(sorted);
+  }
+
+  // Of tasks in the order of their supernodes.
+  void findParents() {
+    std::vector<int> task_of(supernodes_.size(), -1);
+    for (std::size_t t = 0; t < plan_->tasks.size(); ++t)
+      std::fill(task_of.begin() + plan_->tasks[t].first, task_of.begin() + plan_->tasks[t].last, static_cast<int>(t));
+    for (FactorPlan::Task& task : plan_->tasks) {
+      const int parent = plan_->fronts[task.last - 1].parent;
+      task.parent = parent == -1 ? -1 : task_of[parent];
+      if (task.parent != -1) ++plan_->tasks[task.parent].children;
+    }
   }
 
   std::int64_t size(const FactorPlan::Task& task) const {
