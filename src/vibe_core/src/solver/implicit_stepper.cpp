@@ -438,7 +438,7 @@ double ImplicitStepper::elasticEnergy(const MotionView& motion, StepperWorkspace
   std::fill(scratch.work.begin(), scratch.work.end(), 0.0F);
   if (!scratch.shared.shares.empty())
     return scratch.shared.evaluate(*body_.shell, *scratch.pool, scratch.last.displacement.data(), scratch.work.data(),
-                                   nullptr, [] {});
+                                   nullptr);
   double energy = 0;
   for (int p = 0; p < body_.elements->pieceCount(); ++p)
     energy += body_.elements->evaluate(p, scratch.last.displacement.data(), scratch.work.data());

@@ -81,33 +81,29 @@ double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gra
   startSums(z, gradient);
   const bool has_gas = gas_.control != GasLoad::Control::None;
   double volume = 0;
-  double value = addElements(z, gradient, volume);
+  double value = addElements(gradient, volume);
   elastic_ = value;
   noise_ = 1e-6 * std::abs(value);
-  addRareTerms(z, gradient);
-  scratch_.last.elastic_value = value += rare_;
+  scratch_.last.elastic_value = value += addRareTerms(z, gradient);
   scratch_.last.elastic_gradient = gradient;
   if (has_gas) {
     scratch_.last.volume = volume;
     value += gasEnergy();
   }
   if (extra_ != nullptr) value += addExtra(z, gradient);
-  value += addSprings(z, gradient);
-  addBodyTerms(z, gradient);
-  return value + body_terms_;
+  return value + addSprings(z, gradient) + addBodyTerms(z, gradient);
 }
 
-double Potential::addElements(const std::vector<double>& z, std::vector<float>& gradient, double& volume) {
+double Potential::addElements(std::vector<float>& gradient, double& volume) {
   const bool has_gas = gas_.control != GasLoad::Control::None;
   const float* const u = scratch_.last.displacement.data();
   SharedEvaluation& shared = scratch_.shared;
   if (!shared.shares.empty()) {
     const double all = shared.evaluate(*body_.shell, *scratch_.pool, u, gradient.data(),
-                                       has_gas ? scratch_.last.volume_gradient.data() : nullptr, [&] { sumNodes(z); });
+                                       has_gas ? scratch_.last.volume_gradient.data() : nullptr);
     for (const double part : shared.volume) volume += part;
     return all;
   }
-  sumNodes(z);
   double value = 0;
   for (int p = 0; p < body_.elements->pieceCount(); ++p) {
     double part = 0;
@@ -164,41 +160,14 @@ void Potential::moveVolume(double change) {
   scratch_.last.pressure = gas_law_.pressure(scratch_.last.volume);
 }
 
-// The energies of springs to the rest position and dead loads, which few bodies have, and of inertia and weight. Four
-// lanes per node, the last of them zero, so that the compiler can use vectors of them.
-void Potential::sumNodes(const std::vector<double>& z) {
-  const bool foundation = !body_.foundation.empty(), load = !body_.load.empty();
-  rare_ = 0;
-  for (int i = 0; i < body_.nodeCount() && (foundation || load); ++i) {
-    if (body_.fixed[i] != 0) continue;
-    const double spring = foundation ? body_.foundation[i] : 0;
-    for (int k = 0; k < 3; ++k) {
-      const double moved = z[4 * i + k] - body_.rest[i][k], pull = load ? body_.load[i][k] : 0;
-      rare_ += (0.5 * spring * moved - pull) * moved;
-    }
-  }
+// Gas pressure, inertia and weight. Four lanes per node, the last of them zero, so that the compiler can
+// use vectors of them.
+double Potential::addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient) {
   const double *const hat = scratch_.z_hat.data(), *const rest = scratch_.rest.data();
-  const double pull[4] = {body_.gravity[0], body_.gravity[1], body_.gravity[2], 0};
-  double twice[4] = {0, 0, 0, 0}, work[4] = {0, 0, 0, 0};
-  for (int i = 0; i < body_.nodeCount(); ++i) {
-    if (body_.fixed[i] != 0) continue;
-    const double mass = body_.mass[i], spring = inertia_ * mass;
-    for (int k = 0; k < 4; ++k) {
-      const double away = z[4 * i + k] - hat[4 * i + k], moved = z[4 * i + k] - rest[4 * i + k];
-      twice[k] += spring * away * away;
-      work[k] += mass * pull[k] * moved;
-    }
-  }
-  body_terms_ = 0.5 * (twice[0] + twice[1] + twice[2]) - (work[0] + work[1] + work[2]);
-}
-
-// The forces of gas pressure, inertia and weight, in four lanes as well.
-void Potential::addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient) {
-  const double* const hat = scratch_.z_hat.data();
   float* const area = scratch_.last.volume_gradient.data();
   const float pressure = gas_.control != GasLoad::Control::None ? static_cast<float>(scratch_.last.pressure) : 0.0F;
   const double pull[4] = {body_.gravity[0], body_.gravity[1], body_.gravity[2], 0};
-  double rounded[4] = {0, 0, 0, 0};
+  double twice[4] = {0, 0, 0, 0}, work[4] = {0, 0, 0, 0}, rounded[4] = {0, 0, 0, 0};
   for (int i = 0; i < body_.nodeCount(); ++i) {
     float *const g = &gradient[4 * i], *const push = &area[4 * i];
     if (body_.fixed[i] != 0) {
@@ -208,26 +177,34 @@ void Potential::addBodyTerms(const std::vector<double>& z, std::vector<float>& g
     const double mass = body_.mass[i], spring = inertia_ * mass;
     const float* const u = &scratch_.last.displacement[4 * i];
     for (int k = 0; k < 4; ++k) {
-      const double force = spring * (z[4 * i + k] - hat[4 * i + k]), weight = mass * pull[k];
+      const double away = z[4 * i + k] - hat[4 * i + k], moved = z[4 * i + k] - rest[4 * i + k];
+      const double force = spring * away, weight = mass * pull[k];
       const float before = g[k] - pressure * push[k];
+      twice[k] += force * away;
+      work[k] += weight * moved;
       rounded[k] += static_cast<double>(std::abs(before * u[k]));
       g[k] = before + static_cast<float>(force - weight);
     }
   }
   noise_ += kRounding * (rounded[0] + rounded[1] + rounded[2]);  // of the displacements, which are single precision
+  return 0.5 * (twice[0] + twice[1] + twice[2]) - (work[0] + work[1] + work[2]);
 }
 
-void Potential::addRareTerms(const std::vector<double>& z, std::vector<float>& gradient) const {
+// Springs to the rest position and dead loads, which few bodies have.
+double Potential::addRareTerms(const std::vector<double>& z, std::vector<float>& gradient) const {
   const bool foundation = !body_.foundation.empty(), load = !body_.load.empty();
-  if (!foundation && !load) return;
+  if (!foundation && !load) return 0;
+  double value = 0;
   for (int i = 0; i < body_.nodeCount(); ++i) {
     if (body_.fixed[i] != 0) continue;
     const double spring = foundation ? body_.foundation[i] : 0;
     for (int k = 0; k < 3; ++k) {
       const double moved = z[4 * i + k] - body_.rest[i][k], pull = load ? body_.load[i][k] : 0;
+      value += (0.5 * spring * moved - pull) * moved;
       gradient[4 * i + k] += static_cast<float>(spring * moved - pull);
     }
   }
+  return value;
 }
 
 }  // namespace vibe

@@ -68,11 +68,10 @@ class Potential {
 
  private:
   void startSums(const std::vector<double>& z, std::vector<float>& gradient);
-  double addElements(const std::vector<double>& z, std::vector<float>& gradient, double& volume);
-  void sumNodes(const std::vector<double>& z);
+  double addElements(std::vector<float>& gradient, double& volume);
   double gasEnergy();
-  void addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient);
-  void addRareTerms(const std::vector<double>& z, std::vector<float>& gradient) const;
+  double addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient);
+  double addRareTerms(const std::vector<double>& z, std::vector<float>& gradient) const;
   double addExtra(const std::vector<double>& z, std::vector<float>& gradient) const;
   double addSprings(const std::vector<double>& z, std::vector<float>& gradient) const;
 
@@ -83,7 +82,6 @@ class Potential {
   double inertia_;
   StepperWorkspace& scratch_;
   double noise_ = 0, elastic_ = 0;
-  double rare_ = 0, body_terms_ = 0;  // energies of the nodes [J]
 };
 
 }  // namespace vibe

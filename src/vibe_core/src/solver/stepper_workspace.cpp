@@ -67,16 +67,14 @@ void StepperWorkspace::use(ThreadPool& threads, const ShellElements* shell) {
   for (auto* v : {&shared.value, &shared.volume}) v->assign(static_cast<std::size_t>(shell->pieceCount()), 0);
 }
 
-void SharedEvaluation::evaluatePart(const ShellElements& shell, int part, const float* displacement, float* gradient,
-                                    float* volume_gradient) {
-  if (part == 0)
-    evaluatePieces(shell, shares.front().part.first_piece, displacement, gradient, volume_gradient);
-  else
-    evaluateShare(shell, shares[static_cast<std::size_t>(part) - 1], displacement, gradient, volume_gradient);
-}
-
-// What the shares have for nodes of others, in the order of one piece after the other.
-double SharedEvaluation::addShares(float* gradient, float* volume_gradient) const {
+double SharedEvaluation::evaluate(const ShellElements& shell, ThreadPool& pool, const float* displacement,
+                                  float* gradient, float* volume_gradient) {
+  pool.parallelFor(1 + static_cast<int>(shares.size()), 1, [&](int k, int) {
+    if (k == 0)
+      evaluatePieces(shell, shares.front().part.first_piece, displacement, gradient, volume_gradient);
+    else
+      evaluateShare(shell, shares[static_cast<std::size_t>(k) - 1], displacement, gradient, volume_gradient);
+  });
   for (const Share& share : shares)
     for (std::size_t i = 0; i < share.part.copies.size(); ++i) {
       const std::size_t from = 4 * (share.part.own.size() + i), to = 4 * static_cast<std::size_t>(share.part.copies[i]);

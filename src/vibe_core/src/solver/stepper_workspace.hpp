@@ -52,26 +52,15 @@ struct SharedEvaluation {
   /// With the bits of one piece after the other, where there are shares.
   /// @param gradient         (4 per node) zeros to add to [N]
   /// @param volume_gradient  the same [m^2]; null: volumes are not wanted, and are 0
-  /// @param beside           is called once, by a thread that has time meanwhile
   /// @returns the energy [J]
-  template <class Beside>
   double evaluate(const ShellElements& shell, ThreadPool& pool, const float* displacement, float* gradient,
-                  float* volume_gradient, const Beside& beside) {
-    const int parts = 1 + static_cast<int>(shares.size());
-    pool.parallelFor(parts + 1, 1, [&](int k, int) {
-      k < parts ? evaluatePart(shell, k, displacement, gradient, volume_gradient) : beside();
-    });
-    return addShares(gradient, volume_gradient);
-  }
+                  float* volume_gradient);
 
  private:
-  void evaluatePart(const ShellElements& shell, int part, const float* displacement, float* gradient,
-                    float* volume_gradient);
   void evaluatePieces(const ShellElements& shell, int last, const float* displacement, float* gradient,
                       float* volume_gradient);
   void evaluateShare(const ShellElements& shell, Share& share, const float* displacement, float* gradient,
                      float* volume_gradient);
-  double addShares(float* gradient, float* volume_gradient) const;
 };
 
 /// Factors that are kept for many workspaces, by what they are about. They are not changed any more.
