@@ -36,9 +36,20 @@ void pause() {
 #endif
 }
 
-void await(sem_t& semaphore) {
+void awaitPost(sem_t& semaphore) {
   while (::sem_wait(&semaphore) != 0 && errno == EINTR) {
   }
+}
+
+template <class Done>
+void awaitOthers(const Done& done) {
+  if (done()) return;
+  const Clock::time_point begin = Clock::now();
+  while (!done())
+    if (Clock::now() - begin < kPatience)
+      pause();
+    else
+      std::this_thread::sleep_for(kNap);
 }
 
 }  // namespace
@@ -69,12 +80,7 @@ class ThreadPool::Crew {
     for (Helper& helper : helpers_) wake(helper);
     while (takePiece()) {
     }
-    const Clock::time_point end = Clock::now();
-    while (done_.load(std::memory_order_acquire) != pieces)
-      if (Clock::now() - end < kPatience)
-        pause();
-      else
-        std::this_thread::sleep_for(kNap);
+    awaitOthers([&] { return done_.load(std::memory_order_acquire) == pieces; });
   }
 
  private:
@@ -133,7 +139,7 @@ class ThreadPool::Crew {
 
   void sleep(Helper& self) const {
     self.sleeps = true;
-    if (!hasWork() || !self.sleeps.exchange(false)) await(self.go);
+    if (!hasWork() || !self.sleeps.exchange(false)) awaitPost(self.go);
   }
 
   const Job* job_ = nullptr;
@@ -148,6 +154,10 @@ ThreadPool::ThreadPool(int threads)
     : threads_(std::max(threads, 1)), crew_(threads_ > 1 ? std::make_unique<Crew>(threads_ - 1) : nullptr) {}
 
 ThreadPool::~ThreadPool() = default;
+
+void ThreadPool::await(const std::atomic<int>& left) {
+  awaitOthers([&] { return left.load(std::memory_order_acquire) == 0; });
+}
 
 void ThreadPool::run(const Job& job) {
   if (crew_ && job.pieces() > 1) return crew_->run(job);
@@ -187,14 +197,14 @@ void BackgroundWorker::wait() {
   if (!busy_) return;
   if (::sem_trywait(&done_) != 0) {
     givePriority(true);
-    await(done_);
+    awaitPost(done_);
   }
   busy_ = false;
 }
 
 void BackgroundWorker::run() {
   while (true) {
-    await(go_);
+    awaitPost(go_);
     if (ends_) return;
     try {
       job_();

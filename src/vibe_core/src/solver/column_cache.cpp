@@ -191,11 +191,14 @@ Eigen::Vector3f product(const HalfColumns& a, const float* y) {
   return sum.total();
 }
 
-void addProduct(const HalfColumns& a, const Eigen::Vector3f& c, float* y) {
+void addProduct(const HalfColumns& a, const Eigen::Vector3f& c, RowRange rows, float* y) {
   const float* value = a.value.data();
-  for (std::size_t i = 0; i < a.begin.size(); ++i) {
-    float* const to = y + a.begin[i];
-    for (int r = 0; r < a.count[i]; ++r, value += 3) to[r] += value[0] * c[0] + value[1] * c[1] + value[2] * c[2];
+  for (std::size_t i = 0; i < a.begin.size(); value += 3 * a.count[i], ++i) {
+    const int begin = a.begin[i], first = std::max(begin, rows.first), last = std::min(begin + a.count[i], rows.last);
+    if (first >= last) continue;
+    const float* from = value + 3 * (first - begin);
+    float* const to = y + first;
+    for (int r = 0; r < last - first; ++r, from += 3) to[r] += from[0] * c[0] + from[1] * c[1] + from[2] * c[2];
   }
 }
 
@@ -305,14 +308,18 @@ void HalfRows::compliances(Eigen::MatrixXd& out) {
 }
 
 // Each slot once, although several rows may share it.
-void HalfRows::values(const ColumnCache& cache, const float* y, Eigen::VectorXd& out) {
-  std::size_t u = 0;
-  for (; u + kProducts <= used_.size(); u += kProducts) {
+void HalfRows::multiply(const ColumnCache& cache, int piece, const float* y) {
+  std::size_t u = static_cast<std::size_t>(piece) * kPiece;
+  const std::size_t last = std::min(u + kPiece, used_.size());
+  for (; u + kProducts <= last; u += kProducts) {
     std::array<const HalfColumns*, kProducts> columns;
     for (std::size_t c = 0; c < kProducts; ++c) columns[c] = &cache.columns(used_[u + c]);
     productsOf(columns, y, &share_[u]);
   }
-  for (; u < used_.size(); ++u) share_[u] = product(cache.columns(used_[u]), y);
+  for (; u < last; ++u) share_[u] = product(cache.columns(used_[u]), y);
+}
+
+void HalfRows::values(Eigen::VectorXd& out) const {
   out.resize(count());
   for (int i = 0; i < count(); ++i) {
     double sum = 0;
@@ -325,14 +332,25 @@ void HalfRows::values(const ColumnCache& cache, const float* y, Eigen::VectorXd&
   }
 }
 
-void HalfRows::addForces(const ColumnCache& cache, const Eigen::VectorXd& force, float* y) {
+void HalfRows::setForces(const Eigen::VectorXd& force) {
   for (Eigen::Vector3f& share : share_) share.setZero();
   for (int i = 0; i < count(); ++i)
     for (int t = first_[static_cast<std::size_t>(i)]; t < end(i) && force[i] != 0; ++t)
       share_[static_cast<std::size_t>(place_[static_cast<std::size_t>(t)])] +=
           (force[i] * coefficient_[static_cast<std::size_t>(t)]).cast<float>();
+}
+
+void HalfRows::addForces(const ColumnCache& cache, RowRange rows, float* y) const {
   for (std::size_t u = 0; u < used_.size(); ++u)
-    if (!share_[u].isZero(0)) addProduct(cache.columns(used_[u]), share_[u], y);
+    if (!share_[u].isZero(0)) addProduct(cache.columns(used_[u]), share_[u], rows, y);
+}
+
+// All columns end with the rows of the root, to which about half is added.
+RowRange HalfRows::part(const ColumnCache& cache, int part, int rows) const {
+  if (used_.empty()) return {rows * part / kParts, rows * (part + 1) / kParts};
+  const HalfColumns& one = cache.columns(used_.front());
+  const int ends[] = {0, one.begin.back(), one.begin.back() + one.count.back() / 2, rows};
+  return {ends[part], ends[part + 1]};
 }
 
 }  // namespace vibe

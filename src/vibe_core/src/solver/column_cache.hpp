@@ -68,8 +68,12 @@ constexpr int kProducts = 4;
 /// together they share what their paths have in common.
 /// @param out  kProducts of them
 void productsOf(const std::array<const HalfColumns*, kProducts>& columns, const float* y, Eigen::Vector3f* out);
-/// Adds the columns times c to a dense vector.
-void addProduct(const HalfColumns& a, const Eigen::Vector3f& c, float* y);
+/// Rows of a dense vector, past the last.
+struct RowRange {
+  int first, last;
+};
+/// Adds the columns times c to some rows of a dense vector.
+void addProduct(const HalfColumns& a, const Eigen::Vector3f& c, RowRange rows, float* y);
 /// Adds weight times the columns b to a.
 void addScaled(const HalfColumns& b, float weight, HalfColumns& a);
 
@@ -87,10 +91,16 @@ class HalfRows {
 
   int count() const { return static_cast<int>(first_.size()); }
   double compliance(int row) const { return compliance_[static_cast<std::size_t>(row)]; }
-  /// Values of the rows of a half-solved vector.
-  void values(const ColumnCache& cache, const float* y, Eigen::VectorXd& out);
-  /// Adds the rows' forces to a half-solved vector.
-  void addForces(const ColumnCache& cache, const Eigen::VectorXd& force, float* y);
+  /// Values of the rows of a half-solved vector: multiply() for every piece, in any order or at the same time.
+  int pieces() const { return (static_cast<int>(used_.size()) + kPiece - 1) / kPiece; }
+  void multiply(const ColumnCache& cache, int piece, const float* y);
+  void values(Eigen::VectorXd& out) const;
+  /// The rows' forces on a half-solved vector, then what they add to some of its rows.
+  void setForces(const Eigen::VectorXd& force);
+  void addForces(const ColumnCache& cache, RowRange rows, float* y) const;
+  /// Ranges of a half-solved vector to which about as much is added; they do not depend on threads.
+  static constexpr int kParts = 3;
+  RowRange part(const ColumnCache& cache, int part, int rows) const;
   /// Compliance between the rows, with their own (rows x rows) [m/N].
   void compliances(Eigen::MatrixXd& out);
 
@@ -99,6 +109,7 @@ class HalfRows {
   int terms() const { return static_cast<int>(slot_.size()); }
   void formGram(ColumnCache& cache);
 
+  static constexpr int kPiece = 2 * kProducts;  // slots that one thread multiplies by in a row
   DenseRowKernels kernels_ = denseRowKernels();
   std::vector<int> first_;  // term of each row
   std::vector<double> compliance_;

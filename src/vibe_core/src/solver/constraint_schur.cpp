@@ -132,7 +132,7 @@ void ConstraintSchur::setGas(const float* direction4, double stiffness, const Fa
     return;
   }
   factor.load(direction4, gas_.data());
-  factor.forward(gas_.data());
+  factor.forward(gas_.data(), *pool_);
   double norm2 = 0;
   for (int i = 0; i < factor.rows(); ++i) norm2 += static_cast<double>(gas_[i]) * gas_[i];
   gas_norm2_ = norm2 + (std::isinf(stiffness) ? 0 : 1 / stiffness);
@@ -149,7 +149,8 @@ void ConstraintSchur::formCompliance() {
   force_.setZero(m);
   gas_row_.setZero(m);
   if (gas_stiffness_ != 0 && m > 0) {
-    rows_.values(*cache_, gas_.data(), gas_row_);
+    multiplyRows(gas_.data(), false);
+    rows_.values(gas_row_);
     for (int j = 0; j < m; ++j) compliance_.col(j) -= (gas_row_[j] / gas_norm2_) * gas_row_;
   }
   if (yields_) compliance_.noalias() += yield_.transpose().lazyProduct(given_);
@@ -268,12 +269,9 @@ void ConstraintSchur::eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, do
   formCompliance();
   const int m = rowCount();
   double gas_residual = 0;
-  if (gas_stiffness_ != 0) {
-    double along = 0;
-    for (std::size_t i = 0; i < gas_.size(); ++i) along += static_cast<double>(gas_[i]) * y[i];
-    gas_residual = swelling - along;
-  }
-  if (m > 0) rows_.values(*cache_, y, row_value_);
+  const double along = multiplyRows(y, gas_stiffness_ != 0);
+  if (gas_stiffness_ != 0) gas_residual = swelling - along;
+  if (m > 0) rows_.values(row_value_);
   moves_ = rhs;
   lost_.setZero(m);
   holds_.assign(static_cast<std::size_t>(m), 1);
@@ -287,13 +285,32 @@ void ConstraintSchur::eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, do
     for (int i = 0; i < m; ++i) pull_ += force_[i] * yield_.col(i);
     for (int i = 0; i < m; ++i) moves_[i] -= fixedDot(given_.col(i), pull_);
   }
-  if (m > 0) rows_.addForces(*cache_, force_, y);
   gas_force_ = 0;
-  if (gas_stiffness_ != 0) {
-    gas_force_ = (gas_residual - (m > 0 ? orderedDot(gas_row_, force_) : 0.0)) / gas_norm2_;
+  if (gas_stiffness_ != 0) gas_force_ = (gas_residual - (m > 0 ? orderedDot(gas_row_, force_) : 0.0)) / gas_norm2_;
+  addForces(y);
+}
+
+// @returns the product of the gas and the vector; 0 without it
+double ConstraintSchur::multiplyRows(const float* y, bool with_gas) {
+  double along = 0;
+  pool_->parallelFor(1 + (rowCount() > 0 ? rows_.pieces() : 0), 1, [&](int k, int) {
+    if (k > 0) return rows_.multiply(*cache_, k - 1, y);
+    for (std::size_t i = 0; i < gas_.size() && with_gas; ++i) along += static_cast<double>(gas_[i]) * y[i];
+  });
+  return along;
+}
+
+// Of rows and gas.
+void ConstraintSchur::addForces(float* y) {
+  const int rows = rowCount(), size = static_cast<int>(gas_.size());
+  if (rows > 0) rows_.setForces(force_);
+  const auto addTo = [&](RowRange range) {
+    if (rows > 0) rows_.addForces(*cache_, range, y);
     const auto f = static_cast<float>(gas_force_);
-    for (std::size_t i = 0; i < gas_.size(); ++i) y[i] += f * gas_[i];
-  }
+    for (int i = range.first; i < range.last && gas_stiffness_ != 0; ++i) y[i] += f * gas_[i];
+  };
+  if (pool_->threads() == 1 || rows == 0) return addTo({0, size});
+  pool_->parallelFor(HalfRows::kParts, 1, [&](int k, int) { addTo(rows_.part(*cache_, k, size)); });
 }
 
 }  // namespace vibe

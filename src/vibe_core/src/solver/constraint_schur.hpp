@@ -9,6 +9,7 @@
 #include "solver/constraint_rows.hpp"
 #include "solver/contact_problem.hpp"
 #include "solver/thread_slides.hpp"
+#include "vibe_core/common/thread_pool.hpp"
 #include "vibe_core/sparse/factor.hpp"
 
 namespace vibe {
@@ -18,6 +19,8 @@ namespace vibe {
 /// rows is Z^T Z.
 class ConstraintSchur {
  public:
+  /// What follows is done by a pool, which must outlive that. The bits do not depend on it.
+  void use(ThreadPool& pool) { pool_ = &pool; }
   /// Forgets everything about the old factor.
   void reset(const Factor& factor);
   /// @param cache  about the same factor, with the attachment points that the threads run between; it must live until
@@ -59,6 +62,8 @@ class ConstraintSchur {
     int first = 0;  // of inequalities_: normal; two tangents where there is friction
     double friction = 0;
   };
+  double multiplyRows(const float* y, bool with_gas);
+  void addForces(float* y);
   void findNodes(const ConstraintRows& rows);
   void addRow(const LinearForm& form, double compliance, const Factor& factor);
   void addContact(const ContactRows& contact, const Factor& factor);
@@ -75,6 +80,8 @@ class ConstraintSchur {
   void solveRows();
   void solveEquations();
 
+  ThreadPool single_;
+  ThreadPool* pool_ = &single_;
   ColumnCache* cache_ = nullptr;  // null: there are no rows
   std::vector<int> nodes_;        // of the rows
   HalfRows rows_;

@@ -14,7 +14,7 @@
 namespace vibe {
 
 namespace {
-// Into which a shell is divided for more than two threads. Design choice: each share costs copies along its border.
+// Into which a shell is divided at most. Design choice: each share costs copies along its border.
 constexpr int kMostShares = 4;
 
 // For a factor, beside the threads of the steps: as many as those have where there are processors for them.
@@ -52,6 +52,7 @@ StepperWorkspace::~StepperWorkspace() {
 
 void StepperWorkspace::use(ThreadPool& threads, const ShellElements* shell) {
   pool = &threads;
+  schur.use(threads);
   if (shared.threads == threads.threads()) return;
   shared.threads = threads.threads();
   if (making) making->finish();
@@ -59,7 +60,7 @@ void StepperWorkspace::use(ThreadPool& threads, const ShellElements* shell) {
   making_threads = spareThreads(shared.threads);
   shared.shares.clear();
   if (shell == nullptr || shared.threads == 1) return;
-  for (ShellPart& part : shell->partsOf(shared.threads == 2 ? 2 : kMostShares)) {
+  for (ShellPart& part : shell->partsOf(std::min(shared.threads, kMostShares))) {
     const std::vector<float> zeros(part.size(), 0.0F);
     shared.shares.push_back({std::move(part), zeros, zeros, zeros});
   }

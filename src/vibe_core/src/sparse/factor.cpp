@@ -1,8 +1,10 @@
 #include "vibe_core/sparse/factor.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "common/lending_pool.hpp"
 #include "sparse/aligned_buffer.hpp"
@@ -36,15 +38,32 @@ PanelSet partOf(PanelSet set, int first, int last) {
   return set;
 }
 
-// What a branch has recorded.
-void addRecord(const FactorPlan& plan, const FactorPlan::Branch& branch, const float* record, float* vector) {
-  record += branch.record;
-  for (int s = branch.first; s < branch.last; ++s) {
-    const std::int32_t* const begin = plan.row_index.data() + plan.steps[s].first_index;
-    const std::int32_t* const end = begin + plan.steps[s].below_nodes;
-    for (const std::int32_t* row = std::lower_bound(begin, end, branch.end_row); row < end; ++row, record += 3)
-      for (int a = 0; a < 3; ++a) vector[*row + a] += record[a];
+std::atomic<int>* countersOfThread(std::size_t count) {
+  thread_local std::vector<std::atomic<int>> counters;
+  if (counters.size() < count) counters = std::vector<std::atomic<int>>(count);
+  return counters.data();
+}
+
+// What others have recorded for its rows.
+void receive(const FactorPlan& plan, const FactorPlan::Task& task, const float* records, float* vector) {
+  for (int r = task.received; r < task.received + task.receipts; ++r) {
+    const FactorPlan::Receipt& receipt = plan.receipts[r];
+    const std::int32_t* const row = plan.row_index.data() + receipt.index;
+    const float* record = records + receipt.record;
+    for (int i = 0; i < receipt.nodes; ++i, record += 3)
+      for (int a = 0; a < 3; ++a) vector[row[i] + a] += record[a];
   }
+}
+
+// The root is divided into parts of the same size, of rows 0 to n of a triangle, or of columns.
+constexpr int kRootParts = 4;
+BlockRange rowsOfPart(int part, int blocks) {
+  const auto end = [=](int k) { return static_cast<int>(std::lround(blocks * std::sqrt(k / double{kRootParts}))); };
+  return {end(part), end(part + 1)};
+}
+BlockRange tilesOfPart(int part, int blocks) {
+  const BlockRange mirrored = rowsOfPart(kRootParts - 1 - part, blocks);
+  return {blocks - mirrored.last, blocks - mirrored.first};
 }
 
 std::int64_t workSize(const FactorPlan& plan) {
@@ -109,16 +128,51 @@ struct Factor::Storage {
     return true;
   }
 
-  template <class Visit>
-  void inBranches(ThreadPool& pool, const Visit& visit) const {
-    pool.parallelFor(static_cast<int>(plan->branches.size()), 1,
-                     [&visit, this](int b, int) { visit(plan->branches[static_cast<std::size_t>(b)]); });
+  void forward(float* vector, ThreadPool& pool) const {
+    float* const records = recordOfThread(plan->record_size);
+    std::atomic<int>* const waits = countersOfThread(plan->tasks.size());
+    for (std::size_t t = 0; t < plan->tasks.size(); ++t)
+      waits[t].store(plan->tasks[t].children, std::memory_order_relaxed);
+    pool.parallelFor(static_cast<int>(plan->tasks.size()), 1, [=](int t, int) {
+      const FactorPlan::Task& task = plan->tasks[t];
+      ThreadPool::await(waits[t]);
+      receive(*plan, task, records, vector);
+      PanelSet part = partOf(panels(), task.first, task.last);
+      part.end_row = task.end_row;
+      part.record = records + task.record;
+      kernels.forward(part, vector, workOfThread<float>(workSize(*plan)));
+      if (task.parent != -1) waits[task.parent].fetch_sub(1, std::memory_order_acq_rel);
+    });
+    if (plan->root.first == plan->root.last) return;
+    receive(*plan, plan->root, records, vector);
+    const PanelStep& step = plan->steps[plan->root.first];
+    float *const own = vector + step.first_row, *const work = workOfThread<float>(workSize(*plan));
+    pool.parallelFor(kRootParts, 1, [=, &step](int k, int) {
+      kernels.forwardRows(panels(), plan->root.first, rowsOfPart(k, step.row_blocks), own, work);
+    });
+    std::copy_n(work, step.columns, own);
   }
-  void runForward(int first, int last, float* vector) const {
-    kernels.forward(partOf(panels(), first, last), vector, workOfThread<float>(workSize(*plan)));
+
+  void backward(float* vector, ThreadPool& pool) const {
+    if (plan->root.first != plan->root.last) backwardInRoot(vector, pool);
+    std::atomic<int>* const busy = countersOfThread(plan->tasks.size());
+    for (std::size_t t = 0; t < plan->tasks.size(); ++t) busy[t].store(1, std::memory_order_relaxed);
+    pool.parallelFor(static_cast<int>(plan->tasks.size()), 1, [=](int k, int) {
+      const int t = plan->backward[k];
+      const FactorPlan::Task& task = plan->tasks[t];
+      if (task.parent != -1) ThreadPool::await(busy[task.parent]);
+      kernels.backward(partOf(panels(), task.first, task.last), vector, workOfThread<float>(workSize(*plan)));
+      busy[t].store(0, std::memory_order_release);
+    });
   }
-  void runBackward(int first, int last, float* vector) const {
-    kernels.backward(partOf(panels(), first, last), vector, workOfThread<float>(workSize(*plan)));
+
+  void backwardInRoot(float* vector, ThreadPool& pool) const {
+    const PanelStep& step = plan->steps[plan->root.first];
+    float* const work = workOfThread<float>(workSize(*plan));
+    std::fill(std::copy_n(vector + step.first_row, step.columns, work), work + step.row_blocks * kTile, 0.0F);
+    pool.parallelFor(kRootParts, 1, [=, &step](int k, int) {
+      kernels.backwardTiles(panels(), plan->root.first, tilesOfPart(k, step.row_blocks), work, vector);
+    });
   }
 
   void take(int s, const FrontPanel<float>& panel, ThreadPool& pool) { pack(s, panel, half, pool); }
@@ -223,33 +277,11 @@ void Factor::backward(float* vector) const {
 }
 
 void Factor::forward(float* vector, ThreadPool& pool) const {
-  if (pool.threads() == 1) return forward(vector);
-  float* const record = recordOfThread(plan_->record_size);
-  storage_->inBranches(pool, [&](const FactorPlan::Branch& branch) {
-    PanelSet part = partOf(storage_->panels(), branch.first, branch.last);
-    part.end_row = branch.end_row;
-    part.record = record + branch.record;
-    storage_->kernels.forward(part, vector, workOfThread<float>(workSize(*plan_)));
-  });
-  int next = 0;
-  for (const FactorPlan::Branch& branch : plan_->branches) {
-    storage_->runForward(next, branch.first, vector);
-    addRecord(*plan_, branch, record, vector);
-    next = branch.last;
-  }
-  storage_->runForward(next, static_cast<int>(plan_->steps.size()), vector);
+  pool.threads() == 1 ? forward(vector) : storage_->forward(vector, pool);
 }
 
 void Factor::backward(float* vector, ThreadPool& pool) const {
-  if (pool.threads() == 1) return backward(vector);
-  int next = static_cast<int>(plan_->steps.size());
-  for (auto branch = plan_->branches.rbegin(); branch != plan_->branches.rend(); ++branch) {
-    storage_->runBackward(branch->last, next, vector);
-    next = branch->first;
-  }
-  storage_->runBackward(0, next, vector);
-  storage_->inBranches(
-      pool, [&](const FactorPlan::Branch& branch) { storage_->runBackward(branch.first, branch.last, vector); });
+  pool.threads() == 1 ? backward(vector) : storage_->backward(vector, pool);
 }
 
 void Factor::solve(const double* b, double* x) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "sparse/elimination.hpp"
 
@@ -28,6 +29,7 @@ class Planner {
     for (std::size_t s = 0; s < supernodes_.size(); ++s) addRuns(static_cast<int>(s));
     addEntries();
     cutBranches();
+    addTasks();
     measureStacks();
     return plan_;
   }
@@ -157,15 +159,119 @@ class Planner {
   }
 
   void addBranch(int first, int last) {
-    const std::int32_t end_row = plan_->steps[last - 1].first_row + plan_->steps[last - 1].columns;
-    plan_->branches.push_back({first, last, end_row, plan_->record_size, 0, 0});
+    plan_->branches.push_back({first, last, 0, 0});
     for (int s = first; s < last; ++s) {
       int& largest = plan_->branches.back().largest_front;
       largest = std::max(largest, plan_->steps[s].columns + 3 * plan_->steps[s].below_nodes);
-      const auto begin = plan_->row_index.begin() + plan_->steps[s].first_index;
-      const auto end = begin + plan_->steps[s].below_nodes;
-      plan_->record_size += 3 * (end - std::lower_bound(begin, end, end_row));
     }
+  }
+
+  void addTasks() {
+    int next = 0;
+    for (const FactorPlan::Branch& branch : plan_->branches) {
+      addTrunk(next, branch.first);
+      addTask(branch.first, branch.last);
+      next = branch.last;
+    }
+    const int count = static_cast<int>(supernodes_.size());
+    addTrunk(next, count);
+    if (next < count) {
+      plan_->root = plan_->tasks.back();
+      plan_->tasks.pop_back();
+    }
+    addReceipts();
+    orderTasks();
+  }
+
+  void addTrunk(int first, int last) {
+    for (int s = first; s < last; ++s) addTask(s, s + 1);
+  }
+
+  void addTask(int first, int last) {
+    const PanelStep& end = plan_->steps[last - 1];
+    plan_->tasks.push_back({first, last, end.first_row + end.columns, plan_->record_size, -1, 0, 0, 0});
+    for (int s = first; s < last; ++s)
+      plan_->record_size += 3 * (endOfIndex(s) - indexFrom(s, plan_->tasks.back().end_row));
+  }
+
+  std::int64_t endOfIndex(int s) const { return plan_->steps[s].first_index + plan_->steps[s].below_nodes; }
+
+  // @returns index of the first node below a supernode that is not before a row
+  std::int64_t indexFrom(int s, std::int32_t row) const {
+    const auto begin = plan_->row_index.begin();
+    return std::lower_bound(begin + plan_->steps[s].first_index, begin + endOfIndex(s), row) - begin;
+  }
+
+  // By the supernode that gives, ascending, as one pass adds.
+  void addReceipts() {
+    std::vector<std::vector<FactorPlan::Receipt>> of(supernodes_.size());
+    for (const FactorPlan::Task& task : plan_->tasks) {
+      std::int64_t record = task.record;
+      for (int s = task.first; s < task.last; ++s)
+        for (std::int64_t i = indexFrom(s, task.end_row); i < endOfIndex(s);) {
+          const int to = plan_->holder[plan_->row_index[i] / 3];
+          const std::int64_t end = indexFrom(s, plan_->steps[to].first_row + plan_->steps[to].columns);
+          of[to].push_back({record, i, static_cast<int>(end - i)});
+          record += 3 * (end - i);
+          i = end;
+        }
+    }
+    const auto receive = [&](FactorPlan::Task& task) {
+      task.received = static_cast<int>(plan_->receipts.size());
+      for (int s = task.first; s < task.last; ++s)
+        plan_->receipts.insert(plan_->receipts.end(), of[s].begin(), of[s].end());
+      task.receipts = static_cast<int>(plan_->receipts.size()) - task.received;
+    };
+    for (FactorPlan::Task& task : plan_->tasks) receive(task);
+    receive(plan_->root);
+  }
+
+  // Forward, those with the longest way to the root first; backward, branches last, and else those near the root first.
+  void orderTasks() {
+    std::vector<FactorPlan::Task>& tasks = plan_->tasks;
+    const int count = static_cast<int>(tasks.size());
+    findParents();
+    std::vector<std::int64_t> way(count), later(count), depth(count, 0);
+    for (int t = count - 1; t >= 0; --t) {
+      const int parent = tasks[t].parent;
+      way[t] = size(tasks[t]) + (parent == -1 ? 0 : way[parent]);
+      depth[t] = parent == -1 ? 0 : depth[parent] + 1;
+      later[t] = tasks[t].children == 0 ? count : depth[t];
+    }
+    const auto ordered = [&](const auto& key) {
+      std::vector<int> order(count);
+      std::iota(order.begin(), order.end(), 0);
+      std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
+      return order;
+    };
+    const std::vector<int> forward = ordered([&](int t) { return -way[t]; });
+    std::vector<int> place(count);
+    for (int k = 0; k < count; ++k) place[forward[k]] = k;
+    for (const int t : ordered([&](int t) { return std::make_pair(later[t], -size(tasks[t])); }))
+      plan_->backward.push_back(place[t]);
+    std::vector<FactorPlan::Task> sorted;
+    for (const int t : forward) {
+      sorted.push_back(tasks[t]);
+      if (tasks[t].parent != -1) sorted.back().parent = place[tasks[t].parent];
+    }
+    tasks.swap(sorted);
+  }
+
+  // Of tasks in the order of their supernodes.
+  void findParents() {
+    std::vector<int> task_of(supernodes_.size(), -1);
+    for (std::size_t t = 0; t < plan_->tasks.size(); ++t)
+      std::fill(task_of.begin() + plan_->tasks[t].first, task_of.begin() + plan_->tasks[t].last, static_cast<int>(t));
+    for (FactorPlan::Task& task : plan_->tasks) {
+      const int parent = plan_->fronts[task.last - 1].parent;
+      task.parent = parent == -1 ? -1 : task_of[parent];
+      if (task.parent != -1) ++plan_->tasks[task.parent].children;
+    }
+  }
+
+  std::int64_t size(const FactorPlan::Task& task) const {
+    return plan_->steps[task.last - 1].panel - plan_->steps[task.first].panel +
+           panelSize(plan_->steps[task.last - 1].columns, plan_->steps[task.last - 1].row_blocks);
   }
 
   std::shared_ptr<FactorPlan> plan_;

@@ -35,14 +35,27 @@ class FactorPlan {
     int first_run = 0, run_count = 0;
   };
 
-  /// A subtree of supernodes, which is solved independently of the others. What its forward substitution adds to rows
-  /// beyond it is recorded and added in the order of the supernodes, so that the sums are those of one pass over all.
+  /// A subtree of supernodes, which is independent of the others.
   struct Branch {
-    int first, last;       ///< supernodes, past the last
-    std::int32_t end_row;  ///< past its last row
-    std::int64_t record;   ///< index of its first recorded number
-    std::int64_t stack;    ///< index of its first number among all update matrices
-    int largest_front;     ///< rows
+    int first, last;     ///< supernodes, past the last
+    std::int64_t stack;  ///< index of its first number among all update matrices
+    int largest_front;   ///< rows
+  };
+  /// What one thread substitutes in: a branch, or a supernode of the trunk. What its forward substitution adds to rows
+  /// beyond it is recorded. A supernode of the trunk adds all that was recorded for its rows before it begins, in the
+  /// order of the supernodes, so that the sums are those of one pass over all.
+  struct Task {
+    int first, last;         ///< supernodes, past the last
+    std::int32_t end_row;    ///< past its last row
+    std::int64_t record;     ///< index of its first recorded number
+    int parent, children;    ///< the task with the parent of its last supernode, -1: none or `root`; how many it has
+    int received, receipts;  ///< index into `receipts` and number of what it adds
+  };
+  /// Recorded numbers of one supernode for rows of another.
+  struct Receipt {
+    std::int64_t record;  ///< index of the first number
+    std::int64_t index;   ///< into row_index, of the first node
+    int nodes;
   };
 
   std::shared_ptr<const BlockPattern> pattern;
@@ -55,8 +68,12 @@ class FactorPlan {
   std::vector<Front> fronts;
   std::vector<Entry> entries;
   std::vector<Run> runs;
-  std::vector<Branch> branches;  ///< ascending; the supernodes between and after them are the trunk
-  std::int64_t record_size = 0;  ///< of all branches
+  std::vector<Branch> branches;        ///< ascending; the supernodes between and after them are the trunk
+  std::vector<Task> tasks;             ///< all but `root`, children first, in an order in which few wait for others
+  std::vector<int> backward;           ///< the same, parents first
+  Task root{0, 0, 0, 0, -1, 0, 0, 0};  ///< the last supernode, which threads share by rows; first == last: none
+  std::vector<Receipt> receipts;
+  std::int64_t record_size = 0;  ///< of all tasks
   std::int64_t panel_size = 0;   ///< numbers in total, padding included
   std::int64_t nonzeros = 0;
   std::int64_t stack_size = 0;  ///< of the update matrices, a stack for the trunk and one for each branch [numbers]

@@ -83,6 +83,24 @@ struct PlainKernel {
     for (int s = set.step_count - 1; s >= 0; --s) backwardStep(set, set.steps[s], vector, work);
   }
 
+  static void forwardRows(const PanelSet& set, int step, BlockRange rows, const float* own, float* work) {
+    std::fill(work + rows.first * kTile, work + rows.last * kTile, 0.0F);
+    forEachColumn(set, set.steps[step], [&](int column, int row, const double* number) {
+      if (row < rows.first * kTile || row >= rows.last * kTile) return;
+      for (int i = 0; i < kTile; ++i) work[row + i] += static_cast<float>(number[i]) * own[column];
+    });
+  }
+
+  static void backwardTiles(const PanelSet& set, int step, BlockRange tiles, const float* work, float* vector) {
+    float* const own = vector + set.steps[step].first_row;
+    const int first = tiles.first * kTile, last = std::min(tiles.last * kTile, set.steps[step].columns);
+    std::fill(own + first, own + last, 0.0F);
+    forEachColumn(set, set.steps[step], [&](int column, int row, const double* number) {
+      if (column < first || column >= last) return;
+      for (int i = 0; i < kTile; ++i) own[column] += static_cast<float>(number[i]) * work[row + i];
+    });
+  }
+
   static void stepOfThree(const PanelSet& set, int step, int, float* vectors, float* work) {
     for (int k = 0; k < 3; ++k) forwardStep<float>(set, set.steps[step], vectors + k, 3, work, nullptr);
   }
@@ -91,7 +109,8 @@ struct PlainKernel {
 }  // namespace
 
 PanelKernels doubleKernels() {
-  return {PlainKernel::forward<float>, PlainKernel::backward<float>, PlainKernel::stepOfThree};
+  return {PlainKernel::forward<float>, PlainKernel::backward<float>, PlainKernel::stepOfThree, PlainKernel::forwardRows,
+          PlainKernel::backwardTiles};
 }
 
 void solveDouble(const PanelSet& set, double* vector, double* work) {

@@ -45,6 +45,11 @@ struct PanelSet {
   float* record = nullptr;
 };
 
+/// Blocks of 8 rows, or tiles of 8 columns, past the last.
+struct BlockRange {
+  int first, last;
+};
+
 /// The operations of a kernel on one vector, or on three interleaved ones (x0 y0 z0 x1 ...). `work` holds the rows of
 /// the largest supernode in whole blocks, three times for `path`.
 struct PanelKernels {
@@ -52,6 +57,10 @@ struct PanelKernels {
   void (*backward)(const PanelSet& set, float* vector, float* work);
   /// One step of the forward substitution of three vectors whose rows before `from` are zero.
   void (*stepOfThree)(const PanelSet& set, int step, int from, float* vectors, float* work);
+  /// Some rows of a step's product W y1 [8 per block], to `work`; the parts of a step are independent of each other.
+  void (*forwardRows)(const PanelSet& set, int step, BlockRange rows, const float* own, float* work);
+  /// Some columns of a step's product Wt work, to their rows of the vector; the parts are independent too.
+  void (*backwardTiles)(const PanelSet& set, int step, BlockRange tiles, const float* work, float* vector);
 };
 
 PanelKernels halfKernels(KernelPath path);

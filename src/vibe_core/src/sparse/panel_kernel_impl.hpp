@@ -127,19 +127,28 @@ struct PanelKernel {
     }
   }
 
+  // rows of some blocks of the product of a panel with its own rows
+  static void forwardRows(const PanelSet& set, const PanelStep& step, BlockRange rows, const float* own, float* work) {
+    const Number* p = static_cast<const Number*>(set.numbers) + step.panel;
+    const float* scale = set.column_scale + step.first_row;
+    const int last = rows.last * kTile < step.columns ? rows.last * kTile : step.columns;
+    for (int column = 0, block = 0; column < last; column += kTile, ++block) {
+      const int width = step.columns - column < kTile ? step.columns - column : kTile;
+      const int first = rows.first > block ? rows.first : block;
+      const Number* from = p + static_cast<std::ptrdiff_t>(kTile * width) * (first - block);
+      if (column == 0)
+        forwardTile<true>(width, from, rows.last - first, own, scale, work + first * kTile, set.ahead);
+      else
+        forwardTile<false>(width, from, rows.last - first, own + column, scale + column, work + first * kTile,
+                           set.ahead);
+      p += kTile * width * (step.row_blocks - block);
+    }
+  }
+
   // @returns where the next step records
   static float* forwardStep(const PanelSet& set, const PanelStep& step, float* vector, float* work, float* record) {
-    const Number* p = static_cast<const Number*>(set.numbers) + step.panel;
     float* own = vector + step.first_row;
-    const float* scale = set.column_scale + step.first_row;
-    for (int column = 0, blocks = step.row_blocks; column < step.columns; column += kTile, --blocks) {
-      const int width = step.columns - column < kTile ? step.columns - column : kTile;
-      if (column == 0)
-        forwardTile<true>(width, p, blocks, own, scale, work, set.ahead);
-      else
-        forwardTile<false>(width, p, blocks, own + column, scale + column, work + column, set.ahead);
-      p += kTile * width * blocks;
-    }
+    forwardRows(set, step, {0, step.row_blocks}, own, work);
     for (int i = 0; i < step.columns; ++i) own[i] = work[i];
     const float* update = work + step.columns;
     const std::int32_t *index = set.row_index + step.first_index, *end = index + step.below_nodes;
@@ -213,17 +222,24 @@ struct PanelKernel {
     for (float* end = work + step.row_blocks * kTile; below < end; ++below) *below = 0;
   }
 
-  static void backwardStep(const PanelSet& set, const PanelStep& step, float* vector, float* work) {
-    gather(set, step, vector, work);
-    const Number* end = static_cast<const Number*>(set.numbers) + step.panel + panelSize(step.columns, step.row_blocks);
-    const int last_tile = (step.columns - 1) / kTile;
-    for (int tile = last_tile; tile >= 0; --tile) {
+  // own rows of some tiles, from all rows of the supernode
+  static void backwardTiles(const PanelSet& set, const PanelStep& step, BlockRange tiles, const float* work,
+                            float* vector) {
+    const Number* end =
+        static_cast<const Number*>(set.numbers) + step.panel +
+        panelSize(tiles.last * kTile < step.columns ? tiles.last * kTile : step.columns, step.row_blocks);
+    for (int tile = tiles.last - 1; tile >= tiles.first; --tile) {
       const int column = tile * kTile, blocks = step.row_blocks - tile;
-      const int width = tile == last_tile ? step.columns - column : kTile;
+      const int width = step.columns - column < kTile ? step.columns - column : kTile;
       backwardTile(width, end, blocks, work + column, set.column_scale + step.first_row + column,
                    vector + step.first_row + column, set.ahead);
       end -= kTile * width * blocks;
     }
+  }
+
+  static void backwardStep(const PanelSet& set, const PanelStep& step, float* vector, float* work) {
+    gather(set, step, vector, work);
+    backwardTiles(set, step, {0, (step.columns + kTile - 1) / kTile}, work, vector);
   }
 
   static void backward(const PanelSet& set, float* vector, float* work) {
@@ -283,7 +299,15 @@ struct PanelKernel {
     }
   }
 
-  static PanelKernels functions() { return {forward, backward, stepOfThree}; }
+  static void rowsOf(const PanelSet& set, int step, BlockRange rows, const float* own, float* work) {
+    forwardRows(set, set.steps[step], rows, own, work);
+  }
+
+  static void tilesOf(const PanelSet& set, int step, BlockRange tiles, const float* work, float* vector) {
+    backwardTiles(set, set.steps[step], tiles, work, vector);
+  }
+
+  static PanelKernels functions() { return {forward, backward, stepOfThree, rowsOf, tilesOf}; }
 };
 
 }  // namespace

@@ -286,6 +286,14 @@ TEST(ConstraintSchur, GasIsAMatrixOfRankOne) {
   EXPECT_LT(difference(system.schur.forces(), force), 1e-4);
   EXPECT_LT(difference(x, inverse * (system.b + j.transpose() * force)), 1e-4);
   EXPECT_NEAR(system.schur.gasForce(), -stiffness * system.gas.dot(x), 1e-3 * std::abs(system.schur.gasForce()));
+  for (const int threads : {2, 3, 5}) {
+    ThreadPool pool(threads);
+    system.schur.use(pool);
+    system.schur.setGas(system.four(system.gas).data(), stiffness, *system.factor);
+    EXPECT_EQ(system.solve(rhs), x) << threads << " threads";
+  }
+  ThreadPool single;
+  system.schur.use(single);
   // negative control: the gas has an effect, and is gone when it is taken away
   EXPECT_GT(difference(system.inverse * system.b, inverse * system.b), 0.01);
   system.schur.setGas(nullptr, 0, *system.factor);

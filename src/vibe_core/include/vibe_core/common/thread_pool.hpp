@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <memory>
 
 namespace vibe {
@@ -22,6 +23,9 @@ class ThreadPool {
     run({count, grain, &body,
          [](const void* of, int first, int last) { (*static_cast<const Body*>(of))(first, last); }});
   }
+
+  /// Waits until a count is 0, for a piece that needs what pieces before it do.
+  static void await(const std::atomic<int>& left);
 
  private:
   struct Job {

@@ -73,7 +73,7 @@ class Factor {
   /// L^-1, in place. load, forward, backward and store together solve A x = b.
   void forward(float* vector) const;
   void backward(float* vector) const;  ///< L^-T, in place
-  /// The same bits by the threads of a pool, which share the branches of the elimination tree.
+  /// The same bits by the threads of a pool, which share the elimination tree and the rows of its root.
   void forward(float* vector, ThreadPool& pool) const;
   void backward(float* vector, ThreadPool& pool) const;  ///< like forward() by threads
   /// Complete solve with arithmetic and storage in double precision; slow, for checks. Interleaved (3 * nodes).
