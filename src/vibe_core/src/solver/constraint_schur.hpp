@@ -79,6 +79,7 @@ class ConstraintSchur {
   std::vector<int> nodes_;        // of the rows
   HalfRows rows_;
   bool formed_ = false;       // the compliance is that of the rows and the gas
+  bool blocks_formed_ = false;  // what eliminate() makes of it
   bool rows_formed_ = false;  // row_compliance_ is that of the rows
   Eigen::VectorXd row_value_;
   std::vector<int> equations_;     // row numbers: those of equations, then of springs
