@@ -77,9 +77,8 @@ void NearTriangles::find(const SweptTool& tool, const SurfacePath& path, double 
 bool NearTriangles::holds(const SweptTool& tool, const SurfacePath& path, double reach) {
   if (listed_ < 0) return false;
   const std::size_t vertices = wall_[0].size();
-  const double wall =
-      kEdgeMove * longestWay({wall_[0].data(), wall_[1].data(), wall_[2].data()}, path.from, vertices) +
-      longestWay(path.from, path.to, vertices);
+  const double wall = kEdgeMove * longestWay({wall_[0].data(), wall_[1].data(), wall_[2].data()}, path.from, vertices) +
+                      longestWay(path.from, path.to, vertices);
   bool all = true;
   for (int s = 0; s < tool.count(); ++s) {
     const Place& before = tool_[s];
