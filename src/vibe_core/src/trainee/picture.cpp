@@ -44,10 +44,9 @@ Path pathOfNeedle(const Model& model, const TraineeHand::Joints& joints, const E
 
 // A bit for each side of a box beyond which a point lies.
 std::uint8_t sidesBeyond(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& p) {
-  int sides = 0;
-  for (int k = 0; k < 3; ++k)
-    sides |= ((p[k] < box.min()[k]) | (p[k] > box.max()[k]) << 1) << 2 * k;
-  return static_cast<std::uint8_t>(sides);
+  const Eigen::Vector3d &low = box.min(), &high = box.max();
+  return static_cast<std::uint8_t>((p.x() < low.x()) | (p.x() > high.x()) << 1 | (p.y() < low.y()) << 2 |
+                                   (p.y() > high.y()) << 3 | (p.z() < low.z()) << 4 | (p.z() > high.z()) << 5);
 }
 
 // All triangles but those with three corners beyond one side of a box.
@@ -77,17 +76,18 @@ PartOfWall partWithin(const Eigen::AlignedBox3d& box, const std::vector<std::arr
 /// Where a particle of the wall is imagined.
 using Imagined = std::function<Eigen::Vector3d(int)>;
 
-// @returns the distance of a point from the farther end
-double reachTo(const Eigen::Vector3d& p, const Path& path) {
-  return std::sqrt(std::max((p - path.first).squaredNorm(), (p - path.second).squaredNorm()));
+// @returns the square of the distance of a point from the farther end
+double reach2To(const Eigen::Vector3d& p, const Path& path) {
+  return std::max((p - path.first).squaredNorm(), (p - path.second).squaredNorm());
 }
 
-// deepestPoint() looks no farther from the path than `reach`, in which some particle is imagined from both ends.
+// deepestPoint() looks no farther from the path than some particle is imagined from both ends.
+// @param reach2  square of such a distance
 // @param pull  each particle is imagined on the way by this from where it is
 std::optional<NeedleView> viewOfNeedle(const Model& model, const std::vector<Eigen::Vector3d>& wall, const Path& path,
-                                       double reach, const Eigen::Vector3d& pull, const Imagined& imagined) {
+                                       double reach2, const Eigen::Vector3d& pull, const Imagined& imagined) {
   const auto& triangles = model.organ.surface.triangles;
-  reach += kReachSpare;
+  const double reach = std::sqrt(reach2) + kReachSpare;
   const Eigen::AlignedBox3d box(path.first.cwiseMin(path.second).array() - reach - pull.array().max(0),
                                 path.first.cwiseMax(path.second).array() + reach - pull.array().min(0));
   PartOfWall part = partWithin(box, triangles, wall);
@@ -103,8 +103,8 @@ std::optional<NeedleView> viewOfNeedle(const Model& model, const std::vector<Eig
   for (int corner : triangles[triangle]) view.thickness += model.organ.thickness[corner] / 3;
   view.depth = deepest.distance + 0.5 * view.thickness;
   const auto& [a, b, c] = part.triangles[deepest.triangle];
-  view.where = nearestIn(triangle, deepest.point, view_of_wall.position(a), view_of_wall.position(b),
-                         view_of_wall.position(c));
+  view.where =
+      nearestIn(triangle, deepest.point, view_of_wall.position(a), view_of_wall.position(b), view_of_wall.position(c));
   return view;
 }
 
@@ -112,9 +112,9 @@ std::optional<NeedleView> viewOfNeedle(const Model& model, const std::vector<Eig
 
 std::optional<NeedleView> lookAtNeedle(const Model& model, const Observation& seen) {
   const Path path = pathOfNeedle(model, seen.joints, seen.tip, seen.tip_turn);
-  double reach = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& p : seen.wall) reach = std::min(reach, reachTo(p, path));
-  return viewOfNeedle(model, seen.wall, path, reach, Eigen::Vector3d::Zero(), [&](int v) { return seen.wall[v]; });
+  double reach2 = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& p : seen.wall) reach2 = std::min(reach2, reach2To(p, path));
+  return viewOfNeedle(model, seen.wall, path, reach2, Eigen::Vector3d::Zero(), [&](int v) { return seen.wall[v]; });
 }
 
 double distanceOfWall(const Eigen::Vector3d& place, const Model& model, const Observation& seen) {
@@ -148,9 +148,9 @@ std::optional<NeedleView> imagineNeedle(const Model& model, const Observation& s
     return seen.wall[v] + following((seen.wall[v] - held).squaredNorm(), none2) * pull;
   };
   const Path path = pathOfNeedle(model, seen.joints, tip, draw.turn);
-  double reach = std::numeric_limits<double>::infinity();
-  for (const int v : triangles[draw.held.triangle]) reach = std::min(reach, reachTo(imagined(v), path));
-  std::optional<NeedleView> view = viewOfNeedle(model, seen.wall, path, reach, pull, imagined);
+  double reach2 = std::numeric_limits<double>::infinity();
+  for (const int v : triangles[draw.held.triangle]) reach2 = std::min(reach2, reach2To(imagined(v), path));
+  std::optional<NeedleView> view = viewOfNeedle(model, seen.wall, path, reach2, pull, imagined);
   if (view) view->outward = outward;
   return view;
 }
