@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::size_t kBallGroup = 16;  // balls of a group. Design choice: a patch about as wide as a shape [1]
 constexpr double kBallRounding = 1e-9;  // far above that of a position in double precision [m]
-// Distance up to which pairs are listed, beyond what the step itself needs. Design choice: a wall at 50 mm/s and steps
-// of a millisecond need another list after 15 of them [m].
+// Distance up to which pairs are listed, beyond what the step itself needs. Design choice: a press in steps of a
+// millisecond needs another list after some 30 searches [m].
 constexpr double kSpare = 4e-3;
 // Centre and radius together: |a + b + c| / 3 + |2 a - b - c| / 3 for three moves of length 1 is at most the root of 3,
 // where a and (b + c) / 2 are 120 degrees apart [1].

@@ -23,7 +23,7 @@ namespace {
 
 /// Triangles of a wall with their corners, in numbers of their own.
 struct PartOfWall {
-  std::vector<int> triangle, vertex;  // in the whole, ascending and not
+  std::vector<int> triangle, vertex;  // in the whole, the former ascending
   std::vector<std::array<int, 3>> triangles;
   std::vector<double> x, y, z;  // [m]
 };
