@@ -12,7 +12,7 @@ import tempfile
 import unittest
 from unittest import mock
 
-from vibe_bringup import dataset, places, run
+from vibe_bringup import dataset, places, run, session
 
 PROGRAMS = os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "programs")
 NAMES = sorted(os.listdir(PROGRAMS))
@@ -152,6 +152,11 @@ class Run(OptionsTest):
         ):
             self.refuses(sentence, "run", *words.split())
         self.accepts("run", "--drive", "device", "--config", "file.yaml")
+
+    def test_a_second_thread_steps_where_four_cores_are(self):
+        for cores, threads in ((1, 1), (3, 1), (4, 2), (64, 2)):
+            with mock.patch("os.sched_getaffinity", return_value=set(range(cores))):
+                self.assertEqual(session.stepping_threads(), threads, cores)
 
     def test_a_session_is_not_recorded_over(self):
         os.mkdir("old")

@@ -13,7 +13,6 @@ using Eigen::Index;
 
 constexpr Index kPanel = 8;           // unknowns of a triangular system that are eliminated together
 constexpr Index kAllColumns = 128;    // a product with fewer columns adds up all of them at once
-constexpr Index kSideBySide = 4;      // rows of a product that are added up side by side, each in its order
 constexpr Index kLargeStride = 4000;  // of a matrix whose columns are added up in small groups
 
 /// Even and odd terms are added up apart.
@@ -45,6 +44,18 @@ double dotInFours(const double* a, const double* b, Index n) {
   return sum;
 }
 
+/// Rows of a product side by side, each in its order.
+template <Index kRows>
+void addRows(const MatrixView& a, Index row, Index begin, Index end, const VectorView& x, double factor,
+             Eigen::Ref<Eigen::VectorXd> out) {
+  double sum[kRows] = {};
+  for (Index j = begin; j < end; ++j) {
+    const double* const column = &a.coeffRef(row, j);
+    for (Index r = 0; r < kRows; ++r) sum[r] += column[r] * x[j];
+  }
+  for (Index r = 0; r < kRows; ++r) out[row + r] += factor * sum[r];
+}
+
 void addColumns(const MatrixView& a, const VectorView& x, double factor, Eigen::Ref<Eigen::VectorXd> out) {
   for (Index j = 0; j < a.cols(); ++j) out[j] += factor * dotInPairs(&a.coeffRef(0, j), x.data(), a.rows());
 }
@@ -62,19 +73,9 @@ void addProduct(const MatrixView& a, const VectorView& x, double factor, Eigen::
   for (Index begin = 0; begin < columns; begin += group) {
     const Index end = std::min(columns, begin + group);
     Index i = 0;
-    for (; i + kSideBySide <= a.rows(); i += kSideBySide) {
-      double sum[kSideBySide] = {};
-      for (Index j = begin; j < end; ++j) {
-        const double* const column = &a.coeffRef(i, j);
-        for (Index r = 0; r < kSideBySide; ++r) sum[r] += column[r] * x[j];
-      }
-      for (Index r = 0; r < kSideBySide; ++r) out[i + r] += factor * sum[r];
-    }
-    for (; i < a.rows(); ++i) {
-      double sum = 0;
-      for (Index j = begin; j < end; ++j) sum += a(i, j) * x[j];
-      out[i] += factor * sum;
-    }
+    for (; i + 16 <= a.rows(); i += 16) addRows<16>(a, i, begin, end, x, factor, out);
+    for (; i + 4 <= a.rows(); i += 4) addRows<4>(a, i, begin, end, x, factor, out);
+    for (; i < a.rows(); ++i) addRows<1>(a, i, begin, end, x, factor, out);
   }
 }
 

@@ -10,9 +10,12 @@ namespace {
 
 constexpr std::size_t kBallGroup = 16;  // balls of a group. Design choice: a patch about as wide as a shape [1]
 constexpr double kBallRounding = 1e-9;  // far above that of a position in double precision [m]
-// Distance up to which pairs are listed, beyond what the step itself needs. Design choice: a wall at 50 mm/s and steps
-// of a millisecond need another list after 15 of them [m].
+// Distance up to which pairs are listed, beyond what the step itself needs. Design choice: a press in steps of a
+// millisecond needs another list after some 30 searches [m].
 constexpr double kSpare = 4e-3;
+// Centre and radius together: |a + b + c| / 3 + |2 a - b - c| / 3 for three moves of length 1 is at most the root of 3,
+// where a and (b + c) / 2 are 120 degrees apart [1].
+constexpr double kEdgeMove = 1.7320509;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // @returns the largest distance between two places of a vertex; infinite if one is not finite
@@ -70,11 +73,11 @@ void NearTriangles::find(const SweptTool& tool, const SurfacePath& path, double 
   }
 }
 
-// A wall that has moved by w has moved the centre of a ball by as much, and made its radius larger by up to 2 w.
+// Corners that have moved by up to w have brought the edge of the ball around them nearer by up to kEdgeMove w.
 bool NearTriangles::holds(const SweptTool& tool, const SurfacePath& path, double reach) {
   if (listed_ < 0) return false;
   const std::size_t vertices = wall_[0].size();
-  const double wall = 3 * longestWay({wall_[0].data(), wall_[1].data(), wall_[2].data()}, path.from, vertices) +
+  const double wall = kEdgeMove * longestWay({wall_[0].data(), wall_[1].data(), wall_[2].data()}, path.from, vertices) +
                       longestWay(path.from, path.to, vertices);
   bool all = true;
   for (int s = 0; s < tool.count(); ++s) {
@@ -113,13 +116,9 @@ void NearTriangles::listBalls(const SweptTool& tool, const SurfacePath& path) {
   for (int t = 0; t < static_cast<int>(triangles_.size()); ++t) {
     const auto& n = triangles_[t];
     Ball ball{t, (path.start(n[0]) + path.start(n[1]) + path.start(n[2])) / 3, 0, 0, 0, false};
-    const double gap = gapAlongAxis(tool.box(), ball.centre);
-    if (gap > listed_) {
-      for (const int v : n) ball.radius = std::max(ball.radius, (path.start(v) - ball.centre).squaredNorm());
-      if (gap - listed_ > std::sqrt(ball.radius) + kBallRounding) continue;
-    }
-    measure(tool.box(), path, ball);
-    ball.measured = 0;
+    for (const int v : n) ball.radius = std::max(ball.radius, (path.start(v) - ball.centre).squaredNorm());
+    ball.radius = std::sqrt(ball.radius);
+    if (gapAlongAxis(tool.box(), ball.centre) - listed_ > ball.radius + kBallRounding) continue;
     balls_.push_back(ball);
   }
   groups_.clear();  // triangles that follow each other are mostly neighbours
@@ -135,9 +134,17 @@ void NearTriangles::listBalls(const SweptTool& tool, const SurfacePath& path) {
 }
 
 void NearTriangles::listCandidates(const SweptTool& tool, int shape) {
+  const Eigen::AlignedBox3d& box = tool.box(shape);
+  const bool round = tool.hasSegment(shape);  // others are near where their boxes are
+  const auto [a, b] = tool.segment(shape, 0);
+  const Eigen::Vector3d middle = (a + b) / 2;
+  const double around = (b - a).norm() / 2 + tool.radius(shape) + listed_ + kBallRounding;
   for (const Group& group : groups_) {
-    if (gapAlongAxis(group.box, tool.box(shape)) > listed_) continue;
+    if (gapAlongAxis(group.box, box) > listed_) continue;
+    if (round && group.box.squaredExteriorDistance(box) > listed_ * listed_) continue;
     for (std::size_t i = group.first; i < group.last; ++i) {
+      const double far = around + balls_[i].radius;
+      if (round && (balls_[i].centre - middle).squaredNorm() > far * far) continue;
       const double distance = apart(tool, shape, balls_[i]);
       if (!(distance > listed_)) candidates_.push_back({shape, static_cast<int>(i), distance});
     }

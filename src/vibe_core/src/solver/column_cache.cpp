@@ -1,6 +1,8 @@
 #include "solver/column_cache.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <numeric>
 
 namespace vibe {
 
@@ -89,43 +91,117 @@ void ColumnCache::prepare(const Factor& factor, const std::vector<int>& nodes,
   setAttachments(factor, attachments);
   for (const int node : nodes)
     if (nodes_.size() < kMaxNodes) nodeSlot(factor, node);
-  for (int a = 0; a < slot_count_; ++a)
-    for (int b = 0; b <= a; ++b) gram(a, b);
+  std::vector<int> slots(static_cast<std::size_t>(slot_count_));
+  std::iota(slots.begin(), slots.end(), 0);
+  for (std::size_t a = 0; a < slots.size(); ++a) makeGrams(slots[a], slots, a + 1);
 }
 
-const Eigen::Matrix3f& ColumnCache::gram(int a, int b) {
-  const std::size_t i = at(a, b);
-  if (gram_known_[i] == 0) {
-    gram_[i] = product(columns(a), columns(b));
+void ColumnCache::makeGrams(int one, const std::vector<int>& slots, std::size_t count) {
+  const auto make = [this, one](int slot, const Eigen::Matrix3f& product) {
+    const std::size_t i = at(std::max(one, slot), std::min(one, slot));
+    gram_[i] = slot < one ? Eigen::Matrix3f(product.transpose()) : product;
     gram_known_[i] = 1;
+  };
+  std::array<int, kProducts> slot;
+  std::array<const HalfColumns*, kProducts> column;
+  std::array<Eigen::Matrix3f, kProducts> product;
+  std::size_t waiting = 0;
+  for (std::size_t s = 0; s < count; ++s) {
+    if (gram_known_[at(std::max(one, slots[s]), std::min(one, slots[s]))] != 0) continue;
+    slot[waiting] = slots[s], column[waiting] = &columns(slots[s]);
+    if (++waiting < kProducts) continue;
+    productsOf(column, columns(one), product.data());
+    for (std::size_t c = 0; c < kProducts; ++c) make(slot[c], product[c]);
+    waiting = 0;
   }
-  return gram_[i];
+  for (std::size_t c = 0; c < waiting; ++c) make(slot[c], vibe::product(*column[c], columns(one)));
 }
 
-// Sums in vectors of four, of which the last is no one's: it belongs to the next row.
-Eigen::Matrix3f product(const HalfColumns& a, const HalfColumns& b) {
-  alignas(16) float sum[3][4] = {};
+namespace {
+
+/// The product of two columns, row by row; all rows of a run but the last in vectors of four, of which the last is no
+/// one's: it belongs to the next row.
+struct GramSum {
+  Eigen::Array4f sum[3] = {Eigen::Array4f::Zero(), Eigen::Array4f::Zero(), Eigen::Array4f::Zero()};  // by rows of b
   Eigen::Matrix3f last = Eigen::Matrix3f::Zero();
-  std::size_t i = 0, j = 0;
-  const float *va = a.value.data(), *vb = b.value.data();
-  while (i < a.begin.size() && j < b.begin.size()) {
-    if (a.begin[i] < b.begin[j]) {
-      va += 3 * a.count[i++];
-    } else if (a.begin[i] > b.begin[j]) {
-      vb += 3 * b.count[j++];
-    } else {
-      for (int r = 0; r + 1 < a.count[i]; ++r, va += 3, vb += 3)
-        for (int k = 0; k < 3; ++k)
-          for (int l = 0; l < 4; ++l) sum[k][l] += va[k] * vb[l];
-      for (int k = 0; k < 3; ++k)
-        for (int l = 0; l < 3; ++l) last(k, l) += va[k] * vb[l];
-      va += 3, vb += 3;
-      ++i, ++j;
+
+  void add(const float* a, const float* b) {
+    for (int l = 0; l < 3; ++l) sum[l] += Eigen::Map<const Eigen::Array4f>(a) * b[l];
+  }
+  void addLast(const float* a, const float* b) {
+    for (int l = 0; l < 3; ++l) last.col(l).array() += Eigen::Map<const Eigen::Array3f>(a) * b[l];
+  }
+  /// The first runs of both, as far as they have them in common.
+  void addRuns(const HalfColumns& a, std::size_t a_runs, const HalfColumns& b, std::size_t b_runs) {
+    const float *va = a.value.data(), *vb = b.value.data();
+    std::size_t i = 0, j = 0;
+    while (i < a_runs && j < b_runs) {
+      if (a.begin[i] < b.begin[j]) {
+        va += 3 * a.count[i++];
+      } else if (a.begin[i] > b.begin[j]) {
+        vb += 3 * b.count[j++];
+      } else {
+        for (int r = 0; r + 1 < a.count[i]; ++r, va += 3, vb += 3) add(va, vb);
+        addLast(va, vb);
+        va += 3, vb += 3;
+        ++i, ++j;
+      }
     }
   }
-  for (int k = 0; k < 3; ++k)
-    for (int l = 0; l < 3; ++l) last(k, l) += sum[k][l];
-  return last;
+  Eigen::Matrix3f total() const {
+    Eigen::Matrix3f all = last;
+    for (int l = 0; l < 3; ++l) all.col(l).array() += sum[l].head<3>();
+    return all;
+  }
+};
+
+// @returns the number of runs at the end that all have in common with one
+std::size_t commonRuns(const std::array<const HalfColumns*, kProducts>& columns, const HalfColumns& one) {
+  std::size_t same = 0;
+  for (;; ++same)
+    for (const HalfColumns* other : columns) {
+      const std::size_t runs = other->begin.size();
+      if (same >= runs || same >= one.begin.size() ||
+          other->begin[runs - 1 - same] != one.begin[one.begin.size() - 1 - same] ||
+          other->count[runs - 1 - same] != one.count[one.begin.size() - 1 - same])
+        return same;
+    }
+}
+
+// Where the runs at the end begin.
+const float* valueOfLast(std::size_t runs, const HalfColumns& a) {
+  return a.value.data() + 3 * std::accumulate(a.count.begin(), a.count.end() - static_cast<std::ptrdiff_t>(runs), 0);
+}
+
+}  // namespace
+
+Eigen::Matrix3f product(const HalfColumns& a, const HalfColumns& b) {
+  GramSum sum;
+  sum.addRuns(a, a.begin.size(), b, b.begin.size());
+  return sum.total();
+}
+
+void productsOf(const std::array<const HalfColumns*, kProducts>& columns, const HalfColumns& b, Eigen::Matrix3f* out) {
+  const std::size_t common = commonRuns(columns, b), before = b.begin.size() - common;
+  std::array<GramSum, kProducts> sums{};
+  std::array<const float*, kProducts> va;
+  for (std::size_t c = 0; c < kProducts; ++c) {
+    sums[c].addRuns(*columns[c], columns[c]->begin.size() - common, b, before);
+    va[c] = valueOfLast(common, *columns[c]);
+  }
+  const float* vb = valueOfLast(common, b);
+  for (std::size_t i = before; i < b.begin.size(); ++i, vb += 3) {
+    for (const float* const last = vb + 3 * (b.count[i] - 1); vb != last; vb += 3)
+      for (std::size_t c = 0; c < kProducts; ++c) {
+        sums[c].add(va[c], vb);
+        va[c] += 3;
+      }
+    for (std::size_t c = 0; c < kProducts; ++c) {
+      sums[c].addLast(va[c], vb);
+      va[c] += 3;
+    }
+  }
+  for (std::size_t c = 0; c < kProducts; ++c) out[c] = sums[c].total();
 }
 
 namespace {
@@ -150,24 +226,10 @@ struct ColumnSum {
   Eigen::Vector3f total() const { return sum.head<3>().matrix(); }
 };
 
-// @returns the number of runs at the end that all have in common
-std::size_t commonRuns(const std::array<const HalfColumns*, kProducts>& columns) {
-  const HalfColumns& one = *columns[0];
-  std::size_t same = 0;
-  for (;; ++same)
-    for (const HalfColumns* other : columns) {
-      const std::size_t runs = other->begin.size();
-      if (same >= runs || same >= one.begin.size() ||
-          other->begin[runs - 1 - same] != one.begin[one.begin.size() - 1 - same] ||
-          other->count[runs - 1 - same] != one.count[one.begin.size() - 1 - same])
-        return same;
-    }
-}
-
 }  // namespace
 
 void productsOf(const std::array<const HalfColumns*, kProducts>& columns, const float* y, Eigen::Vector3f* out) {
-  const std::size_t common = commonRuns(columns);
+  const std::size_t common = commonRuns(columns, *columns[0]);
   std::array<ColumnSum, kProducts> sums{};
   for (std::size_t c = 0; c < kProducts; ++c) {
     const HalfColumns& a = *columns[c];
@@ -267,7 +329,8 @@ void HalfRows::finish(ColumnCache& cache) {
 void HalfRows::formGram(ColumnCache& cache) {
   const std::size_t size = 3 * used_.size();
   gram_.resize(size * size);
-  for (std::size_t u = 0; u < used_.size(); ++u)
+  for (std::size_t u = 0; u < used_.size(); ++u) {
+    cache.makeGrams(used_[u], used_, u + 1);
     for (std::size_t v = 0; v <= u; ++v) {
       const bool ordered = used_[u] >= used_[v];
       const Eigen::Matrix3f& g = ordered ? cache.gram(used_[u], used_[v]) : cache.gram(used_[v], used_[u]);
@@ -278,6 +341,7 @@ void HalfRows::formGram(ColumnCache& cache) {
           gram_[(3 * u + i) * size + 3 * v + j] = gram_[(3 * v + j) * size + 3 * u + i] = value;
         }
     }
+  }
 }
 
 void HalfRows::compliances(Eigen::MatrixXd& out) {

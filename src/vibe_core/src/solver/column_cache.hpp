@@ -34,7 +34,10 @@ class ColumnCache {
   /// Orders slots by node, then by attachment point, whatever was first.
   int key(int slot) const { return key_[static_cast<std::size_t>(slot)]; }
   /// Product of the columns of two slots, a >= b: compliance of the point of `a` by a force on that of `b` [m/N].
-  const Eigen::Matrix3f& gram(int a, int b);
+  /// makeGrams() has made it.
+  const Eigen::Matrix3f& gram(int a, int b) const { return gram_[at(a, b)]; }
+  /// Those of a slot with the first ones of a list, as far as they are not known.
+  void makeGrams(int one, const std::vector<int>& slots, std::size_t count);
 
  private:
   static constexpr int kMaxNodes = 512;
@@ -61,12 +64,14 @@ class ColumnCache {
 
 /// Product of two sparse vectors: both consist of whole runs; those on the common part of the paths are the same runs.
 Eigen::Matrix3f product(const HalfColumns& a, const HalfColumns& b);
-/// Product with a dense vector.
-Eigen::Vector3f product(const HalfColumns& a, const float* y);
 constexpr int kProducts = 4;
 /// The same of several at once, with the same bits. Alone, each is a sum in which every term waits for the one before;
 /// together they share what their paths have in common.
 /// @param out  kProducts of them
+void productsOf(const std::array<const HalfColumns*, kProducts>& columns, const HalfColumns& b, Eigen::Matrix3f* out);
+/// Product with a dense vector.
+Eigen::Vector3f product(const HalfColumns& a, const float* y);
+/// Several at once, likewise.
 void productsOf(const std::array<const HalfColumns*, kProducts>& columns, const float* y, Eigen::Vector3f* out);
 /// Rows of a dense vector, past the last.
 struct RowRange {

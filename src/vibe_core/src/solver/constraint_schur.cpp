@@ -142,6 +142,7 @@ void ConstraintSchur::setGas(const float* direction4, double stiffness, const Fa
 void ConstraintSchur::formCompliance() {
   if (formed_) return;
   formed_ = true;
+  blocks_formed_ = false;
   const int m = rowCount();
   if (!rows_formed_) rows_.compliances(row_compliance_);
   rows_formed_ = true;
@@ -154,11 +155,12 @@ void ConstraintSchur::formCompliance() {
     for (int j = 0; j < m; ++j) compliance_.col(j) -= (gas_row_[j] / gas_norm2_) * gas_row_;
   }
   if (yields_) compliance_.noalias() += yield_.transpose().lazyProduct(given_);
-  formBlocks();
 }
 
 // The equations are eliminated from the contacts. Loops, since indexed views of Eigen ask for memory.
 void ConstraintSchur::formBlocks() {
+  if (blocks_formed_) return;
+  blocks_formed_ = true;
   const auto e = static_cast<Eigen::Index>(equations_.size());
   const auto c = static_cast<Eigen::Index>(inequalities_.size());
   if (e > 0) {
@@ -267,6 +269,7 @@ void ConstraintSchur::solveEquations() {
 
 void ConstraintSchur::eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, double swelling, float* y) {
   formCompliance();
+  formBlocks();
   const int m = rowCount();
   double gas_residual = 0;
   const double along = multiplyRows(y, gas_stiffness_ != 0);

@@ -85,8 +85,9 @@ class ConstraintSchur {
   ColumnCache* cache_ = nullptr;  // null: there are no rows
   std::vector<int> nodes_;        // of the rows
   HalfRows rows_;
-  bool formed_ = false;       // the compliance is that of the rows and the gas
-  bool rows_formed_ = false;  // row_compliance_ is that of the rows
+  bool formed_ = false;         // the compliance is that of the rows and the gas
+  bool blocks_formed_ = false;  // what eliminate() makes of it
+  bool rows_formed_ = false;    // row_compliance_ is that of the rows
   Eigen::VectorXd row_value_;
   std::vector<int> equations_;     // row numbers: those of equations, then of springs
   std::vector<int> inequalities_;  // row numbers: normals and tangents of contacts, then pulls of threads

@@ -155,7 +155,7 @@ class Planner {
           imagineNeedle(me_.model(), me_.view(), {held, turn, kHelixOut, drawn, me_.follows});
       if (!needle) break;
       const Eigen::Vector2d miss = missOf(*needle);
-      const double cost = costOf(held, turn, miss.norm(), needle->depth);
+      const double cost = costOf(held, turn, miss.norm(), *needle);
       if (cost < best.cost) best = {held, {}, drawn, miss.norm(), needle->depth, cost, turn, 0};
       held = map_.walk(held, -kStep * miss[0], -kStep * miss[1]);
     }
@@ -206,11 +206,11 @@ class Planner {
     return map_.alongWall(target_, map_.position(needle.where) - map_.position(target_)) + me_.surprise;
   }
 
-  double costOf(const WallPoint& held, const Eigen::Quaterniond& turn, double miss, double depth) const {
+  double costOf(const WallPoint& held, const Eigen::Quaterniond& turn, double miss, const NeedleView& needle) const {
     // of the open arm beyond the wall where the helix takes hold
     const Eigen::Vector3d arm = turn * (openNeedleInTip() - helixInTip(kHelixOut));
-    const double pressed = std::max(0.0, arm.dot(me_.outward(held)));
-    return kMissCost * miss + kThreadCost * onThread(held) + kShallowCost * std::max(0.0, kGoodDepth - depth) +
+    const double pressed = std::max(0.0, arm.dot(needle.outward));
+    return kMissCost * miss + kThreadCost * onThread(held) + kShallowCost * std::max(0.0, kGoodDepth - needle.depth) +
            kPressCost * pressed;
   }
 

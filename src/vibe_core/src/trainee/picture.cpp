@@ -1,8 +1,12 @@
 #include "trainee/picture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -17,13 +21,14 @@ namespace vibe {
 
 namespace {
 
-/// Positions of the wall's particles, by coordinate [m].
-struct Coordinates {
-  explicit Coordinates(const std::vector<Eigen::Vector3d>& wall) : x(wall.size()), y(wall.size()), z(wall.size()) {
-    for (std::size_t v = 0; v < wall.size(); ++v) x[v] = wall[v].x(), y[v] = wall[v].y(), z[v] = wall[v].z();
-  }
-  std::vector<double> x, y, z;
+/// Triangles of a wall with their corners, in numbers of their own.
+struct PartOfWall {
+  std::vector<int> triangle, vertex;  // in the whole, the former ascending
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<double> x, y, z;  // [m]
 };
+
+constexpr double kReachSpare = 1e-6;  // far above rounding, and what deepestPoint() adds to its reach [m]
 
 using Path = std::pair<Eigen::Vector3d, Eigen::Vector3d>;
 
@@ -37,23 +42,79 @@ Path pathOfNeedle(const Model& model, const TraineeHand::Joints& joints, const E
   return {tip + turn * (from_tip * begin), tip + turn * (from_tip * end)};
 }
 
-std::optional<NeedleView> viewOfNeedle(const Model& model, const Coordinates& at, const Path& path) {
+// A bit for each side of a box beyond which a point lies.
+std::uint8_t sidesBeyond(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d &low = box.min(), &high = box.max();
+  return static_cast<std::uint8_t>((p.x() < low.x()) | (p.x() > high.x()) << 1 | (p.y() < low.y()) << 2 |
+                                   (p.y() > high.y()) << 3 | (p.z() < low.z()) << 4 | (p.z() > high.z()) << 5);
+}
+
+// All triangles but those with three corners beyond one side of a box.
+PartOfWall partWithin(const Eigen::AlignedBox3d& box, const std::vector<std::array<int, 3>>& triangles,
+                      const std::vector<Eigen::Vector3d>& wall) {
+  std::vector<std::uint8_t> sides(wall.size());
+  for (std::size_t v = 0; v < wall.size(); ++v) sides[v] = sidesBeyond(box, wall[v]);
+  PartOfWall part;
+  std::vector<int> number(wall.size(), -1);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto& n = triangles[t];
+    if ((sides[n[0]] & sides[n[1]] & sides[n[2]]) != 0) continue;
+    part.triangle.push_back(static_cast<int>(t));
+    std::array<int, 3>& corners = part.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      int& known = number[n[k]];
+      if (known < 0) {
+        known = static_cast<int>(part.vertex.size());
+        part.vertex.push_back(n[k]);
+      }
+      corners[k] = known;
+    }
+  }
+  return part;
+}
+
+/// Where a particle of the wall is imagined.
+using Imagined = std::function<Eigen::Vector3d(int)>;
+
+// @returns the square of the distance of a point from the farther end
+double reach2To(const Eigen::Vector3d& p, const Path& path) {
+  return std::max((p - path.first).squaredNorm(), (p - path.second).squaredNorm());
+}
+
+// deepestPoint() looks no farther from the path than some particle is imagined from both ends.
+// @param reach2  square of such a distance
+// @param pull  each particle is imagined on the way by this from where it is
+std::optional<NeedleView> viewOfNeedle(const Model& model, const std::vector<Eigen::Vector3d>& wall, const Path& path,
+                                       double reach2, const Eigen::Vector3d& pull, const Imagined& imagined) {
   const auto& triangles = model.organ.surface.triangles;
-  const SurfaceView wall{triangles, at.x, at.y, at.z};
-  const DeepestPoint deepest = deepestPoint(wall, path.first, path.second);
+  const double reach = std::sqrt(reach2) + kReachSpare;
+  const Eigen::AlignedBox3d box(path.first.cwiseMin(path.second).array() - reach - pull.array().max(0),
+                                path.first.cwiseMax(path.second).array() + reach - pull.array().min(0));
+  PartOfWall part = partWithin(box, triangles, wall);
+  for (const int v : part.vertex) {
+    const Eigen::Vector3d p = imagined(v);
+    part.x.push_back(p.x()), part.y.push_back(p.y()), part.z.push_back(p.z());
+  }
+  const SurfaceView view_of_wall{part.triangles, part.x, part.y, part.z};
+  const DeepestPoint deepest = deepestPoint(view_of_wall, path.first, path.second);
   if (deepest.triangle < 0) return {};
+  const int triangle = part.triangle[deepest.triangle];
   NeedleView view;
-  for (int corner : triangles[deepest.triangle]) view.thickness += model.organ.thickness[corner] / 3;
+  for (int corner : triangles[triangle]) view.thickness += model.organ.thickness[corner] / 3;
   view.depth = deepest.distance + 0.5 * view.thickness;
-  const auto& [a, b, c] = triangles[deepest.triangle];
-  view.where = nearestIn(deepest.triangle, deepest.point, wall.position(a), wall.position(b), wall.position(c));
+  const auto& [a, b, c] = part.triangles[deepest.triangle];
+  view.where =
+      nearestIn(triangle, deepest.point, view_of_wall.position(a), view_of_wall.position(b), view_of_wall.position(c));
   return view;
 }
 
 }  // namespace
 
 std::optional<NeedleView> lookAtNeedle(const Model& model, const Observation& seen) {
-  return viewOfNeedle(model, Coordinates(seen.wall), pathOfNeedle(model, seen.joints, seen.tip, seen.tip_turn));
+  const Path path = pathOfNeedle(model, seen.joints, seen.tip, seen.tip_turn);
+  double reach2 = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& p : seen.wall) reach2 = std::min(reach2, reach2To(p, path));
+  return viewOfNeedle(model, seen.wall, path, reach2, Eigen::Vector3d::Zero(), [&](int v) { return seen.wall[v]; });
 }
 
 double distanceOfWall(const Eigen::Vector3d& place, const Model& model, const Observation& seen) {
@@ -83,12 +144,15 @@ std::optional<NeedleView> imagineNeedle(const Model& model, const Observation& s
   const Eigen::Vector3d tip = held + kHelixDepth * outward - draw.turn * helixInTip(draw.from);
   const Eigen::Vector3d pull = draw.turn * Eigen::Vector3d(draw.drawn - draw.from, 0, 0);
   const double none2 = draw.follows * draw.follows;
-  Coordinates at(seen.wall);
-  for (std::size_t v = 0; v < seen.wall.size(); ++v) {
-    const double part = following((seen.wall[v] - held).squaredNorm(), none2);
-    at.x[v] += part * pull.x(), at.y[v] += part * pull.y(), at.z[v] += part * pull.z();
-  }
-  return viewOfNeedle(model, at, pathOfNeedle(model, seen.joints, tip, draw.turn));
+  const auto imagined = [&](int v) -> Eigen::Vector3d {
+    return seen.wall[v] + following((seen.wall[v] - held).squaredNorm(), none2) * pull;
+  };
+  const Path path = pathOfNeedle(model, seen.joints, tip, draw.turn);
+  double reach2 = std::numeric_limits<double>::infinity();
+  for (const int v : triangles[draw.held.triangle]) reach2 = std::min(reach2, reach2To(imagined(v), path));
+  std::optional<NeedleView> view = viewOfNeedle(model, seen.wall, path, reach2, pull, imagined);
+  if (view) view->outward = outward;
+  return view;
 }
 
 namespace {

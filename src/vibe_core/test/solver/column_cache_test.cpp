@@ -28,6 +28,7 @@ struct System {
     return sum.cast<float>();
   }
   Eigen::Matrix3f gram(int a, int b) {
+    cache.makeGrams(a, {b}, 1);
     return a >= b ? cache.gram(a, b) : Eigen::Matrix3f(cache.gram(b, a).transpose());
   }
   BlockMatrix matrix;
@@ -90,6 +91,14 @@ TEST(ColumnCache, ProductsOfSeveralColumnsHaveTheBitsOfEach) {
         for (int r = 0; r < columns[c].count[i]; ++r, value += 3)
           for (int k = 0; k < 3; ++k) expected[k] += value[k] * y[columns[c].begin[i] + r];
       EXPECT_EQ(found[c], expected) << nodes[c];
+    }
+    for (const int node : {0, 7, 33}) {
+      HalfColumns other;
+      system.factor->halfColumns(node, other);
+      std::array<Eigen::Matrix3f, kProducts> grams;
+      productsOf(asked, other, grams.data());
+      for (std::size_t c = 0; c < kProducts; ++c) EXPECT_EQ(grams[c], product(columns[c], other)) << nodes[c];
+      EXPECT_EQ(grams[0], product(other, columns[0]).transpose());
     }
   }
 }

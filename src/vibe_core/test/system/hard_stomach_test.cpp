@@ -183,6 +183,18 @@ TEST(HardStomach, ARecoveryDoesNotLeadTheWallThroughTheTool) {
   EXPECT_GE(stomach.count(Event::Kind::Recovery), 1);
 }
 
+// A step says how many of the tool's contacts had no friction or no force, because there were too many; all others, and
+// no more than the work of a step allows, had a row for each direction.
+bool expectLimitOfContacts(const StepReport& report) {
+  constexpr int kWithFriction = 32, kContacts = 128, kOtherRows = 3;  // of what the helix holds
+  if (report.limited > 0)
+    EXPECT_GE(report.rows, 3 * std::min(kWithFriction + report.limited, kContacts));
+  else
+    EXPECT_LE(report.rows, 3 * kWithFriction + kOtherRows);
+  EXPECT_LE(report.rows, 3 * kContacts + kOtherRows);
+  return report.limited > 0;
+}
+
 // From limit to limit, with a hand that feels no force. Where the guard stops the tool, the wall has to make room for
 // it within the step: solved once only, the wall stands still in each of these steps, and in some scenes for good. So
 // it does where contacts that push have no rows: with this seed in 38 of 39 steps in which the guard stopped the tool.
@@ -194,7 +206,7 @@ TEST(HardStomach, WhereTheToolStopsTheWallMakesRoom) {
   stomach.run(0.5);
   std::mt19937 generator(5);
   std::uniform_real_distribution<double> uniform(0, 1);
-  int stopped = 0, stood_still = 0;
+  int stopped = 0, stood_still = 0, limited = 0;
   for (int jump = 0; jump < 20; ++jump) {
     StepInput input;
     for (int j = 0; j < kJointCount; ++j) {
@@ -206,6 +218,7 @@ TEST(HardStomach, WhereTheToolStopsTheWallMakesRoom) {
     for (int k = 0; k < 12; ++k) {
       stomach.state.hand_effort.fill(0);
       stomach.run(stomach.model->scene.step_period, input);
+      limited += expectLimitOfContacts(stomach.workspace->report()) ? 1 : 0;
       const auto& stops = stomach.workspace->report().stopped;
       if (std::all_of(stops.begin(), stops.end(), [](int way) { return way == 0; })) continue;
       ++stopped;
@@ -215,6 +228,8 @@ TEST(HardStomach, WhereTheToolStopsTheWallMakesRoom) {
     }
   }
   RecordProperty("stopped", stopped);
+  RecordProperty("limited", limited);
+  EXPECT_GT(limited, 0);
   EXPECT_GT(stopped, 0);
   EXPECT_LE(stood_still, 3);
 }
