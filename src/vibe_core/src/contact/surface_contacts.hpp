@@ -80,11 +80,9 @@ class SurfaceContacts {
   void addNearest(int shape, const std::vector<char>& excluded);
   double spacing(int shape) const;
   Division divide(int shape, double rest, double length) const;
-  void addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge,
-               const Division& division);
+  void addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge, const Division& division);
   void addInterior(const SurfacePath& path, double margin, int shape, const Pair& pair, const Division& division);
-  void offer(const SurfacePoint& point, const SurfacePath& path, int shape, bool hit, double margin,
-             double share = 1);
+  void offer(const SurfacePoint& point, const SurfacePath& path, int shape, bool hit, double margin, double share = 1);
   void add(const SurfacePoint& point, int shape, double fraction, const TriangleGap& gap, double clearance);
   void addAlong(const SurfacePoint& point, int shape, const Eigen::Vector3d& start, const Eigen::Vector3d& end,
                 const TriangleGap& gap, double clearance);
