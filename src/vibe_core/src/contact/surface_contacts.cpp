@@ -22,9 +22,10 @@ constexpr double kGivesWay = 0.1;
 // Stretch of the wall for which that is so at least, so that edges have the same points from step to step; points are
 // added where the wall is stretched more. Design choice: that of an insufflated stomach [1].
 constexpr double kUsualStretch = 1.15;
-// How much longer than where they begin such an edge is until added points keep the whole distance. Points that came
-// and went at once would take the load from the vertices, the edge would be shorter in the next step without it, and
-// the wall would never come to rest. Design choice: the edge follows a point's distance by less than a third [1].
+// How much longer than where it begins an edge is until an added point in its middle keeps the whole distance. A point
+// that came and went at once would take the load from the vertices, the edge would be shorter in the next step without
+// it, and the wall would never come to rest. Design choice: the edge follows a point's distance by less than a third;
+// with half of this, walls still trembled [1].
 constexpr double kFadeIn = 0.5;
 // Parts of a triangle through which a shape already passes, because it was put there: points within are pushed aside.
 constexpr int kPierced = 4;
@@ -171,18 +172,18 @@ void SurfaceContacts::addBetween(const SurfacePath& path, double margin, int sha
   for (const Pair& pair : pairs_) {
     const std::array<int, 3>& n = triangles_[pair.triangle];
     if (excluded[n[0]] != 0 && excluded[n[1]] != 0 && excluded[n[2]] != 0) continue;
-    Division most;
-    if (pair.approach.nearest == 0) most = {kPierced, kPierced, 1};
+    int most = pair.approach.nearest == 0 ? kPierced : 1;
     for (std::size_t k = 0; k < 3; ++k) {
       const double length = (path.start(n[(k + 1) % 3]) - path.start(n[k])).norm();
-      const Division division = divide(shape, length_[static_cast<std::size_t>(pair.triangle)][k], length);
-      if (most < division) most = division;
+      const int usual = partsOf(shape, kUsualStretch * length_[static_cast<std::size_t>(pair.triangle)][k]);
+      const int parts = std::max(usual, partsOf(shape, length));
+      most = std::max(most, parts);
       const int across = neighbour_[pair.triangle][k];
       if (isDrawnIn(shape, {n[k], n[(k + 1) % 3]}, excluded)) continue;
-      if (division.parts > 1 && !(across >= 0 && pair_of_[across] >= 0 && across < pair.triangle))
-        addEdge(path, margin, shape, pair, static_cast<int>(k), division);
+      if (parts > 1 && !(across >= 0 && pair_of_[across] >= 0 && across < pair.triangle))
+        addEdge(path, margin, shape, pair, static_cast<int>(k), parts, usual == 1 ? shareOfMiddle(shape, length) : 1);
     }
-    if (most.parts > 2 && !isDrawnIn(shape, {n[0], n[1], n[2]}, excluded)) addInterior(path, margin, shape, pair, most);
+    if (most > 2 && !isDrawnIn(shape, {n[0], n[1], n[2]}, excluded)) addInterior(path, margin, shape, pair, most);
   }
 }
 
@@ -205,50 +206,41 @@ void SurfaceContacts::addNearest(int shape, const std::vector<char>& excluded) {
 // Vertices that touch keep the square of the distance of a point between them from the core of a shape at least at
 // touching^2 - sum over edges of w_j w_k length^2, because the square of the distance from a convex set grows no faster
 // than that from a point. In the middle of an even triangle the sum is length^2 / 3.
+int SurfaceContacts::partsOf(int shape, double length) const {
+  return std::clamp(static_cast<int>(std::ceil(length / spacing(shape))), 1, kMaxParts);
+}
+
 double SurfaceContacts::spacing(int shape) const {
   const double radius = tool_.radius(shape), touching = radius + half_, least = radius + kKeptBetweenVertices * half_;
   return std::sqrt(3 * (touching * touching - least * least));
 }
 
-// Points stay where they are when the edge becomes longer; more come between them.
-SurfaceContacts::Division SurfaceContacts::divide(int shape, double rest, double length) const {
-  const double apart = spacing(shape);
-  const int usual = std::clamp(static_cast<int>(std::ceil(kUsualStretch * rest / apart)), 1, kMaxParts);
-  Division division{usual, usual, 1};
-  for (; division.parts < kMaxParts && length > division.parts * apart; division.parts *= 2) {
-    division.whole = division.parts;
-    division.share = std::min(1.0, (length / (division.parts * apart) - 1) / kFadeIn);
-  }
-  return division;
+// Of the distance that a contact keeps, in the middle of an edge that has none at rest. It begins with what the
+// vertices leave there.
+double SurfaceContacts::shareOfMiddle(int shape, double length) const {
+  const double longer = length / spacing(shape) - 1;
+  return kKeptBetweenVertices + (1 - kKeptBetweenVertices) * std::clamp(longer / kFadeIn, 0.0, 1.0);
 }
 
-// Of the distance that a contact keeps.
-double SurfaceContacts::Division::shareOf(int part) const {
-  return part % (parts / whole) == 0 ? 1 : kKeptBetweenVertices + (1 - kKeptBetweenVertices) * share;
-}
-
-void SurfaceContacts::addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge,
-                              const Division& division) {
+void SurfaceContacts::addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge, int parts,
+                              double share) {
   const std::array<int, 3>& n = triangles_[pair.triangle];
   const int across = neighbour_[pair.triangle][static_cast<std::size_t>(edge)];
   const bool hit = pair.approach.fraction < 1 ||
                    (across >= 0 && pair_of_[across] >= 0 && pairs_[pair_of_[across]].approach.fraction < 1);
   int from = n[static_cast<std::size_t>(edge)], to = n[static_cast<std::size_t>((edge + 1) % 3)];
   if (from > to) std::swap(from, to);
-  for (int k = 1; k < division.parts; ++k) {
-    const double weight = static_cast<double>(k) / division.parts;
-    offer({2, {from, to, -1}, {1 - weight, weight, 0}}, path, shape, hit, margin, division.shareOf(k));
+  for (int k = 1; k < parts; ++k) {
+    const double weight = static_cast<double>(k) / parts;
+    offer({2, {from, to, -1}, {1 - weight, weight, 0}}, path, shape, hit, margin, share);
   }
 }
 
-void SurfaceContacts::addInterior(const SurfacePath& path, double margin, int shape, const Pair& pair,
-                                  const Division& division) {
-  const int parts = division.parts;
+void SurfaceContacts::addInterior(const SurfacePath& path, double margin, int shape, const Pair& pair, int parts) {
   for (int i = 1; i < parts; ++i)
     for (int j = 1; i + j < parts; ++j) {
       const double u = static_cast<double>(i) / parts, v = static_cast<double>(j) / parts;
-      offer({3, triangles_[pair.triangle], {1 - u - v, u, v}}, path, shape, pair.approach.fraction < 1, margin,
-            std::min(division.shareOf(i), division.shareOf(j)));
+      offer({3, triangles_[pair.triangle], {1 - u - v, u, v}}, path, shape, pair.approach.fraction < 1, margin);
     }
 }
 

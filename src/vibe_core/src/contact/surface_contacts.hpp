@@ -63,25 +63,17 @@ class SurfaceContacts {
     int triangle;
     ToolApproach approach;
   };
-  /// Of an edge into equal parts. `whole` divides it as well: points between those parts fade in.
-  struct Division {
-    int parts = 1, whole = 1;
-    double share = 1;  ///< of those points, 0: they begin, 1: they are as the others
-    bool operator<(const Division& other) const {
-      return parts < other.parts || (parts == other.parts && share < other.share);
-    }
-    double shareOf(int part) const;
-  };
   double halfThickness(const std::array<int, 3>& node, const Eigen::Vector3d& weight) const;
   void followPairs(const SurfacePath& path, double margin, std::size_t first, std::size_t last);
   void addVertices(const SurfacePath& path, double margin, int shape, const std::vector<char>& excluded);
   bool isDrawnIn(int shape, std::initializer_list<int> vertices, const std::vector<char>& excluded) const;
   void addBetween(const SurfacePath& path, double margin, int shape, const std::vector<char>& excluded);
   void addNearest(int shape, const std::vector<char>& excluded);
+  int partsOf(int shape, double length) const;
   double spacing(int shape) const;
-  Division divide(int shape, double rest, double length) const;
-  void addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge, const Division& division);
-  void addInterior(const SurfacePath& path, double margin, int shape, const Pair& pair, const Division& division);
+  double shareOfMiddle(int shape, double length) const;
+  void addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge, int parts, double share);
+  void addInterior(const SurfacePath& path, double margin, int shape, const Pair& pair, int parts);
   void offer(const SurfacePoint& point, const SurfacePath& path, int shape, bool hit, double margin, double share = 1);
   void add(const SurfacePoint& point, int shape, double fraction, const TriangleGap& gap, double clearance);
   void addAlong(const SurfacePoint& point, int shape, const Eigen::Vector3d& start, const Eigen::Vector3d& end,
