@@ -38,7 +38,8 @@ class GamepadNode : public testing::Test {
     const std::string address = "package://vibe_hardware/config/gamepads/" + mapping;
     node_ = RosGraph::start("gamepad_node", {std::string("_pad:=") + kName, "_mapping:=" + address});
     ASSERT_TRUE(playUntil([this] { return !node_->running() || !command_.position.empty(); })) << "no command";
-    ASSERT_TRUE(node_->running()) << "gamepad_node has ended; see its message above";
+    ASSERT_TRUE(node_->running()) << "gamepad_node has ended with " << node_->ending()
+                                  << "; see its message above, if any";
   }
 
   /// Plays the simulator until the condition holds.

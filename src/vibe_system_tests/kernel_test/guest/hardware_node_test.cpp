@@ -80,7 +80,8 @@ class HardwareNode : public testing::Test {
     inputDevice().plug();
     node_ = RosGraph::start("hardware_node", {std::string("_config:=") + kConfig, "_diagnostic_period:=0.2"});
     ASSERT_TRUE(RosGraph::waitUntil([this] { return !node_->running() || !counts_.empty(); })) << "no message";
-    ASSERT_TRUE(node_->running()) << "hardware_node has ended; see its message above";
+    ASSERT_TRUE(node_->running()) << "hardware_node has ended with " << node_->ending()
+                                  << "; see its message above, if any";
   }
 
   void takeJoints(const sensor_msgs::JointState& message) {

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
+#include <string>
 
 #include <ros/callback_queue.h>
 #include <sys/prctl.h>
@@ -32,8 +33,14 @@ ChildProcess::~ChildProcess() {
 }
 
 bool ChildProcess::running() const {
+  return ending() == "runs";
+}
+
+std::string ChildProcess::ending() const {
   siginfo_t state{};
-  return waitid(P_PID, static_cast<id_t>(pid_), &state, WEXITED | WNOHANG | WNOWAIT) == 0 && state.si_pid == 0;
+  const int failed = waitid(P_PID, static_cast<id_t>(pid_), &state, WEXITED | WNOHANG | WNOWAIT);
+  if (failed == 0 && state.si_pid == 0) return "runs";
+  return (state.si_code == CLD_EXITED ? "exit status " : "signal ") + std::to_string(state.si_status);
 }
 
 namespace {

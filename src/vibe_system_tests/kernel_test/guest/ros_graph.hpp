@@ -20,6 +20,7 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   bool running() const;
+  std::string ending() const;  ///< how it has ended: "runs", "exit status 1", "signal 11"
 
  private:
   pid_t pid_;
