@@ -15,7 +15,7 @@ struct NeedleView {
   double depth = 0;      ///< of the needle below the mucosa; negative: it passes by [m]
   double thickness = 0;  ///< of the wall there, at rest [m]
   WallPoint where;
-  Eigen::Vector3d outward = Eigen::Vector3d::Zero();  ///< of the wall where an imagined helix takes hold
+  Eigen::Vector3d outward = Eigen::Vector3d::Zero();  ///< unit, of the wall where an imagined helix takes hold; 0: none
 };
 
 /// Empty if nothing is near.
