@@ -19,11 +19,11 @@ copyOfTree() {
   local tree
   tree=$(mktemp -d "$scratch/tree with space XXXXXX")
   mkdir -p "$tree/src/vibe_sim/node" "$tree/.ci" "$tree/docs"
-  mkdir -p "$tree"/src/vibe_core/{include/vibe_core,src}/{common,state,solver}
+  mkdir -p "$tree"/src/vibe_core/{include/vibe_core,src}/{program,state,solver}
   cp -r "$root/scripts" "$tree/"
   cp "$root/docs/architecture.md" "$tree/docs/"
-  echo '#include "vibe_core/common/error.hpp"' >"$tree/src/vibe_core/include/vibe_core/state/state.hpp"
-  echo '#include <stdexcept>' >"$tree/src/vibe_core/include/vibe_core/common/error.hpp"
+  echo '#include "vibe_core/program/error.hpp"' >"$tree/src/vibe_core/include/vibe_core/state/state.hpp"
+  echo '#include <stdexcept>' >"$tree/src/vibe_core/include/vibe_core/program/error.hpp"
   echo '#include "vibe_core/state/state.hpp"' >"$tree/src/vibe_core/src/solver/stepper.hpp"
   echo '#include "solver/stepper.hpp"' >"$tree/src/vibe_core/src/solver/stepper.cpp"
   echo "$tree"
@@ -40,11 +40,11 @@ findsRosIn() {
   refuses 1 'not clean: door' bash -c '"$1" --only door 2>&1 >"$2"' - "$tree/scripts/lint" "$tree/said" &&
     grep -F "$1:1:" "$tree/said"
 }
-check 'lint sees ROS in the core' findsRosIn vibe_core/src/common/a.cpp '#include <ros/ros.h>'
-check 'lint sees a message in a public header' findsRosIn vibe_core/include/vibe_core/common/a.hpp \
+check 'lint sees ROS in the core' findsRosIn vibe_core/src/program/a.cpp '#include <ros/ros.h>'
+check 'lint sees a message in a public header' findsRosIn vibe_core/include/vibe_core/program/a.hpp \
   '#include "std_msgs/Header.h"'
 check 'lint sees ROS in a program of the core' findsRosIn vibe_core/programs/a.cpp '#  include <tf2_ros/buffer.h>'
-check 'lint sees ROS in a test of the core' findsRosIn vibe_core/test/common/a_test.cpp '#include <rosbag/bag.h>'
+check 'lint sees ROS in a test of the core' findsRosIn vibe_core/test/program/a_test.cpp '#include <rosbag/bag.h>'
 check 'lint sees ROS in the benchmarks' findsRosIn vibe_benchmarks/src/fem/a.cpp '#include "vibe_msgs/TissueState.h"'
 for header in cv_bridge/cv_bridge image_transport/image_transport camera_info_manager/camera_info_manager \
   diagnostic_updater/diagnostic_updater; do
@@ -66,8 +66,8 @@ findsRoomProblem() {
 }
 check 'lint sees a circle between rooms' \
   findsRoomProblem src/state/a.cpp '#include "solver/stepper.hpp"' 'solver comes after state'
-check 'lint sees a public include that goes up' findsRoomProblem include/vibe_core/common/error.hpp \
-  '#include "vibe_core/state/state.hpp"' 'state comes after common'
+check 'lint sees a public include that goes up' findsRoomProblem include/vibe_core/program/error.hpp \
+  '#include "vibe_core/state/state.hpp"' 'state comes after program'
 check 'lint sees an internal include in a public header' findsRoomProblem include/vibe_core/solver/a.hpp \
   '#include "solver/stepper.hpp"' 'public header includes the internal'
 check 'lint sees an include by bare name' findsRoomProblem src/solver/a.cpp '#include "stepper.hpp"' 'does not name its room'

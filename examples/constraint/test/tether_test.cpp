@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "vibe_core/builder/model_builder.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/constraints/constraint_registry.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulator.hpp"

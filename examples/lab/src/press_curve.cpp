@@ -1,7 +1,7 @@
 // Prints how the force on the tool grows with the insertion: press_curve STUDY.yaml, a file of this lab's own.
 #include <cstdio>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 

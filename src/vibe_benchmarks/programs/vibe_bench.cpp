@@ -11,9 +11,9 @@
 #include "method/method_table.hpp"
 #include "output/result_row.hpp"
 #include "pulling/pulling_table.hpp"
-#include "vibe_core/common/command_line.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/command_line.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace {
 

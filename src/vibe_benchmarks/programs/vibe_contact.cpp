@@ -6,9 +6,9 @@
 #include "contact/contact_table.hpp"
 #include "contact/grip_refinement.hpp"
 #include "contact/hard_cases.hpp"
-#include "vibe_core/common/command_line.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/command_line.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 
 namespace {

@@ -11,9 +11,9 @@
 #include "tetrahedra/tetrahedra.hpp"
 #include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/builder/tissue_registry.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/sparse/factor.hpp"
 

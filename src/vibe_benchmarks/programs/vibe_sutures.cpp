@@ -7,9 +7,9 @@
 #include "suture/outcome_study.hpp"
 #include "suture/pattern_study.hpp"
 #include "suture/set_scenario.hpp"
-#include "vibe_core/common/command_line.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/command_line.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 
 namespace vibe::benchmarks::test {

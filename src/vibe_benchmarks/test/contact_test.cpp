@@ -8,8 +8,8 @@
 #include "contact/contact_run.hpp"
 #include "contact/contact_table.hpp"
 #include "contact_scene.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks::contact_test {
 namespace {

@@ -7,9 +7,9 @@
 #include "suture/pattern_study.hpp"
 #include "suture/set_scenario.hpp"
 #include "suture/suture_session.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/procedure/stitch.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/suture/technique.hpp"
 

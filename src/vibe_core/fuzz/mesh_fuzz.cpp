@@ -8,8 +8,8 @@
 #include "fuzz_input.hpp"
 #include "geometry/mesh_readers.hpp"
 #include "geometry/surface_check.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/foreign_content.hpp"
+#include "vibe_core/files/foreign_content.hpp"
+#include "vibe_core/program/error.hpp"
 
 // Any bytes as a file of each of the four formats: an Error with its reason, or triangles whose corners exist. A glTF
 // finds every file that it names, with the same bytes. The corpus are the files of test/reports.

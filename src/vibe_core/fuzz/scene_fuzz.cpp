@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 
 // Any text as a scene: an Error with its sentence, or a scene that is written and read back to the same text.

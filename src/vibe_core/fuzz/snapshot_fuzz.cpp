@@ -9,8 +9,8 @@
 #include <string>
 
 #include "fuzz_input.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/fnv1a.hpp"
+#include "vibe_core/files/fnv1a.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 
 // Any bytes, and the bytes of a state with some of them changed, as the body of a snapshot with the right header and

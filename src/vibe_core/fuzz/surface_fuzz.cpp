@@ -16,8 +16,8 @@
 #include "geometry/regions.hpp"
 #include "geometry/remesh.hpp"
 #include "geometry/surface_check.hpp"
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/mesh_file.hpp"
+#include "vibe_core/program/error.hpp"
 
 // Any bytes as vertices and triangles, and a small body after moves, cuts and other changes:
 // an Error with its sentence, or a surface that is welded and checked. Of thirty-two, one is then covered evenly with

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/trainee/protocol.hpp"
 #include "vibe_core/trainee/trainee_script.hpp"
 

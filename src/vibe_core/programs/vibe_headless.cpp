@@ -11,12 +11,12 @@
 #include <string>
 #include <utility>
 
-#include "vibe_core/common/command_line.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/metrics/session_outcome.hpp"
 #include "vibe_core/metrics/session_report.hpp"
+#include "vibe_core/program/command_line.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/trainee/protocol.hpp"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "vibe_core/common/command_line.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/command_line.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/suture/technique.hpp"
 #include "vibe_core/suture/technique_table.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cstdlib>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace hardware = vibe::hardware;
 

@@ -8,8 +8,8 @@
 #include <std_msgs/Bool.h>
 
 #include "gamepad_node.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_ros_utils/parameter_reader.hpp"
 
 namespace vibe::hardware {

@@ -7,9 +7,9 @@
 
 #include "hardware_messages.hpp"
 #include "joy_pad.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_hardware/gamepad/pad_recording.hpp"
 #include "vibe_hardware/gamepad/pad_source.hpp"
 #include "vibe_ros_utils/parameter_reader.hpp"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::hardware {
 

@@ -2,8 +2,8 @@
 
 #include <ros/param.h>
 
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_hardware/hid/hidraw_bus.hpp"
 #include "vibe_hardware/hid/socket_bus.hpp"
 #include "vibe_ros_utils/former_names.hpp"

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "vibe_core/common/command_line.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/command_line.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_hardware/emulator/device_server.hpp"
 #include "vibe_hardware/emulator/emulator.hpp"
 #include "vibe_hardware/emulator/hand.hpp"

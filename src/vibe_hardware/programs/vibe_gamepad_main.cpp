@@ -8,9 +8,9 @@
 #include <memory>
 #include <thread>
 
-#include "vibe_core/common/command_line.hpp"
-#include "vibe_core/common/files.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/command_line.hpp"
 #include "vibe_hardware/gamepad/pad_drive.hpp"
 #include "vibe_hardware/gamepad/pad_recording.hpp"
 #include "vibe_hardware/gamepad/pad_source.hpp"

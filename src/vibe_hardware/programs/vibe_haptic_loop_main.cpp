@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "vibe_core/common/command_line.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/command_line.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_hardware/emulator/hand.hpp"
 #include "vibe_hardware/emulator/haptic_loop.hpp"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_ros_utils/wall_clock.hpp"
 
 namespace vibe::latency {

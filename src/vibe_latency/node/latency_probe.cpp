@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <iomanip>
 
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/input/step_input.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_ros_utils/former_names.hpp"
 #include "vibe_ros_utils/parameter_reader.hpp"
 #include "vibe_ros_utils/wall_clock.hpp"

@@ -6,7 +6,7 @@
 
 #include "lamp_watch.hpp"
 #include "latency_probe.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::latency::probe_test {
 namespace {

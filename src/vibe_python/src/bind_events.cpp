@@ -3,8 +3,8 @@
 #include <string>
 
 #include "bindings.hpp"
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/events/event.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::python {
 

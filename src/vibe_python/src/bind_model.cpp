@@ -9,7 +9,7 @@
 #include "bindings.hpp"
 #include "model_handle.hpp"
 #include "vibe_core/builder/model_builder.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 
 namespace vibe::python {

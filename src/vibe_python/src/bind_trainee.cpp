@@ -8,8 +8,8 @@
 #include "input.hpp"
 #include "model_handle.hpp"
 #include "trainee_handle.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/trainee/observation.hpp"
 #include "vibe_core/trainee/protocol.hpp"
 

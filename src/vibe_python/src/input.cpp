@@ -5,7 +5,7 @@
 #include <string>
 
 #include "arrays.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::python {
 

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "bindings.hpp"
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/input/step_input.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::python {
 

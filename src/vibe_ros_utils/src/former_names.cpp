@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::ros_utils {
 namespace {

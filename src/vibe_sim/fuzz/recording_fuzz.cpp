@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "recording/step_input_reader.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 // Any text up to a zero byte as the definition of a recorded message, and any bytes behind it as the message: an Error
 // with its sentence, or a step.

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "bench_scene.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_vision/track/tracker.hpp"
 
 namespace vibe::vision {

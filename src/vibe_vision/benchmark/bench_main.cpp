@@ -3,8 +3,8 @@
 #include <opencv2/core/utility.hpp>
 
 #include "bench_cell.hpp"
-#include "vibe_core/common/command_line.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/command_line.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vision = vibe::vision;
 

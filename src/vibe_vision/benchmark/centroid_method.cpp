@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "method.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_vision/image/camera_model.hpp"
 
 namespace vibe::vision {

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "method.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_vision/predict/predictor.hpp"
 #include "vibe_vision/track/tracker.hpp"
 

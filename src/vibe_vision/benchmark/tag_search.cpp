@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "method.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_vision/image/camera_model.hpp"
 
 namespace vibe::vision {

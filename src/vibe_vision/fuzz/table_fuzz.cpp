@@ -1,7 +1,7 @@
 // sources: src/camera/frame_table.cpp src/calibrate/stop_list.cpp ../vibe_core/src/scene/yaml_source.cpp
 // sources: ../vibe_core/src/scene/yaml_guard.cpp ../vibe_core/src/scene/unit.cpp ../vibe_core/src/scene/words.cpp
-// sources: ../vibe_core/src/common/files.cpp ../vibe_core/src/common/foreign_content.cpp
-// sources: ../vibe_core/src/scene/odd_characters.cpp ../vibe_core/src/common/number_text.cpp
+// sources: ../vibe_core/src/files/files.cpp ../vibe_core/src/files/foreign_content.cpp
+// sources: ../vibe_core/src/scene/odd_characters.cpp ../vibe_core/src/files/number_text.cpp
 // includes: ../vibe_core/src
 // packages: yaml-cpp
 #include <sys/mman.h>
@@ -12,7 +12,7 @@
 #include <string>
 
 #include "camera/frame_table.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/calibrate/stop_list.hpp"
 
 // Any text as a table of frames and as a list of stops: an Error with its sentence, or rows with finite numbers.

@@ -1,14 +1,14 @@
 // sources: src/config/*.cpp src/marker/*.cpp src/image/*.cpp ../vibe_core/src/scene/yaml_source.cpp
 // sources: ../vibe_core/src/scene/yaml_guard.cpp ../vibe_core/src/scene/unit.cpp ../vibe_core/src/scene/words.cpp
-// sources: ../vibe_core/src/common/files.cpp ../vibe_core/src/common/foreign_content.cpp
-// sources: ../vibe_core/src/scene/odd_characters.cpp ../vibe_core/src/common/number_text.cpp
+// sources: ../vibe_core/src/files/files.cpp ../vibe_core/src/files/foreign_content.cpp
+// sources: ../vibe_core/src/scene/odd_characters.cpp ../vibe_core/src/files/number_text.cpp
 // includes: ../vibe_core/src
 // packages: yaml-cpp eigen3
 #include <cmath>
 #include <cstdlib>
 #include <string>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/config/vision_config.hpp"
 
 namespace vision = vibe::vision;

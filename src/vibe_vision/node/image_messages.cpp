@@ -6,7 +6,7 @@
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vision_messages.hpp"
 
 namespace vibe::vision {

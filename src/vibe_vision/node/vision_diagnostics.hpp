@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 #include "vibe_vision/datagram/datagram.hpp"
 #include "vibe_vision/predict/frame_pipeline.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "frame_input.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 
 namespace vibe::vision {
 namespace {

@@ -6,7 +6,7 @@
 #include <cv_bridge/cv_bridge.h>
 #include <sensor_msgs/image_encodings.h>
 
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_ros_utils/former_names.hpp"
 #include "vibe_vision/record/annotation.hpp"
 #include "vision_messages.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/calibrate/calibration_check.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "vibe_core/common/command_line.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/command_line.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 #include "vibe_vision/sheet/marker_sheet.hpp"
 

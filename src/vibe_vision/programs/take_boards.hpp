@@ -7,7 +7,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/calibrate/board_guide.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 

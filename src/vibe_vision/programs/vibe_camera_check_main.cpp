@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "program_options.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/camera/capture.hpp"
 
 namespace vision = vibe::vision;

@@ -7,7 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "program_options.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/sheet/marker_sheet.hpp"
 
 namespace vision = vibe::vision;

@@ -7,7 +7,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "program_options.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
 
 namespace vision = vibe::vision;

@@ -10,8 +10,8 @@
 #include <opencv2/videoio.hpp>
 
 #include "program_options.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 #include "vibe_vision/record/annotation.hpp"
 #include "vibe_vision/record/track_table.hpp"

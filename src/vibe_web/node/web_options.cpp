@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "server/certificate.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_ros_utils/parameter_reader.hpp"
 
 namespace vibe::web {

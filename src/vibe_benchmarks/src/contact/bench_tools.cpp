@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks {
 

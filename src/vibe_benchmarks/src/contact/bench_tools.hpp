@@ -4,10 +4,10 @@
 
 #include <Eigen/Core>
 
-#include "vibe_core/contact/tool_model.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 #include "vibe_core/scene/scene.hpp"
 #include "vibe_core/state/state.hpp"
+#include "vibe_core/tool/tool_model.hpp"
 
 namespace vibe::benchmarks {
 

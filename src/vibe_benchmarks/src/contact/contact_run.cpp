@@ -7,10 +7,10 @@
 #include <limits>
 #include <thread>
 
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/constraints/wall_contacts.hpp"
 #include "vibe_core/model/accounting.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks {
 

@@ -11,11 +11,11 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "vibe_core/contact/tool_crossings.hpp"
-#include "vibe_core/contact/wall_crossings.hpp"
 #include "vibe_core/model/model.hpp"
+#include "vibe_core/self_contact/wall_crossings.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/state/state.hpp"
+#include "vibe_core/tool_contact/tool_crossings.hpp"
 
 namespace vibe::benchmarks {
 

@@ -7,7 +7,7 @@
 #include "contact/bench_tools.hpp"
 #include "suture/suture_session.hpp"
 #include "suture/wall_plan.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks {
 namespace {

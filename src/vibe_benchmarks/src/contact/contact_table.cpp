@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <map>
 
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/machine.hpp"
+#include "vibe_core/arithmetic/machine.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "contact/bench_tools.hpp"
 #include "suture/suture_session.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/rotation.hpp"
+#include "vibe_core/arithmetic/rotation.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks {
 namespace {

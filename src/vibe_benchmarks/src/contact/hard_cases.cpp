@@ -5,8 +5,8 @@
 
 #include "contact/bench_tools.hpp"
 #include "suture/suture_session.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/trainee/trainee_script.hpp"
 
 namespace vibe::benchmarks {

@@ -6,7 +6,7 @@
 #include "contact/hard_cases.hpp"
 #include "suture/suture_session.hpp"
 #include "suture/wall_plan.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "contact/bench_tools.hpp"
 #include "contact/hard_cases.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/random.hpp"
+#include "vibe_core/arithmetic/random.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <sstream>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/unit.hpp"
 #include "vibe_core/scene/words.hpp"
 

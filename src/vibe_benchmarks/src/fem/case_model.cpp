@@ -8,7 +8,7 @@
 
 #include "fem/mesh_generators.hpp"
 #include "tetrahedra/tetrahedra.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/tissue/shell.hpp"
 
 namespace vibe::benchmarks {

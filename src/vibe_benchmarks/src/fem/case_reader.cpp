@@ -5,7 +5,7 @@
 #include <set>
 
 #include "fem/mesh_generators.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/words.hpp"
 
 namespace vibe::benchmarks {

@@ -7,7 +7,7 @@
 #include "fem/case_symmetry.hpp"
 #include "fem/static_path.hpp"
 #include "fem/vibration.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks {
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/sparse/factor.hpp"
 
 namespace vibe::benchmarks {

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "fem/mesh_generators.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/solver/implicit_stepper.hpp"
 #include "vibe_core/tissue/shell.hpp"
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 
 namespace vibe::benchmarks {
 namespace {

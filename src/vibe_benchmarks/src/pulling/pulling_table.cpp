@@ -5,8 +5,8 @@
 
 #include "fem/case_runner.hpp"
 #include "pulling/pulled_plate.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/solver/implicit_stepper.hpp"
 
 namespace vibe::benchmarks {

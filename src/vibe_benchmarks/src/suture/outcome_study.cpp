@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "suture/suture_session.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
 #include "vibe_core/trainee/suture_pattern.hpp"
 

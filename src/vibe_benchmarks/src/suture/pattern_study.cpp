@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "suture/suture_session.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 
 namespace vibe::benchmarks {
 

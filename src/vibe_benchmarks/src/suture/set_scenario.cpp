@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "suture/suture_session.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/suture/technique.hpp"
 
 namespace vibe::benchmarks {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_core/procedure/stitch.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks {
 

@@ -10,7 +10,7 @@
 #include <Eigen/Dense>
 
 #include "tetrahedra/tetrahedron_energy.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks {
 

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "tetrahedra/tetrahedra_worlds.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks::tetrahedra_test {
 namespace {

@@ -8,12 +8,12 @@
 #include <string>
 #include <utility>
 
-#include "common/elementary.hpp"
-#include "common/turn.hpp"
+#include "arithmetic/elementary.hpp"
+#include "arithmetic/turn.hpp"
 #include "geometry/surface_check.hpp"
 #include "scene/size_estimate.hpp"
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/mesh_file.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

@@ -4,15 +4,15 @@
 #include <cstdio>
 #include <numeric>
 
-#include "common/turn.hpp"
+#include "arithmetic/turn.hpp"
 #include "constraints/supports.hpp"
 #include "geometry/regions.hpp"
 #include "tissue/cluster_builder.hpp"
 #include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/builder/tissue_registry.hpp"
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/constraints/gas.hpp"
 #include "vibe_core/procedure/procedure_registry.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

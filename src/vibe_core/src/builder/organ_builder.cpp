@@ -7,16 +7,16 @@
 #include <limits>
 #include <string>
 
+#include "arithmetic/elementary.hpp"
+#include "arithmetic/turn.hpp"
 #include "builder/mesh_import.hpp"
-#include "common/elementary.hpp"
-#include "common/turn.hpp"
 #include "geometry/procedural_stomach.hpp"
 #include "geometry/regions.hpp"
 #include "geometry/remesh.hpp"
 #include "geometry/surface_check.hpp"
 #include "geometry/surface_operators.hpp"
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

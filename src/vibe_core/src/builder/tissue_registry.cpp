@@ -10,7 +10,7 @@
 #include "sparse/factor_plan.hpp"
 #include "tissue/shape_matching.hpp"
 #include "tissue/shell_tissue.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/tissue_choices.hpp"
 #include "vibe_core/scene/words.hpp"
 

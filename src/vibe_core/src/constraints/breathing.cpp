@@ -1,7 +1,7 @@
 #include "vibe_core/constraints/breathing.hpp"
 
-#include "common/elementary.hpp"
-#include "common/turn.hpp"
+#include "arithmetic/elementary.hpp"
+#include "arithmetic/turn.hpp"
 #include "constraints/blocks.hpp"
 #include "constraints/supports.hpp"
 #include "vibe_core/model/model.hpp"

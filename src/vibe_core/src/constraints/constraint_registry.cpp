@@ -4,8 +4,8 @@
 #include <mutex>
 
 #include "constraints/blocks.hpp"
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/model/model.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

@@ -1,7 +1,7 @@
 #include <array>
 #include <cmath>
 
-#include "common/symmetric_eigen.hpp"
+#include "arithmetic/symmetric_eigen.hpp"
 #include "constraints/blocks.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"

@@ -3,8 +3,8 @@
 
 #include "constraints/blocks.hpp"
 #include "constraints/cinching.hpp"
-#include "contact/self_contact.hpp"
 #include "model/step_accounts.hpp"
+#include "self_contact/self_contact.hpp"
 #include "vibe_core/constraints/wall_contacts.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"

@@ -2,8 +2,8 @@
 #include <array>
 
 #include "constraints/blocks.hpp"
-#include "contact/surface_contacts.hpp"
-#include "contact/tool_motion.hpp"
+#include "tool/tool_motion.hpp"
+#include "tool_contact/surface_contacts.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "common/elementary.hpp"
-#include "contact/surface_contacts.hpp"
-#include "contact/tool_motion.hpp"
+#include "arithmetic/elementary.hpp"
 #include "solver/time_scheme.hpp"
+#include "tool/tool_motion.hpp"
+#include "tool_contact/surface_contacts.hpp"
 #include "vibe_core/constraints/constraint_registry.hpp"
 #include "vibe_core/tissue/shell.hpp"
 

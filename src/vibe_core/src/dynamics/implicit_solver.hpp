@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "contact/tool_guard.hpp"
-#include "contact/tool_motion.hpp"
 #include "haptics/impedance_estimator.hpp"
 #include "solver/sum_term.hpp"
+#include "tool/tool_motion.hpp"
+#include "tool_contact/tool_guard.hpp"
 #include "vibe_core/constraints/constraint_registry.hpp"
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_core/model/model.hpp"

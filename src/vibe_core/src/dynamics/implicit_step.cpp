@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
-#include "common/elementary.hpp"
-#include "contact/tool_motion.hpp"
+#include "arithmetic/elementary.hpp"
 #include "geometry/surface_operators.hpp"
 #include "model/step_accounts.hpp"
 #include "solver/stepper_workspace.hpp"
 #include "solver/time_scheme.hpp"
+#include "tool/tool_motion.hpp"
 #include "vibe_core/model/accounting.hpp"
 
 namespace vibe {

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/tool_motion.hpp"
 #include "dynamics/implicit_solver.hpp"
 #include "model/step_accounts.hpp"
 #include "solver/stepper_workspace.hpp"
 #include "solver/time_scheme.hpp"
+#include "tool/tool_motion.hpp"
 
 namespace vibe {
 

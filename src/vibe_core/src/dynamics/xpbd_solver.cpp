@@ -4,17 +4,17 @@
 #include <cmath>
 #include <utility>
 
-#include "common/elementary.hpp"
+#include "arithmetic/elementary.hpp"
 #include "constraints/blocks.hpp"
 #include "constraints/supports.hpp"
-#include "contact/tool_collision.hpp"
-#include "contact/tool_motion.hpp"
 #include "model/step_accounts.hpp"
-#include "vibe_core/common/thread_pool.hpp"
+#include "tool/tool_motion.hpp"
+#include "tool_contact/tool_collision.hpp"
 #include "vibe_core/constraints/constraint_registry.hpp"
 #include "vibe_core/constraints/gas.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
+#include "vibe_core/threads/thread_pool.hpp"
 
 namespace vibe {
 

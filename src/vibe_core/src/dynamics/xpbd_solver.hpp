@@ -6,15 +6,15 @@
 #include <Eigen/Geometry>
 
 #include "constraints/xpbd_pull.hpp"
-#include "contact/tool_collision.hpp"
 #include "tissue/cluster_builder.hpp"
 #include "tissue/shape_matching.hpp"
 #include "tissue/shape_matching_kernel.hpp"
-#include "vibe_core/common/thread_pool.hpp"
+#include "tool_contact/tool_collision.hpp"
 #include "vibe_core/constraints/constraint_registry.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
 #include "vibe_core/state/state.hpp"
+#include "vibe_core/threads/thread_pool.hpp"
 
 namespace vibe {
 

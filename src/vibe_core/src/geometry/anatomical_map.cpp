@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "geometry/regions.hpp"
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/stomach_axis.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "common/elementary.hpp"
+#include "arithmetic/elementary.hpp"
 
 namespace vibe {
 

@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "common/elementary.hpp"
-#include "common/turn.hpp"
+#include "arithmetic/elementary.hpp"
+#include "arithmetic/turn.hpp"
 #include "geometry/surface_operators.hpp"
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/stomach_axis.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

@@ -17,8 +17,8 @@
 #include "geometry/mesh_readers.hpp"
 #include "geometry/surface_check.hpp"
 #include "geometry/text_lines.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/foreign_content.hpp"
+#include "vibe_core/files/foreign_content.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "common/elementary.hpp"
+#include "arithmetic/elementary.hpp"
 #include "geometry/ball_union.hpp"
 #include "geometry/stomach_knots.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "geometry/surface_operators.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

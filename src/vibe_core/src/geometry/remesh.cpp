@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "geometry/surface_operators.hpp"
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

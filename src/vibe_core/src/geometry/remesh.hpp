@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "vibe_core/common/progress.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
+#include "vibe_core/program/progress.hpp"
 
 namespace vibe {
 

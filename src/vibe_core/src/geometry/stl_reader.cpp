@@ -8,7 +8,7 @@
 
 #include "geometry/mesh_readers.hpp"
 #include "geometry/text_lines.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "common/elementary.hpp"
+#include "arithmetic/elementary.hpp"
 #include "geometry/surface_operators.hpp"
 
 namespace vibe {

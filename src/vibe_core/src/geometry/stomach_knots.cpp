@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

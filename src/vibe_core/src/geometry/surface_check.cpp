@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

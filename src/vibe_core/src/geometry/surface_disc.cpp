@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "common/elementary.hpp"
+#include "arithmetic/elementary.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe {

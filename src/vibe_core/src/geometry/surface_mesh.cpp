@@ -7,8 +7,8 @@
 
 #include <Eigen/Geometry>
 
-#include "common/elementary.hpp"
-#include "vibe_core/common/error.hpp"
+#include "arithmetic/elementary.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

@@ -9,8 +9,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
 
-#include "common/elementary.hpp"
-#include "vibe_core/common/error.hpp"
+#include "arithmetic/elementary.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

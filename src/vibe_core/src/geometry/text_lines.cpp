@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "vibe_core/common/number_text.hpp"
+#include "vibe_core/files/number_text.hpp"
 
 namespace vibe {
 

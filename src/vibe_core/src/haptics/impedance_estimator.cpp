@@ -4,9 +4,9 @@
 #include <cmath>
 #include <iterator>
 
-#include "common/symmetric_eigen.hpp"
+#include "arithmetic/symmetric_eigen.hpp"
 #include "sparse/factor_plan.hpp"
-#include "vibe_core/common/fnv1a.hpp"
+#include "vibe_core/files/fnv1a.hpp"
 
 namespace vibe {
 

@@ -7,9 +7,9 @@
 
 #include <Eigen/Core>
 
-#include "common/background_worker.hpp"
-#include "common/ordered_algebra.hpp"
+#include "arithmetic/ordered_algebra.hpp"
 #include "haptics/static_stiffness.hpp"
+#include "threads/background_worker.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
 #include "vibe_core/state/impedance_memory.hpp"
 

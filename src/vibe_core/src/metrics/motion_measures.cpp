@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "common/elementary.hpp"
-#include "vibe_core/common/error.hpp"
+#include "arithmetic/elementary.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "geometry/regions.hpp"
 #include "geometry/surface_operators.hpp"
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <utility>
 
-#include "contact/tool_motion.hpp"
 #include "metrics/skill_text.hpp"
+#include "tool/tool_motion.hpp"
 #include "vibe_core/model/accounting.hpp"
 
 namespace vibe {

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <utility>
 
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/metrics/session_report.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

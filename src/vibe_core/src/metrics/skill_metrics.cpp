@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/elementary.hpp"
+#include "arithmetic/elementary.hpp"
 
 namespace vibe {
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "common/elementary.hpp"
-#include "common/turn.hpp"
+#include "arithmetic/elementary.hpp"
+#include "arithmetic/turn.hpp"
 #include "vibe_core/geometry/surface_disc.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
 

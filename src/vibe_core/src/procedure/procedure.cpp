@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "procedure/suturing.hpp"
-#include "vibe_core/common/random.hpp"
+#include "vibe_core/arithmetic/random.hpp"
 #include "vibe_core/events/event.hpp"
 
 namespace vibe {

@@ -8,15 +8,15 @@
 
 #include <Eigen/Geometry>
 
-#include "common/elementary.hpp"
-#include "common/turn.hpp"
+#include "arithmetic/elementary.hpp"
+#include "arithmetic/turn.hpp"
 #include "geometry/regions.hpp"
 #include "geometry/remesh.hpp"
 #include "geometry/surface_check.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/size_estimate.hpp"
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/mesh_file.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/scene/schema.hpp"
 #include "vibe_core/scene/words.hpp"

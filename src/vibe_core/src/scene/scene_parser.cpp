@@ -4,11 +4,11 @@
 #include <map>
 #include <sstream>
 
-#include "common/plugins.hpp"
+#include "program/plugins.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/yaml_guard.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/schema.hpp"
 #include "vibe_core/scene/words.hpp"
 #include "vibe_core/scene/yaml_source.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "common/elementary.hpp"
+#include "arithmetic/elementary.hpp"
 #include "geometry/regions.hpp"
 #include "vibe_core/scene/unit.hpp"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string_view>
 
-#include "common/turn.hpp"
+#include "arithmetic/turn.hpp"
 #include "scene/yaml_guard.hpp"
-#include "vibe_core/common/number_text.hpp"
+#include "vibe_core/files/number_text.hpp"
 
 namespace vibe {
 namespace {

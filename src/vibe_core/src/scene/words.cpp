@@ -5,7 +5,7 @@
 #include <map>
 #include <mutex>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/tissue_choices.hpp"
 
 namespace vibe {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <sstream>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "scene/odd_characters.hpp"
 #include "scene/yaml_guard.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/foreign_content.hpp"
+#include "vibe_core/files/foreign_content.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/unit.hpp"
 #include "vibe_core/scene/words.hpp"
 

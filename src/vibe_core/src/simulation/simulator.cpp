@@ -5,10 +5,10 @@
 #include <optional>
 #include <utility>
 
-#include "contact/tool_motion.hpp"
 #include "procedure/marking.hpp"
 #include "procedure/procedure.hpp"
 #include "procedure/suturing.hpp"
+#include "tool/tool_motion.hpp"
 #include "vibe_core/constraints/gas.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
 #include "vibe_core/events/event.hpp"

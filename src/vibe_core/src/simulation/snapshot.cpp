@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "simulation/state_check.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
-#include "vibe_core/common/fnv1a.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/files/fnv1a.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/state/state_fields.hpp"
 
 namespace vibe {

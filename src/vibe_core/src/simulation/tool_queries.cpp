@@ -5,9 +5,9 @@
 
 #include <Eigen/Geometry>
 
-#include "contact/kinematics.hpp"
-#include "contact/tool_motion.hpp"
 #include "geometry/ray.hpp"
+#include "tool/kinematics.hpp"
+#include "tool/tool_motion.hpp"
 
 namespace vibe {
 

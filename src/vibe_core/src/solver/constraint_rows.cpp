@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/ordered_algebra.hpp"
+#include "arithmetic/ordered_algebra.hpp"
 #include "solver/constraint_schur.hpp"
 
 namespace vibe {

@@ -4,13 +4,13 @@
 #include <array>
 #include <vector>
 
-#include "common/ordered_algebra.hpp"
+#include "arithmetic/ordered_algebra.hpp"
 #include "solver/column_cache.hpp"
 #include "solver/constraint_rows.hpp"
 #include "solver/contact_problem.hpp"
 #include "solver/thread_slides.hpp"
-#include "vibe_core/common/thread_pool.hpp"
 #include "vibe_core/sparse/factor.hpp"
+#include "vibe_core/threads/thread_pool.hpp"
 
 namespace vibe {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/elementary.hpp"
+#include "arithmetic/elementary.hpp"
 
 namespace vibe {
 

@@ -1,6 +1,6 @@
 #include "solver/dense_row_kernel.hpp"
 
-#include "common/kernel_path.hpp"
+#include "arithmetic/kernel_path.hpp"
 
 namespace vibe {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <cstddef>
 
-#include "common/kernel_path.hpp"
-#include "common/unfused_sets.hpp"
+#include "arithmetic/kernel_path.hpp"
+#include "arithmetic/unfused_sets.hpp"
 #include "solver/dense_row_kernel.hpp"
 
 namespace vibe {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/elementary.hpp"
+#include "arithmetic/elementary.hpp"
 #include "vibe_core/solver/energy_term.hpp"
 #include "vibe_core/tissue/shell.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "common/ordered_algebra.hpp"
+#include "arithmetic/ordered_algebra.hpp"
 #include "solver/couplings.hpp"
 #include "suture/capstan.hpp"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "solver/couplings.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/solver/energy_term.hpp"
 #include "vibe_core/tissue/shell.hpp"
 

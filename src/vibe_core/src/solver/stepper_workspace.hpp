@@ -6,13 +6,13 @@
 #include <mutex>
 #include <vector>
 
-#include "common/background_worker.hpp"
 #include "solver/constraint_rows.hpp"
 #include "solver/constraint_schur.hpp"
+#include "threads/background_worker.hpp"
 #include "tissue/shell_part.hpp"
-#include "vibe_core/common/step_stages.hpp"
-#include "vibe_core/common/thread_pool.hpp"
+#include "vibe_core/clocks/step_stages.hpp"
 #include "vibe_core/solver/implicit_stepper.hpp"
+#include "vibe_core/threads/thread_pool.hpp"
 
 namespace vibe {
 

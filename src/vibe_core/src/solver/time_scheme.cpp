@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "common/turn.hpp"
+#include "arithmetic/turn.hpp"
 #include "solver/stepper_workspace.hpp"
 
 namespace vibe {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

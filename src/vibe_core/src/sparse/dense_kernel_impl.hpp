@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/multiply_add.hpp"
+#include "arithmetic/multiply_add.hpp"
 #include "sparse/panel_kernel.hpp"
 
 namespace vibe {

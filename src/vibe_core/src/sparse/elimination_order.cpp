@@ -5,7 +5,7 @@
 #include <metis.h>
 
 #include "sparse/elimination.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

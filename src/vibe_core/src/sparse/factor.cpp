@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "common/lending_pool.hpp"
 #include "sparse/aligned_buffer.hpp"
 #include "sparse/factor_plan.hpp"
 #include "sparse/multifrontal.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/thread_pool.hpp"
+#include "threads/lending_pool.hpp"
+#include "vibe_core/program/error.hpp"
+#include "vibe_core/threads/thread_pool.hpp"
 
 namespace vibe {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "sparse/aligned_buffer.hpp"
 #include "sparse/panel_kernel.hpp"
-#include "vibe_core/common/thread_pool.hpp"
+#include "vibe_core/threads/thread_pool.hpp"
 
 namespace vibe {
 

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/lending_pool.hpp"
 #include "sparse/aligned_buffer.hpp"
 #include "sparse/factor_plan.hpp"
 #include "sparse/front_elimination.hpp"
-#include "vibe_core/common/thread_pool.hpp"
+#include "threads/lending_pool.hpp"
+#include "vibe_core/threads/thread_pool.hpp"
 
 namespace vibe {
 

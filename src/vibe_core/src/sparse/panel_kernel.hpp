@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "common/kernel_path.hpp"
+#include "arithmetic/kernel_path.hpp"
 
 namespace vibe {
 

@@ -7,7 +7,7 @@
 
 #include <cstddef>
 
-#include "common/multiply_add.hpp"
+#include "arithmetic/multiply_add.hpp"
 #include "sparse/panel_kernel.hpp"
 
 namespace vibe {

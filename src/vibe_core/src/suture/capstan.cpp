@@ -5,10 +5,10 @@
 #include <cmath>
 #include <string>
 
-#include "common/elementary.hpp"
-#include "common/ordered_algebra.hpp"
+#include "arithmetic/elementary.hpp"
+#include "arithmetic/ordered_algebra.hpp"
 #include "suture/thread_run.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

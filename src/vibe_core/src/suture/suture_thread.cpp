@@ -5,9 +5,9 @@
 #include <limits>
 #include <string>
 
-#include "common/elementary.hpp"
-#include "common/turn.hpp"
-#include "vibe_core/common/error.hpp"
+#include "arithmetic/elementary.hpp"
+#include "arithmetic/turn.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <utility>
 
-#include "common/elementary.hpp"
-#include "common/turn.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/random.hpp"
+#include "arithmetic/elementary.hpp"
+#include "arithmetic/turn.hpp"
+#include "vibe_core/arithmetic/random.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <utility>
 
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/number_text.hpp"
+#include "vibe_core/files/number_text.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/suture/technique_patterns.hpp"
 
 namespace vibe {

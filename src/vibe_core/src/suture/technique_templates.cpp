@@ -5,9 +5,9 @@
 
 #include <Eigen/Dense>
 
-#include "common/elementary.hpp"
-#include "common/symmetric_eigen.hpp"
-#include "common/turn.hpp"
+#include "arithmetic/elementary.hpp"
+#include "arithmetic/symmetric_eigen.hpp"
+#include "arithmetic/turn.hpp"
 
 namespace vibe {
 

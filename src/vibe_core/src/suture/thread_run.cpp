@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "common/elementary.hpp"
-#include "common/ordered_algebra.hpp"
-#include "common/ordered_lu.hpp"
+#include "arithmetic/elementary.hpp"
+#include "arithmetic/ordered_algebra.hpp"
+#include "arithmetic/ordered_lu.hpp"
 
 namespace vibe::detail {
 

@@ -7,9 +7,9 @@
 
 #include <Eigen/Geometry>
 
-#include "common/elementary.hpp"
+#include "arithmetic/elementary.hpp"
 #include "geometry/ray.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

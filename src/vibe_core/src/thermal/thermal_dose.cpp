@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "common/elementary.hpp"
-#include "vibe_core/common/error.hpp"
+#include "arithmetic/elementary.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

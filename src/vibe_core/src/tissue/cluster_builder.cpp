@@ -4,7 +4,7 @@
 #include <map>
 #include <numeric>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <xsimd/xsimd.hpp>
 
-#include "common/multiply_add.hpp"
+#include "arithmetic/multiply_add.hpp"
 #include "tissue/element_batch.hpp"
 
 namespace vibe {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <xsimd/xsimd.hpp>
 
-#include "common/elementary.hpp"
-#include "common/multiply_add.hpp"
+#include "arithmetic/elementary.hpp"
+#include "arithmetic/multiply_add.hpp"
 #include "vibe_core/tissue/material_registry.hpp"
 
 // Building blocks of elastic laws, for a scalar or a pack of scalars. Everything is a template or inline in an unnamed

@@ -7,7 +7,7 @@
 
 #include "tissue/law_terms.hpp"
 #include "tissue/material_law.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/words.hpp"
 
 namespace vibe {

@@ -7,7 +7,7 @@
 
 #include "tissue/cluster_builder.hpp"
 #include "tissue/shape_matching_kernel.hpp"
-#include "vibe_core/common/machine.hpp"
+#include "vibe_core/arithmetic/machine.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {

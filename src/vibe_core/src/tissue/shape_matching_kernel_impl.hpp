@@ -1,6 +1,6 @@
 #pragma once
-#include "common/kernel_path.hpp"
-#include "common/unfused_sets.hpp"
+#include "arithmetic/kernel_path.hpp"
+#include "arithmetic/unfused_sets.hpp"
 #include "tissue/shape_matching_kernel.hpp"
 
 namespace vibe {

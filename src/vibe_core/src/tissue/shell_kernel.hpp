@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/kernel_path.hpp"
+#include "arithmetic/kernel_path.hpp"
 #include "tissue/element_batch.hpp"
 #include "vibe_core/tissue/material_registry.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tissue/shell_point.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/tissue/shell.hpp"
 
 // Rest data of a shell: the neighbours of each side, and the rows of shell_kernel.hpp.

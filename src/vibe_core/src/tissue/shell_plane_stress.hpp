@@ -2,7 +2,7 @@
 
 #include <type_traits>
 
-#include "common/elementary.hpp"
+#include "arithmetic/elementary.hpp"
 #include "tissue/material_law.hpp"
 
 // The laws of a solid applied to a wall with zero stress across it, for one wall or a pack of them; law_terms.hpp

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/elementary.hpp"
-#include "common/symmetric_eigen.hpp"
+#include "arithmetic/elementary.hpp"
+#include "arithmetic/symmetric_eigen.hpp"
 #include "tissue/shell_fibres.hpp"
 #include "vibe_core/tissue/shell.hpp"
 

@@ -6,9 +6,9 @@
 
 #include <Eigen/Geometry>
 
-#include "common/elementary.hpp"
+#include "arithmetic/elementary.hpp"
 #include "geometry/regions.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {

@@ -8,7 +8,7 @@
 #include "trainee/ik_solution.hpp"
 #include "trainee/operator.hpp"
 #include "trainee/picture.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "common/turn.hpp"
+#include "arithmetic/turn.hpp"
 #include "trainee/ik_solution.hpp"
 #include "trainee/picture.hpp"
 #include "trainee/room.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "common/elementary.hpp"
-#include "contact/kinematics.hpp"
-#include "vibe_core/common/rotation.hpp"
+#include "arithmetic/elementary.hpp"
+#include "tool/kinematics.hpp"
+#include "vibe_core/arithmetic/rotation.hpp"
 
 namespace vibe {
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/random.hpp"
+#include "vibe_core/arithmetic/random.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

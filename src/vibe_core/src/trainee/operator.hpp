@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "vibe_core/contact/tool_model.hpp"
 #include "vibe_core/events/event.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
+#include "vibe_core/tool/tool_model.hpp"
 #include "vibe_core/trainee/observation.hpp"
 #include "vibe_core/trainee/protocol.hpp"
 #include "vibe_core/trainee/skill.hpp"

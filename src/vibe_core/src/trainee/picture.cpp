@@ -11,7 +11,7 @@
 
 #include <Eigen/Geometry>
 
-#include "common/elementary.hpp"
+#include "arithmetic/elementary.hpp"
 #include "procedure/needle.hpp"
 #include "trainee/ik_solution.hpp"
 #include "trainee/room.hpp"

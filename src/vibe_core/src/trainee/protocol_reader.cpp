@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "scene/yaml_guard.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/words.hpp"
 #include "vibe_core/trainee/suture_pattern.hpp"
 

@@ -1,8 +1,8 @@
 #include "trainee/room.hpp"
 
-#include "contact/surface_contacts.hpp"
-#include "contact/tool_approach.hpp"
-#include "contact/tool_collision.hpp"
+#include "tool_contact/surface_contacts.hpp"
+#include "tool_contact/tool_approach.hpp"
+#include "tool_contact/tool_collision.hpp"
 
 namespace vibe {
 

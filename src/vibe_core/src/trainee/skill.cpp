@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "common/elementary.hpp"
-#include "vibe_core/common/random.hpp"
+#include "arithmetic/elementary.hpp"
+#include "vibe_core/arithmetic/random.hpp"
 
 namespace vibe {
 

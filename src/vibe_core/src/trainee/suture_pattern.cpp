@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "common/elementary.hpp"
-#include "vibe_core/common/error.hpp"
+#include "arithmetic/elementary.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/suture/technique_patterns.hpp"
 
 namespace vibe {

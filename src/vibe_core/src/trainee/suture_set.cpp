@@ -4,7 +4,7 @@
 #include <string>
 
 #include "trainee/operator.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/suture/technique.hpp"
 #include "vibe_core/trainee/suture_pattern.hpp"
 

@@ -9,7 +9,7 @@
 #include <boost/coroutine2/coroutine.hpp>
 
 #include "trainee/operator.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe {
 

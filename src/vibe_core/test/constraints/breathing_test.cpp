@@ -8,9 +8,9 @@
 #include <complex>
 
 #include "vibe_core/builder/model_builder.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/model/accounting.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/simulation/snapshot.hpp"

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/constraints/constraint_registry.hpp"
 #include "vibe_core/model/accounting.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/solver/energy_term.hpp"
 #include "vibe_testing/worlds.hpp"
 

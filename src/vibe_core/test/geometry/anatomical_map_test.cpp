@@ -9,7 +9,7 @@
 #include <string>
 
 #include "vibe_core/builder/model_builder.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/scene.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 

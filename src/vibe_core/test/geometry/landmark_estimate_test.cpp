@@ -11,7 +11,7 @@
 #include "geometry/remesh.hpp"
 #include "geometry/stomach_knots.hpp"
 #include "vibe_core/builder/model_builder.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::landmark_estimate_test {
 namespace {

@@ -14,9 +14,9 @@
 #include "geometry/surface_check.hpp"
 #include "geometry/test_surfaces.hpp"
 #include "vibe_core/builder/model_builder.hpp"
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/mesh_file.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::mesh_import_test {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/elementary.hpp"
+#include "arithmetic/elementary.hpp"
 #include "geometry/remesh.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "geometry/surface_check.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_testing/temporary_folder.hpp"
 
 namespace vibe::mesh_standards_test {

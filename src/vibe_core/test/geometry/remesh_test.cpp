@@ -7,7 +7,7 @@
 #include "geometry/mesh_quality.hpp"
 #include "geometry/surface_check.hpp"
 #include "geometry/test_surfaces.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::remesh_test {
 namespace {

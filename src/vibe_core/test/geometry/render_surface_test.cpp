@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/test_surfaces.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::render_surface_test {
 namespace {

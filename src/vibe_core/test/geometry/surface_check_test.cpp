@@ -7,7 +7,7 @@
 #include <string>
 
 #include "geometry/test_surfaces.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::surface_check_test {
 namespace {

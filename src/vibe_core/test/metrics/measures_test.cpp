@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::measures_test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "metrics/motions.hpp"
 #include "trainee/operator.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_testing/allocation_count.hpp"
 
 namespace vibe::motion_measures_test {

@@ -8,7 +8,7 @@
 
 #include "metrics/organs.hpp"
 #include "vibe_core/builder/model_builder.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_testing/allocation_count.hpp"
 #include "vibe_testing/worlds.hpp"
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "geometry/test_surfaces.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_testing/worlds.hpp"
 
 namespace vibe::surface_section_test {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::helix_grip_test {

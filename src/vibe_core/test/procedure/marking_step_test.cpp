@@ -8,7 +8,7 @@
 
 #include "procedure/marking.hpp"
 #include "procedure/marking_stage.hpp"
-#include "vibe_core/common/rotation.hpp"
+#include "vibe_core/arithmetic/rotation.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 
 namespace vibe::marking_step_test {

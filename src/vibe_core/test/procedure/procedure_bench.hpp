@@ -6,7 +6,7 @@
 
 #include "procedure/needle.hpp"
 #include "procedure/procedure.hpp"
-#include "vibe_core/common/rotation.hpp"
+#include "vibe_core/arithmetic/rotation.hpp"
 #include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::test {

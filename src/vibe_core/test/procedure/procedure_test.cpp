@@ -7,7 +7,7 @@
 #include <set>
 
 #include "procedure/procedure_bench.hpp"
-#include "vibe_core/common/random.hpp"
+#include "vibe_core/arithmetic/random.hpp"
 #include "vibe_core/suture/technique.hpp"
 #include "vibe_testing/allocation_count.hpp"
 

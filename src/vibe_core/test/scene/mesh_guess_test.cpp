@@ -10,7 +10,7 @@
 
 #include "scene/size_estimate.hpp"
 #include "vibe_core/builder/model_builder.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::mesh_guess_test {
 namespace {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <map>
 
-#include "contact/kinematics.hpp"
 #include "procedure/procedure_bench.hpp"
+#include "tool/kinematics.hpp"
 
 namespace vibe::drawn_joints_test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/state/state_fields.hpp"
 #include "vibe_testing/scope_worlds.hpp"
 

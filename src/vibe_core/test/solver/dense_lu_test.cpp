@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <random>
 
-#include "vibe_core/common/machine.hpp"
+#include "vibe_core/arithmetic/machine.hpp"
 
 namespace vibe {
 

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::block_matrix_test {
 namespace {

@@ -11,8 +11,8 @@
 #include "sparse/closed_mesh.hpp"
 #include "sparse/eigen_matrix.hpp"
 #include "sparse/factor_plan.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/thread_pool.hpp"
+#include "vibe_core/program/error.hpp"
+#include "vibe_core/threads/thread_pool.hpp"
 
 namespace vibe::factor_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "suture/thread_problems.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_testing/allocation_count.hpp"
 
 namespace vibe::capstan_test {

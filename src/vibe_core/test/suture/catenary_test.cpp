@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "suture/thread_reference.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::catenary_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::technique_csv_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::technique_patterns_test {
 namespace {

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <limits>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_core/state/state_fields.hpp"

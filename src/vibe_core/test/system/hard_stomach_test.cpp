@@ -5,8 +5,8 @@
 #include <functional>
 #include <random>
 
-#include "vibe_core/contact/tool_crossings.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
+#include "vibe_core/tool_contact/tool_crossings.hpp"
 #include "vibe_testing/scope_fixture.hpp"
 #include "vibe_testing/worlds.hpp"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "solver/pulled_sheet.hpp"
-#include "vibe_core/common/machine.hpp"
+#include "vibe_core/arithmetic/machine.hpp"
 #include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::same_bits_test {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <set>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_testing/worlds.hpp"
 

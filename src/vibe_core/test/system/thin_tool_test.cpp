@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "contact/shape_distance.hpp"
-#include "contact/thin_tool.hpp"
-#include "contact/tool_collision.hpp"
+#include "tool_contact/shape_distance.hpp"
+#include "tool_contact/thin_tool.hpp"
+#include "tool_contact/tool_collision.hpp"
 #include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::thin_tool_test {

@@ -3,8 +3,8 @@
 
 #include <limits>
 
-#include "contact/tool_collision.hpp"
-#include "contact/tool_motion.hpp"
+#include "tool/tool_motion.hpp"
+#include "tool_contact/tool_collision.hpp"
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_testing/scope_worlds.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_testing/element_worlds.hpp"
 
 namespace vibe::material_energy_test {

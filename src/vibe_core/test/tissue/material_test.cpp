@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tissue/material_law.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::material_test {
 namespace {

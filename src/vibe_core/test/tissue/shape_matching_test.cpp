@@ -6,7 +6,7 @@
 #include <random>
 
 #include "tissue/shape_matching_kernel.hpp"
-#include "vibe_core/common/machine.hpp"
+#include "vibe_core/arithmetic/machine.hpp"
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_testing/worlds.hpp"
 

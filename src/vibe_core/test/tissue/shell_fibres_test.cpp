@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tissue/shell_worlds.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::shell_fibres_test {
 namespace {

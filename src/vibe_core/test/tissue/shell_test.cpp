@@ -8,7 +8,7 @@
 #include "tissue/material_law.hpp"
 #include "tissue/shell_part.hpp"
 #include "tissue/shell_worlds.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::shell_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "vibe_core/builder/model_builder.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_testing/worlds.hpp"
 
 namespace vibe::shell_tissue_test {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "trainee/operator.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
 namespace vibe {

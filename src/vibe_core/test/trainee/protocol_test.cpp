@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::protocol_test {
 namespace {

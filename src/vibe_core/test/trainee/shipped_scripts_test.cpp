@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "vibe_core/contact/tool_model.hpp"
+#include "vibe_core/tool/tool_model.hpp"
 #include "vibe_core/trainee/trainee_script.hpp"
 
 namespace vibe::shipped_scripts_test {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/suture/technique_patterns.hpp"
 
 namespace vibe::suture_pattern_test {

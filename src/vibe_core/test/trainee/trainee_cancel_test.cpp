@@ -1,7 +1,7 @@
 // Goals that are given up on request, while others go on.
 #include <gtest/gtest.h>
 
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/trainee/trainee.hpp"
 

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 

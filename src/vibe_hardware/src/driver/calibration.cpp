@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/scene/words.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 

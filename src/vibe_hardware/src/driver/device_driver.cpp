@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::hardware {
 

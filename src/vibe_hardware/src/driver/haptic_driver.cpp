@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_hardware/driver/joint_scale.hpp"
 
 namespace vibe::hardware {

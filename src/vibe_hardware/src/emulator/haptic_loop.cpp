@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "emulator/loop_host.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::hardware {
 namespace {

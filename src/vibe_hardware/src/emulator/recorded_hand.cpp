@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <string_view>
 
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
-#include "vibe_core/common/number_text.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/files/number_text.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/words.hpp"
 
 namespace vibe::hardware {

@@ -9,7 +9,7 @@
 
 #include <linux/input-event-codes.h>
 
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/scene/words.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 #include "vibe_hardware/gamepad/pad_state.hpp"

@@ -10,8 +10,8 @@
 
 #include <linux/input-event-codes.h>
 
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::hardware {
 

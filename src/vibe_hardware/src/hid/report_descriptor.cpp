@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_firmware/protocol/descriptors.hpp"
 
 namespace vibe::hardware {

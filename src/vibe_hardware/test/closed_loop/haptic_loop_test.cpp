@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_hardware/emulator/hand.hpp"
 

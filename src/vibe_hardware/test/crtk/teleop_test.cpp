@@ -8,7 +8,7 @@
 #include <deque>
 
 #include "gamepad/pads.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_hardware/emulator/emulated_arm.hpp"
 
 namespace vibe::hardware::teleop_test {

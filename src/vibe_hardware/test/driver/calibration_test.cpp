@@ -7,7 +7,7 @@
 #include <ostream>
 #include <string>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::hardware::calibration_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_hardware/emulator/hand.hpp"
 
 namespace vibe::hardware::blink_test {

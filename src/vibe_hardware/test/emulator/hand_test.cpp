@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_hardware/emulator/hand.hpp"
 #include "vibe_hardware/emulator/recorded_hand.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "gamepad/pads.hpp"
 #include "vibe_core/builder/model_builder.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_hardware/gamepad/pad_recording.hpp"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "gamepad/pads.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::hardware::pad_mapping_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "gamepad/pads.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::hardware::pad_recording_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <random>
 #include <string>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_firmware/protocol/descriptors.hpp"
 
 namespace vibe::hardware::report_descriptor_test {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::hardware::hardware_messages_test {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "contact/tool_collision.hpp"
 #include "geometry/surface_operators.hpp"
+#include "tool_contact/tool_collision.hpp"
 #include "vibe_core/constraints/gas.hpp"
 
 namespace vibe::prototype {

@@ -3,9 +3,9 @@
 #include <functional>
 #include <vector>
 
-#include "contact/tool_collision.hpp"
-#include "contact/tool_motion.hpp"
 #include "gradient/gradient_touch.hpp"
+#include "tool/tool_motion.hpp"
+#include "tool_contact/tool_collision.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
 #include "vibe_core/procedure/procedure_registry.hpp"

@@ -1,5 +1,5 @@
 #include "groups/group_pull.hpp"
-#include "common/turn.hpp"
+#include "arithmetic/turn.hpp"
 #include "constraints/cinching.hpp"
 #include "groups/group_draw.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::prototype {
 namespace {

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "solver/pulled_sheet.hpp"
-#include "vibe_core/common/machine.hpp"
+#include "vibe_core/arithmetic/machine.hpp"
 
 namespace vibe::prototype::group_bits_test {
 namespace {

@@ -7,9 +7,9 @@
 
 #include <yaml-cpp/emitter.h>
 
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/number_text.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/trainee/protocol.hpp"
 
 namespace vibe::sim {

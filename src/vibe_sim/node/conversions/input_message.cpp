@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "conversions/conversions.hpp"
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/state/state_fields.hpp"
 
 namespace vibe::sim {

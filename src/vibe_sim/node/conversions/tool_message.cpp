@@ -4,7 +4,7 @@
 
 #include "conversions/conversions.hpp"
 #include "conversions/input_message.hpp"
-#include "vibe_core/common/rotation.hpp"
+#include "vibe_core/arithmetic/rotation.hpp"
 #include "vibe_core/simulation/tool_queries.hpp"
 
 namespace vibe::sim {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "input/input_sample.hpp"
-#include "vibe_core/contact/tool_model.hpp"
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_core/model/model.hpp"
+#include "vibe_core/tool/tool_model.hpp"
 
 namespace vibe::sim {
 

@@ -3,7 +3,7 @@
 #include <ros/ros.h>
 
 #include "replay/player.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_ros_utils/parameter_reader.hpp"
 #include "vibe_ros_utils/startup.hpp"
 

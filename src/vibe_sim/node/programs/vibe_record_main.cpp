@@ -6,7 +6,7 @@
 
 #include "recording/bag_name.hpp"
 #include "recording/recorder.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_ros_utils/startup.hpp"
 
 // vibe_record: records the topics of the graph to a bag, without losing a message, until SIGINT.

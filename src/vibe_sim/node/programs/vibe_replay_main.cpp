@@ -8,9 +8,9 @@
 #include "recording/recording.hpp"
 #include "replay/bag_filler.hpp"
 #include "replay/replay.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/metrics/session_report.hpp"
+#include "vibe_core/program/error.hpp"
 
 // Steps the simulator through the inputs of a recording, without a roscore, and compares every step with it.
 

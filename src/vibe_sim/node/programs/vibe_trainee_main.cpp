@@ -5,8 +5,8 @@
 
 #include "trainee/goal_player.hpp"
 #include "trainee/trainee_player.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_ros_utils/parameter_reader.hpp"
 #include "vibe_ros_utils/startup.hpp"
 

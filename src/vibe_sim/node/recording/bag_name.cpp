@@ -8,7 +8,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::sim {
 

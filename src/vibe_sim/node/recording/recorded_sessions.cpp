@@ -11,7 +11,7 @@
 #include <vibe_msgs/StepInput.h>
 
 #include "conversions/conversions.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::sim {
 

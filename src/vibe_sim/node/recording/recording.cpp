@@ -9,8 +9,8 @@
 #include <rosbag/view.h>
 #include <vibe_msgs/StateSnapshot.h>
 
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/foreign_content.hpp"
+#include "vibe_core/files/foreign_content.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::sim {
 

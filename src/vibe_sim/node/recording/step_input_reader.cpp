@@ -6,7 +6,7 @@
 #include <map>
 #include <sstream>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/state/state_fields.hpp"
 
 namespace vibe::sim {

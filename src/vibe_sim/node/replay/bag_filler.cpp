@@ -9,7 +9,7 @@
 #include "conversions/conversions.hpp"
 #include "recording/bag_name.hpp"
 #include "recording/recording.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_ros_utils/former_names.hpp"
 
 namespace vibe::sim {

@@ -10,8 +10,8 @@
 #include <vibe_msgs/ProcedureEvent.h>
 
 #include "conversions/conversions.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/state/procedure_state.hpp"
 
 namespace vibe::sim {

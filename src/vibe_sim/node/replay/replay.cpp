@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "simulation/scene_source.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/machine.hpp"
+#include "vibe_core/arithmetic/machine.hpp"
 #include "vibe_core/metrics/session_report.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_core/state/state_fields.hpp"

@@ -12,7 +12,7 @@
 
 #include "recording/recording.hpp"
 #include "simulation/timed_simulation.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::sim {
 

@@ -4,7 +4,7 @@
 
 #include <ros/console.h>
 
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 

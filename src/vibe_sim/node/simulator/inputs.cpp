@@ -7,8 +7,8 @@
 #include <type_traits>
 
 #include "conversions/input_message.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_ros_utils/former_names.hpp"
 
 namespace vibe::sim {

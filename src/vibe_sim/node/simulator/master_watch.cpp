@@ -5,7 +5,7 @@
 #include <ros/this_node.h>
 #include <ros/time.h>
 
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 
 namespace vibe::sim {
 

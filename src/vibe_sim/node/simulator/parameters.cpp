@@ -4,7 +4,7 @@
 
 #include <ros/console.h>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_ros_utils/former_names.hpp"
 #include "vibe_ros_utils/parameter_reader.hpp"
 

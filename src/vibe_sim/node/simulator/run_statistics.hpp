@@ -7,7 +7,7 @@
 #include <vibe_msgs/SolverStatistics.h>
 
 #include "simulation/timed_simulation.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
 
 namespace vibe::sim {

@@ -10,7 +10,7 @@
 
 #include "conversions/conversions.hpp"
 #include "conversions/timing_message.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_ros_utils/startup.hpp"
 #include "vibe_ros_utils/wall_clock.hpp"
 

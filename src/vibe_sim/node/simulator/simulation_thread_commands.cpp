@@ -2,7 +2,7 @@
 
 #include "simulation/scene_source.hpp"
 #include "simulator/simulation_thread.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_ros_utils/wall_clock.hpp"

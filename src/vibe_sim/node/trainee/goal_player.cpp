@@ -8,8 +8,8 @@
 #include <ros/init.h>
 
 #include "simulation/scene_source.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::sim {
 

@@ -6,7 +6,7 @@
 
 #include "conversions/conversions.hpp"
 #include "conversions/goal_message.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::sim {
 

@@ -5,7 +5,7 @@
 
 #include "conversions/conversions.hpp"
 #include "simulation/timed_simulation.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 
 namespace vibe::sim {
 

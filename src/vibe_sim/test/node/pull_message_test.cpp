@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "sentences.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_testing/worlds.hpp"
 
 namespace vibe::sim::pull_message_test {

@@ -20,7 +20,7 @@
 #include "replay/bag_filler.hpp"
 #include "sentences.hpp"
 #include "simulation/scene_source.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 
 namespace vibe::sim::replay_test {

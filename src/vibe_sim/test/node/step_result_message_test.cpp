@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "conversions/tissue_message.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/trainee/trainee.hpp"
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "vibe_core/contact/tool_model.hpp"
+#include "vibe_core/tool/tool_model.hpp"
 
 namespace vibe {
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "calibrate/fitting.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
 namespace vibe::vision {

@@ -7,7 +7,7 @@
 
 #include "calibrate/fitting.hpp"
 #include "calibrate/lens_limits.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
 namespace {

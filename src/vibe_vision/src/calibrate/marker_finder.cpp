@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
 namespace {

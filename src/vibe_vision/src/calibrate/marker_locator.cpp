@@ -5,7 +5,7 @@
 
 #include "calibrate/fitting.hpp"
 #include "tag/tag_place.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/marker/tag_reader.hpp"
 #include "vibe_vision/track/tracker.hpp"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "calibrate/fitting.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/calibrate/axis_fit.hpp"
 
 namespace vibe::vision {

@@ -4,7 +4,7 @@
 
 #include "camera/host_time.hpp"
 #include "camera/pixels.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
 namespace {

@@ -15,7 +15,7 @@
 
 #include "camera/aravis_camera.hpp"
 #include "camera/host_time.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
 
 namespace vibe::vision {

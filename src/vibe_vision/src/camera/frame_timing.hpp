@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "vibe_core/common/device_clock.hpp"
+#include "vibe_core/clocks/device_clock.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 
 namespace vibe::vision {

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <thread>
 
-#include "vibe_core/common/step_timer.hpp"  // steadyTime()
+#include "vibe_core/clocks/step_timer.hpp"  // steadyTime()
 
 namespace vibe::vision {
 

@@ -5,7 +5,7 @@
 #include "camera/picture_reader.hpp"
 #include "camera/recording_source.hpp"
 #include "camera/v4l2_source.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
 namespace {

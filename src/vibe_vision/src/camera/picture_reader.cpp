@@ -8,7 +8,7 @@
 #include <unistd.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
 

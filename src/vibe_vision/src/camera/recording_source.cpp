@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "camera/host_time.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/number_text.hpp"
+#include "vibe_core/files/number_text.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/words.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 

@@ -1,5 +1,5 @@
 #include "config/config_reader.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 // The part of ConfigReader that reads markers.
 

@@ -3,8 +3,8 @@
 #include <sstream>
 
 #include "config/config_reader.hpp"
-#include "vibe_core/common/error.hpp"
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/words.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 

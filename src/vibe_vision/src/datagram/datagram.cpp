@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "datagram/little_endian.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
 

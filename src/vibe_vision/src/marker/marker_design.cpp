@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
 

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "sheet/sheet_layout.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
 namespace {

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "sheet/sheet_layout.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "sheet/sheet_layout.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/marker/tag_reader.hpp"
 
 namespace vibe::vision {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "synthetic/tile_renderer.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
 
 namespace vibe::vision {

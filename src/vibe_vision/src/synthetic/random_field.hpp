@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "vibe_core/common/random.hpp"
+#include "vibe_core/arithmetic/random.hpp"
 
 namespace vibe::vision {
 

@@ -2,7 +2,7 @@
 #include <map>
 #include <utility>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/synthetic/synthetic_scene.hpp"
 
 namespace vibe::vision {

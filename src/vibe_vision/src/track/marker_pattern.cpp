@@ -2,7 +2,7 @@
 
 #include "track/ring_pattern.hpp"
 #include "track/sleeve_pattern.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "calibrate/fitting.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_testing/expect_error.hpp"
 
 namespace vibe::vision::axis_fit_test {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_testing/expect_error.hpp"
 
 namespace vibe::vision::stop_list_test {

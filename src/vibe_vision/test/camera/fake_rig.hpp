@@ -6,7 +6,7 @@
 #include <string>
 
 #include "camera/host_time.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/camera/fake_camera.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 

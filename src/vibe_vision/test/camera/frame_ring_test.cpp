@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
 
 namespace vibe::vision::frame_ring_test {

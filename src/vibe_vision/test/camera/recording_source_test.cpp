@@ -8,7 +8,7 @@
 
 #include "camera/host_time.hpp"
 #include "camera/picture_reader.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 
 namespace vibe::vision::recording_source_test {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_testing/expect_error.hpp"
 
 namespace vibe::vision::camera_files_test {

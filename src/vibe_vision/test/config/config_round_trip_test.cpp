@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "config/random_config.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_vision/config/vision_config.hpp"
 
 namespace vibe::vision::config_round_trip_test {

@@ -8,7 +8,7 @@
 #include <ostream>
 #include <string>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_testing/expect_error.hpp"
 #include "vibe_vision/synthetic/synthetic_scene.hpp"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision::datagram_test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <chrono>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision::udp_sender_test {
 namespace {

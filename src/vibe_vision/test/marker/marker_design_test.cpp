@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision::marker_design_test {
 namespace {

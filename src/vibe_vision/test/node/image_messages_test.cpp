@@ -6,7 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "node/node_test_support.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_testing/expect_error.hpp"
 #include "vision_messages.hpp"
 

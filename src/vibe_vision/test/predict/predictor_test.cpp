@@ -9,7 +9,7 @@
 #include <random>
 
 #include "predict/reach.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision::predictor_test {
 namespace {

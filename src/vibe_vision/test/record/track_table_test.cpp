@@ -7,7 +7,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision::track_table_test {
 namespace {

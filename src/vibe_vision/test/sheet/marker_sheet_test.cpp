@@ -11,7 +11,7 @@
 #include <string>
 
 #include "sheet/guide_steps.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_testing/expect_error.hpp"
 #include "vibe_vision/marker/tag_reader.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "../track/ring_scene.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 #include "vibe_testing/expect_error.hpp"
 #include "vibe_vision/calibrate/axis_fit.hpp"
 #include "vibe_vision/calibrate/marker_finder.hpp"

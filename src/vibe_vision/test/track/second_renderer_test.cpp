@@ -10,7 +10,7 @@
 #include <map>
 #include <sstream>
 
-#include "vibe_core/common/files.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_vision/track/tracker.hpp"
 
 namespace vibe::vision::second_renderer_test {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "track/ring_scene.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 
 namespace vibe::vision::tracker_cost_test {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "track/ring_scene.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision::tracker_test {
 namespace {

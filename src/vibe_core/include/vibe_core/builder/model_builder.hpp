@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "vibe_core/common/progress.hpp"
 #include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/model/model.hpp"
+#include "vibe_core/program/progress.hpp"
 #include "vibe_core/scene/scene.hpp"
 #include "vibe_core/state/state.hpp"
 

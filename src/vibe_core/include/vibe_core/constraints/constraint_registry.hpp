@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
-#include "vibe_core/contact/tool_model.hpp"
 #include "vibe_core/solver/body_loads.hpp"
+#include "vibe_core/tool/tool_model.hpp"
 
 namespace vibe {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/events/event.hpp"
 #include "vibe_core/metrics/session_metrics.hpp"
 #include "vibe_core/model/model.hpp"

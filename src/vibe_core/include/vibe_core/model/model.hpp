@@ -3,14 +3,14 @@
 #include <optional>
 #include <vector>
 
-#include "vibe_core/contact/scope_springs.hpp"
-#include "vibe_core/contact/tool_model.hpp"
 #include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
 #include "vibe_core/scene/scene.hpp"
 #include "vibe_core/thermal/thermal_dose.hpp"
 #include "vibe_core/tissue/tissue_model.hpp"
+#include "vibe_core/tool/scope_springs.hpp"
+#include "vibe_core/tool/tool_model.hpp"
 
 namespace vibe {
 

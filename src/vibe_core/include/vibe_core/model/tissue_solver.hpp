@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "vibe_core/common/step_stages.hpp"
-#include "vibe_core/contact/tool_model.hpp"
+#include "vibe_core/clocks/step_stages.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
+#include "vibe_core/tool/tool_model.hpp"
 
 namespace vibe {
 

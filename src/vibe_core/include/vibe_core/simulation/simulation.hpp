@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "vibe_core/builder/model_builder.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/events/event.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
 #include "vibe_core/input/step_input.hpp"

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "vibe_core/builder/model_builder.hpp"
-#include "vibe_core/common/thread_pool.hpp"
 #include "vibe_core/events/event.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
+#include "vibe_core/threads/thread_pool.hpp"
 
 namespace vibe {
 

@@ -2,8 +2,8 @@
 #include <array>
 #include <string>
 
-#include "vibe_core/common/step_stages.hpp"
-#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/clocks/step_stages.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
 
 namespace vibe {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "vibe_core/common/fields.hpp"
+#include "vibe_core/files/fields.hpp"
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_core/state/state.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "vibe_core/common/device_clock.hpp"
+#include "vibe_core/clocks/device_clock.hpp"
 #include "vibe_firmware/protocol/reports.hpp"
 
 namespace vibe::hardware {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "vibe_core/contact/tool_model.hpp"
 #include "vibe_core/input/step_input.hpp"
+#include "vibe_core/tool/tool_model.hpp"
 
 namespace vibe::hardware {
 

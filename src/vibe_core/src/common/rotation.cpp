@@ -1,9 +1,0 @@
-#include "vibe_core/common/rotation.hpp"
-
-namespace vibe {
-
-Eigen::Quaterniond rotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  return Eigen::Quaterniond::FromTwoVectors(from, to);
-}
-
-}  // namespace vibe

@@ -1,0 +1,169 @@
+#include "tool/tool_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <BulletCollision/CollisionShapes/btConvexShape.h>
+
+namespace vibe {
+
+namespace {
+
+// Steps until a joint that tissue has stopped tries to go on. Design choice: the tissue has a few steps to give way to
+// a tool that stands still, and the hand tries often enough to go on with it [1].
+constexpr int kStallSteps = 6;
+// Force on the tool at which the hand slows down, and at which it stops. Design choice: forces in endoscopic suturing
+// reach 8 N (Trejos 2011); a force across the shaft, which the entry bears, reaches no joint of the hand [N].
+constexpr double kHandSlows = 10, kHandStops = 20;
+
+}  // namespace
+
+std::array<double, kJointCount> ToolMotion::inputs(double fraction) const {
+  std::array<double, kJointCount> inputs{};
+  for (int i = 0; i < kJointCount; ++i) inputs[i] = start_[i] + fraction * (end_[i] - start_[i]);
+  return inputs;
+}
+
+ToolDisplacement ToolMotion::displacement(double fraction) const {
+  ToolDisplacement displacement = start_displacement_;
+  for (int d = 0; d < kYieldDofs; ++d) displacement[d] += fraction * (end_displacement_[d] - start_displacement_[d]);
+  return displacement;
+}
+
+void ToolMotion::stop(double fraction) {
+  end_ = inputs(fraction);
+  end_displacement_ = displacement(fraction);
+}
+
+void ToolMotion::linkPoses(double fraction, LinkPoses& at) const {
+  const auto here = inputs(fraction);
+  const ToolDisplacement displaced = displacement(fraction);
+  if (!at.poses.empty() && at.inputs == here && at.displacement == displaced) return;
+  tool_->forwardKinematics(here, displaced, at.poses);
+  for (Eigen::Isometry3d& pose : at.poses) pose = base_ * pose;
+  at.inputs = here;
+  at.displacement = displaced;
+}
+
+double ToolMotion::travel(const std::vector<Eigen::Isometry3d>& from, const std::vector<Eigen::Isometry3d>& to) const {
+  double farthest = 0;
+  for (const ToolShape& shape : tool_->shapes()) {
+    btVector3 lower, upper;
+    shape.shape->getAabb(btTransform::getIdentity(), lower, upper);
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d local((corner & 1) != 0 ? upper.x() : lower.x(), (corner & 2) != 0 ? upper.y() : lower.y(),
+                                  (corner & 4) != 0 ? upper.z() : lower.z());
+      const Eigen::Vector3d p = shape.origin * local;
+      farthest = std::max(farthest, (to[shape.link] * p - from[shape.link] * p).norm());
+    }
+  }
+  return farthest;
+}
+
+std::array<double, kJointCount> limitedMotion(const ToolModel& tool, const std::array<double, kJointCount>& position,
+                                              const std::array<double, kJointCount>& command, double dt) {
+  std::array<double, kJointCount> result = position;
+  for (int i = 0; i < kJointCount; ++i) {
+    if (!std::isfinite(command[i])) continue;
+    const JointLimits& limit = tool.limits()[i];
+    const double target = std::clamp(command[i], limit.lower, limit.upper);
+    const double furthest = limit.velocity * dt;
+    result[i] = position[i] + std::clamp(target - position[i], -furthest, furthest);
+  }
+  return result;
+}
+
+std::array<double, kJointCount> stalledMotion(const ToolModel& tool, const std::array<double, kJointCount>& start,
+                                              const std::array<double, kJointCount>& end,
+                                              const std::array<double, kScopeJointCount>& effort) {
+  std::array<double, kJointCount> result = end;
+  for (int j = 0; j < kScopeJointCount; ++j) {
+    const bool over = std::abs(effort[j]) > tool.limits()[j].effort;
+    if (over && (end[j] - start[j]) * effort[j] > 0) result[j] = start[j];
+  }
+  return result;
+}
+
+std::array<double, kJointCount> feltMotion(const std::array<double, kJointCount>& start,
+                                           const std::array<double, kJointCount>& end,
+                                           const std::array<double, kScopeJointCount>& effort, double force) {
+  const double part = std::clamp((kHandStops - force) / (kHandStops - kHandSlows), 0.0, 1.0);
+  std::array<double, kJointCount> result = end;
+  for (int j = 0; j < kScopeJointCount; ++j)
+    if ((end[j] - start[j]) * effort[j] > 0) result[j] = start[j] + part * (end[j] - start[j]);
+  return result;
+}
+
+std::array<double, kJointCount> heldMotion(const std::array<double, kJointCount>& start,
+                                           const std::array<double, kJointCount>& end,
+                                           const std::array<int, kJointCount>& stall) {
+  std::array<double, kJointCount> result = end;
+  for (int j = 0; j < kJointCount; ++j)
+    if ((end[j] - start[j]) * stall[j] > 0) result[j] = start[j];
+  return result;
+}
+
+void updateStall(const std::array<int, kJointCount>& stopped, std::array<int, kJointCount>& stall) {
+  for (int j = 0; j < kJointCount; ++j) {
+    stall[j] -= stall[j] > 0 ? 1 : stall[j] < 0 ? -1 : 0;
+    if (stopped[j] != 0) stall[j] = stopped[j] * kStallSteps;
+  }
+}
+
+namespace {
+
+// How a point moves with the joint that carries a link. The motion of a joint changes neither its axis nor, if it is
+// revolute, its origin.
+Eigen::Vector3d jointMotion(const ToolJoint& joint, const Eigen::Isometry3d& pose, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d axis = pose.linear() * joint.axis;
+  if (joint.type == ToolJoint::Type::Revolute) return axis.cross(point - pose.translation());
+  return axis;
+}
+
+}  // namespace
+
+Eigen::Matrix<double, 3, kJointCount> pointJacobian(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses,
+                                                    int link, const Eigen::Vector3d& point) {
+  Eigen::Matrix<double, 3, kJointCount> jacobian = Eigen::Matrix<double, 3, kJointCount>::Zero();
+  while (link > 0) {
+    const ToolJoint& joint = tool.joints()[link - 1];  // the joint that carries the link
+    if (joint.input >= 0) jacobian.col(joint.input) += joint.multiplier * jointMotion(joint, poses[link], point);
+    link = joint.parent_link;
+  }
+  return jacobian;
+}
+
+Eigen::Matrix<double, 3, kYieldDofs> yieldJacobian(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses,
+                                                   const ShaftBend& bend, int link, const Eigen::Vector3d& point) {
+  Eigen::Matrix<double, 3, kYieldDofs> jacobian = Eigen::Matrix<double, 3, kYieldDofs>::Zero();
+  while (link > 0) {
+    const ToolJoint& joint = tool.joints()[link - 1];
+    if (joint.station >= 0) {
+      const Eigen::Vector3d moves = jointMotion(joint, poses[link], point);
+      const ShaftBend::Share& share = bend.share(joint.station);
+      const int dof = kShaftDof + 2 * joint.direction;
+      jacobian.col(dof) += share.mean * moves;
+      jacobian.col(dof + 1) += share.change * moves;
+      jacobian.col(Insertion) += bend.angleRate(joint.station, joint.direction) * moves;
+    } else if (joint.input >= 0 && joint.input < kScopeJointCount) {
+      jacobian.col(joint.input) += joint.multiplier * jointMotion(joint, poses[link], point);
+    }
+    link = joint.parent_link;
+  }
+  return jacobian;
+}
+
+// A link that turns by w moves the end of an arm r by w x r, and w is half the sum of e x (w x e) over three axes e.
+YieldVector yieldForce(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses, const ShaftBend& bend,
+                       int link, const Eigen::Vector3d& point, const Eigen::Vector3d& force,
+                       const Eigen::Vector3d& torque) {
+  const auto there = yieldJacobian(tool, poses, bend, link, point);
+  YieldVector sum = there.transpose() * force;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(k);
+    sum += 0.5 * (yieldJacobian(tool, poses, bend, link, point + axis) - there).transpose() * torque.cross(axis);
+  }
+  return sum;
+}
+
+}  // namespace vibe

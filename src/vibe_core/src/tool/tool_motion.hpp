@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "vibe_core/solver/body_loads.hpp"
+#include "vibe_core/tool/tool_model.hpp"
+
+namespace vibe {
+
+/// Path of the tool during one step: every input, and the displacement of a tool that gives way, moves at constant
+/// speed from its start to its end value.
+class ToolMotion {
+ public:
+  /// @param base          pose of the tool's root link in world
+  /// @param displacement  of the tool at the start; at the end as well, until displaceEnd() says otherwise
+  ToolMotion(const ToolModel& tool, const Eigen::Isometry3d& base, const std::array<double, kJointCount>& start,
+             const std::array<double, kJointCount>& end, const ToolDisplacement& displacement = {})
+      : tool_(&tool),
+        base_(base),
+        start_(start),
+        end_(end),
+        start_displacement_(displacement),
+        end_displacement_(displacement) {}
+
+  void displaceEnd(const ToolDisplacement& displacement) { end_displacement_ = displacement; }
+  /// The motion ends at a fraction [0, 1] of the way.
+  void stop(double fraction);
+  /// One input ends elsewhere.
+  void moveEnd(int input, double position) { end_[static_cast<std::size_t>(input)] = position; }
+  const ToolDisplacement& startDisplacement() const { return start_displacement_; }
+
+  /// Pose of every link in world at a fraction [0, 1] of the step.
+  /// @param at  in and out; of this tool on this base, or empty
+  void linkPoses(double fraction, LinkPoses& at) const;
+
+  /// The inputs at a fraction [0, 1] of the step [m], [rad].
+  std::array<double, kJointCount> inputs(double fraction) const;
+
+  /// The displacement at a fraction [0, 1] of the step.
+  ToolDisplacement displacement(double fraction) const;
+
+  /// An upper bound of the displacement of any point of a collision shape between two sets of link poses [m].
+  double travel(const std::vector<Eigen::Isometry3d>& from, const std::vector<Eigen::Isometry3d>& to) const;
+
+ private:
+  const ToolModel* tool_;
+  Eigen::Isometry3d base_;
+  std::array<double, kJointCount> start_, end_;
+  ToolDisplacement start_displacement_, end_displacement_;
+};
+
+/// Positions of the inputs after `dt` on the way to `command`, within the limits of position and speed. Entries that
+/// are not finite keep their position.
+std::array<double, kJointCount> limitedMotion(const ToolModel& tool, const std::array<double, kJointCount>& position,
+                                              const std::array<double, kJointCount>& command, double dt);
+
+/// The same with a hand whose force is limited: it does not move a joint of the scope on against an effort beyond
+/// JointLimits::effort.
+/// @param effort  of the hand on the joints in the last step [N], [N m]
+std::array<double, kJointCount> stalledMotion(const ToolModel& tool, const std::array<double, kJointCount>& start,
+                                              const std::array<double, kJointCount>& end,
+                                              const std::array<double, kScopeJointCount>& effort);
+
+/// The same with a hand that feels the force on the tip: the nearer it is to the largest that a hand applies, the less
+/// it moves a joint of the scope on against it.
+/// @param effort  of the hand on the joints in the last step [N], [N m]
+/// @param force   on the tool in the last step [N]
+std::array<double, kJointCount> feltMotion(const std::array<double, kJointCount>& start,
+                                           const std::array<double, kJointCount>& end,
+                                           const std::array<double, kScopeJointCount>& effort, double force);
+
+/// The same with joints that tissue has stopped a moment ago: the hand does not push them on in that direction.
+/// @param stall  steps for which that holds, with the sign of the direction; 0: not stopped
+std::array<double, kJointCount> heldMotion(const std::array<double, kJointCount>& start,
+                                           const std::array<double, kJointCount>& end,
+                                           const std::array<int, kJointCount>& stall);
+
+/// State::stall after a step.
+/// @param stopped  sign of the motion of each joint that tissue has stopped in the step, 0: it has not
+void updateStall(const std::array<int, kJointCount>& stopped, std::array<int, kJointCount>& stall);
+
+/// Derivative of the position of a point on a link with respect to the tool inputs: columns in the order of vibe::Joint
+/// [m/m], [m/rad].
+/// @param poses  of the links in any one frame, as from ToolModel::forwardKinematics(); the result is in that frame
+/// @param point  in the same frame [m]
+Eigen::Matrix<double, 3, kJointCount> pointJacobian(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses,
+                                                    int link, const Eigen::Vector3d& point);
+
+/// Derivative of the position of a point on a link with respect to the tool's displacement: columns in the order of
+/// ToolDisplacement [m/m], [m/rad], [m^2]. The first counts that the free length of a bent shaft changes.
+/// @param bend  of the shaft, ToolModel::shaftBend()
+Eigen::Matrix<double, 3, kYieldDofs> yieldJacobian(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses,
+                                                   const ShaftBend& bend, int link, const Eigen::Vector3d& point);
+
+/// Generalised force on the tool's displacement of a force and a torque that act on a link.
+/// @param point   at which the force acts, in the frame of the poses [m]
+/// @param force   [N], @param torque  [N m]: in the same frame
+YieldVector yieldForce(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses, const ShaftBend& bend,
+                       int link, const Eigen::Vector3d& point, const Eigen::Vector3d& force,
+                       const Eigen::Vector3d& torque);
+
+}  // namespace vibe

@@ -1,0 +1,103 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <initializer_list>
+#include <vector>
+
+#include "tool_contact/near_triangles.hpp"
+#include "tool_contact/tool_approach.hpp"
+#include "vibe_core/geometry/organ.hpp"
+#include "vibe_core/solver/body_loads.hpp"
+
+namespace vibe {
+
+/// Of a vertex that the helix holds, see SurfaceContacts::find().
+constexpr char kHeld = 2;
+
+/// Per vertex: the tool passes through the triangles there. The ends are open where the organ goes on: the scope passes
+/// through their closing surface.
+std::vector<char> passableVertices(const Organ& organ);
+
+/// A point of the wall that a tool shape touches or may reach within the step.
+struct SurfaceContact {
+  SurfacePoint point;
+  int shape = -1;              ///< of the tool
+  double clearance = 0;        ///< distance of the mid-surface from the shape where it touches: half the wall [m]
+  double distance = 0;         ///< of the mid-surface from the shape when `normal` was taken [m]
+  Eigen::Vector3d normal;      ///< unit, out of the shape, as the shape is turned at the end of the step
+  Eigen::Vector3d tool_point;  ///< of the shape's surface, at the end of the step [m]
+};
+
+/// Contacts of a tool with the triangles of a wall, continuous in time. A normal is that of a point at the moment of
+/// the step at which its forces act, if nothing stops it; or it is taken just before the wall would pass through the
+/// shape, so that wall and tool keep their sides however fast they move.
+///
+/// Contacts are points of the wall that stay the same from step to step: the vertices, and where these leave room for
+/// the shape between them, because it is thin or the triangles are large, points that divide edges and triangles
+/// evenly. A shape wider than the triangles therefore has one contact per vertex within reach. The nearest points of a
+/// triangle and a shape would be fewer, but they move with the tilt of the triangle, and a force that follows that from
+/// step to step does not come to rest. Where two shapes touch one place from one side, the deeper contact counts.
+class SurfaceContacts {
+ public:
+  /// @param thickness  of the wall per vertex [m]
+  /// @param passable   per vertex: the tool passes through the triangles there
+  SurfaceContacts(const ToolModel& tool, const SurfaceMesh& surface, const std::vector<double>& thickness,
+                  const std::vector<char>& passable);
+
+  /// @param start, end  pose of every link in world
+  /// @param path    vertices at the start of the step, and at its end if nothing stops them
+  /// @param margin  contacts are those that come nearer to touching than this [m]
+  /// @param excluded  per vertex: 1: it takes no part; a triangle of only such vertices neither; kHeld: the helix holds
+  ///                  it, and draws triangles there into the device on the tip of the scope
+  /// @param when    part of the step after which its forces act
+  /// @returns ordered by nodes, then depth; valid until the next call
+  const std::vector<SurfaceContact>& find(const std::vector<Eigen::Isometry3d>& start,
+                                          const std::vector<Eigen::Isometry3d>& end, const SurfacePath& path,
+                                          double margin, const std::vector<char>& excluded, double when = 1);
+
+  /// Those that the tool cannot pass.
+  const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
+
+ private:
+  struct Pair {
+    int triangle;
+    ToolApproach approach;
+  };
+  double halfThickness(const std::array<int, 3>& node, const Eigen::Vector3d& weight) const;
+  void followPairs(const SurfacePath& path, double margin, std::size_t first, std::size_t last);
+  void addVertices(const SurfacePath& path, double margin, int shape, const std::vector<char>& excluded);
+  bool isDrawnIn(int shape, std::initializer_list<int> vertices, const std::vector<char>& excluded) const;
+  void addBetween(const SurfacePath& path, double margin, int shape, const std::vector<char>& excluded);
+  void addNearest(int shape, const std::vector<char>& excluded);
+  int partsOf(int shape, double length) const;
+  double spacing(int shape) const;
+  double shareOfMiddle(int shape, double length) const;
+  void addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge, int parts, double share);
+  void addInterior(const SurfacePath& path, double margin, int shape, const Pair& pair, int parts);
+  void offer(const SurfacePoint& point, const SurfacePath& path, int shape, bool hit, double margin, double share = 1);
+  void add(const SurfacePoint& point, int shape, double fraction, const TriangleGap& gap, double clearance);
+  void addAlong(const SurfacePoint& point, int shape, const Eigen::Vector3d& start, const Eigen::Vector3d& end,
+                const TriangleGap& gap, double clearance);
+  bool isBuried(const SurfaceContact& contact) const;
+  void removeDuplicates();
+
+  SweptTool tool_;
+  std::vector<char> on_tip_;  // per shape
+  NearTriangles near_triangles_;
+  const std::vector<std::array<int, 3>>& triangles_;
+  std::vector<std::array<int, 3>> neighbour_;  // of each triangle across the edge after its k-th vertex, -1: none
+  std::vector<double> half_thickness_;         // per vertex
+  double max_half_thickness_ = 0, half_ = 0;   // the latter: mean
+  std::vector<std::array<double, 3>> length_;  // of the triangles' edges at rest [m]
+  std::vector<NearTriangles::Pair> near_;
+  std::vector<Pair> pairs_;    // of the shape in turn
+  std::vector<int> vertices_;  // of those
+  std::vector<char> hit_;      // per vertex: the shape would pass through one of its triangles
+  double when_ = 1;
+  double fraction_ = 1;               // up to which the shape in turn and all triangles stay apart
+  std::vector<int> stamp_, pair_of_;  // per vertex; per triangle, -1: none
+  int count_ = 0;
+  std::vector<SurfaceContact> contacts_, kept_;
+};
+
+}  // namespace vibe
