@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vibe {
+
+/// The numbers that steer a step: what counts as arrived, when a step is solved again, how much work it may do. They
+/// belong to the method and not to a scene, whose numbers have keys. Each row of the tables solver_numbers.inl and
+/// contact_numbers.inl is a member here, a row of docs/policy.md, and something that `vibe_policy` shifts to see what
+/// depends on it.
+struct StepPolicy {
+#define VIBE_POLICY_SECTION(title)
+#define VIBE_REAL(name, value, unit, meaning, reason) double name = value;
+#define VIBE_COUNT(name, value, meaning, reason) int name = value;
+#include "vibe_core/solver/contact_numbers.inl"
+#include "vibe_core/solver/solver_numbers.inl"
+#undef VIBE_POLICY_SECTION
+#undef VIBE_REAL
+#undef VIBE_COUNT
+};
+
+/// One number of the policy, for tables and for what shifts it.
+struct PolicyNumber {
+  std::string section, name;
+  std::string unit;  ///< empty for a ratio or a count
+  std::string meaning, reason;
+  double StepPolicy::*real = nullptr;  ///< exactly one of `real` and `count` is set
+  int StepPolicy::*count = nullptr;
+
+  double of(const StepPolicy& policy) const { return real != nullptr ? policy.*real : policy.*count; }
+  /// A count becomes the nearest whole number, at least 1 above or below where it would stay the same.
+  void scale(StepPolicy& policy, double factor) const;
+};
+
+/// All of them, in the order of the tables.
+const std::vector<PolicyNumber>& policyNumbers();
+
+/// The policy in use by this process.
+const StepPolicy& stepPolicy();
+/// Other numbers than the defaults, for experiments: before a model is made, and never while a step runs. Sessions then
+/// have other bits, and recordings do not say so.
+void setStepPolicy(const StepPolicy& policy);
+
+}  // namespace vibe
