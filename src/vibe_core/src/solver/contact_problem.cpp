@@ -5,29 +5,11 @@
 #include <limits>
 
 #include "arithmetic/elementary.hpp"
+#include "vibe_core/solver/step_policy.hpp"
 
 namespace vibe {
 
 namespace {
-
-// Added to the compliance of each row, over the row's own: contacts that their nodes cannot distinguish share the
-// force. Design choice: ten times the rounding of the columns, which are single precision [1].
-constexpr double kSoftness = 1e-6;
-// Sweeps of projected Gauss-Seidel that look for the rows that act. Design choice: they cost a tenth of a factorization
-// of 30 contacts.
-constexpr int kFirstSweeps = 4;
-// Factorizations of one solution. Measured: presses with up to 100 contacts take 1 to 5.
-constexpr int kFactorizations = 8;
-// Newton steps of one solution, most of them with a kept factor.
-constexpr int kSteps = 24;
-// Sweeps where that was not enough. Design choice: as much work as a few factorizations.
-constexpr int kLastSweeps = 40;
-// A solution is reached when no condition is violated by more. Design choice: a hundredth of the tolerance of a step
-// [m].
-constexpr double kTolerance = 1e-9;
-// Violation over the one before, above which a kept factor is not good enough. Design choice: a factorization costs
-// about as much as ten steps with a kept factor [1].
-constexpr double kContraction = 0.3;
 
 double sizeOf(const double* tangent) {
   return std::sqrt(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
@@ -65,7 +47,7 @@ void ContactProblem::finish() {
   contact_count_ = static_cast<int>(groups_.size());
   for (int i = 0; i < n_; ++i) {
     if (group_of_row_[static_cast<std::size_t>(i)] == kNone) addGroup(i, 1, 0);
-    compliance(i, i) *= 1 + kSoftness;
+    compliance(i, i) *= 1 + stepPolicy().shared_softness;
   }
   for (Group& group : groups_) {
     const int i = group.first;
@@ -192,7 +174,7 @@ void ContactProblem::setSlipRows(int equation, const Group& group, const Slip& s
   }
 }
 
-bool ContactProblem::factorActive(const double*) {
+bool ContactProblem::factorActive() {
   active_.clear();
   for (std::size_t g = 0; g < groups_.size(); ++g)
     for (int k = 0; k < groups_[g].rows && mode_[g] != Mode::Open; ++k) active_.push_back(groups_[g].first + k);
@@ -239,14 +221,14 @@ void ContactProblem::remember(double found, const double* force) {
 double ContactProblem::newton(const double* lack, double* force) {
   double before = std::numeric_limits<double>::infinity();
   int factors = 0;
-  for (int step = 0; step < kSteps && best_ > kTolerance; ++step) {
+  for (int step = 0; step < stepPolicy().contact_steps && best_ > stepPolicy().contact_tolerance; ++step) {
     findLeft(lack, force);
     if (classify(force)) findLeft(lack, force);
     const double found = violation(force);
     remember(found, force);
-    if (best_ <= kTolerance) break;
-    if (!factored_ || mode_ != factored_mode_ || !(found < kContraction * before)) {
-      if (factors++ == kFactorizations || !factorActive(force)) break;
+    if (best_ <= stepPolicy().contact_tolerance) break;
+    if (!factored_ || mode_ != factored_mode_ || !(found < stepPolicy().kept_contraction * before)) {
+      if (factors++ == stepPolicy().factorizations || !factorActive()) break;
     }
     before = found;
     newtonStep(force);
@@ -260,13 +242,13 @@ double ContactProblem::solve(const double* lack, double* force) {
   best_ = std::numeric_limits<double>::infinity();
   if (!factored_) {
     findLeft(lack, force);
-    for (int i = 0; i < kFirstSweeps; ++i) sweep(force, false);
+    for (int i = 0; i < stepPolicy().first_sweeps; ++i) sweep(force, false);
   }
   double found = newton(lack, force);
-  if (!(found <= kTolerance)) {
+  if (!(found <= stepPolicy().contact_tolerance)) {
     if (!std::isfinite(found)) std::fill(force, force + n_, 0.0);
     findLeft(lack, force);
-    for (int i = 0; i < kLastSweeps; ++i) sweep(force, false);
+    for (int i = 0; i < stepPolicy().last_sweeps; ++i) sweep(force, false);
     factored_ = false;
     findLeft(lack, force);
     if (classify(force)) findLeft(lack, force);

@@ -95,7 +95,7 @@ class ContactProblem {
   double violation(const double* force) const;
   double newton(const double* lack, double* force);
   void remember(double violation, const double* force);
-  bool factorActive(const double* force);
+  bool factorActive();
   void setNormalRow(int equation, int row);
   void setSlipRows(int equation, const Group& group, const Slip& slip);
   void newtonStep(double* force);

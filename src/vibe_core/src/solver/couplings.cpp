@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "vibe_core/solver/step_policy.hpp"
+
 namespace vibe {
 
 namespace {
@@ -60,18 +62,6 @@ void addCouplings(const std::vector<StiffnessCoupling>& couplings, const std::ve
 
 namespace {
 
-// Shortest segment that has a direction. Design choice: far below the size of a bite, far above rounding [m].
-constexpr double kShortestSegment = 1e-6;
-// Tension of a slack segment for its resistance to being turned. Design choice: keeps the compliance finite at a force
-// that nobody can measure [N].
-constexpr double kMinTension = 1e-6;
-// Stiffness that needs neither a coupling nor a row. Design choice: a hundredth of that of a wall of 2 mm (some
-// 100 N/m); the iterations find its effect [N/m].
-constexpr double kSoftTurn = 1;
-// Part of a spring's stiffness that may be missing in the factor without a row. Design choice: a quasi-Newton iteration
-// then reduces the error in its direction to a third at least [1].
-constexpr double kMayMiss = 0.25;
-
 bool setNodes(const AttachmentPoint& from, const AttachmentPoint& to, StiffnessCoupling& coupling) {
   if (from.node.size() + to.node.size() > coupling.node.size()) return false;
   std::size_t n = 0;
@@ -117,13 +107,13 @@ double stiffnessIn(const std::vector<StiffnessCoupling>& list, const StiffnessCo
 }  // namespace
 
 double turnCompliance(double length, double tension) {
-  return std::max(length, kMinThread) / std::max(tension, kMinTension);
+  return std::max(length, kMinThread) / std::max(tension, stepPolicy().slack_tension);
 }
 
 Eigen::Vector3d segmentDirection(const Eigen::Vector3d& between_points) {
   const double length = between_points.norm();
-  return length > kShortestSegment ? Eigen::Vector3d(between_points / length)
-                                   : Eigen::Vector3d(Eigen::Vector3d::UnitX());
+  return length > stepPolicy().shortest_segment ? Eigen::Vector3d(between_points / length)
+                                                : Eigen::Vector3d(Eigen::Vector3d::UnitX());
 }
 
 void addThreadCouplings(const BodyLoads& loads, const double* positions4, double gain,
@@ -135,7 +125,7 @@ void addThreadCouplings(const BodyLoads& loads, const double* positions4, double
       if (!setNodes(loads.attachments[first], loads.attachments[first + 1], coupling)) continue;
       const Eigen::Vector3d run = runOf(coupling, positions4);
       const double stiffness = 1 / (gain * turnCompliance(run.norm(), thread.tension[k]));
-      if (stiffness < kSoftTurn) continue;
+      if (stiffness < stepPolicy().soft_turn) continue;
       setAcross(segmentDirection(run), stiffness, coupling);
       couplings.push_back(coupling);
     }
@@ -150,10 +140,11 @@ void findMissingTurns(const BodyLoads& loads, const std::vector<StiffnessCouplin
       StiffnessCoupling coupling;
       const double wanted = 1 / segment.turn_compliance;
       double has = 0;
-      if (wanted > kSoftTurn && setNodes(loads.attachments[first], loads.attachments[first + 1], coupling))
+      if (wanted > stepPolicy().soft_turn && setNodes(loads.attachments[first], loads.attachments[first + 1], coupling))
         has = stiffnessIn(in_factor, coupling, hint);
       const double missing = wanted - has;
-      segment.turn_missing = missing > std::max(kSoftTurn, kMayMiss * wanted) ? 1 / missing : 0;
+      segment.turn_missing =
+          missing > std::max(stepPolicy().soft_turn, stepPolicy().missing_turn * wanted) ? 1 / missing : 0;
     }
 }
 

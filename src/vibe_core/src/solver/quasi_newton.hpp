@@ -3,10 +3,14 @@
 #include <limits>
 
 #include "solver/potential.hpp"
+#include "vibe_core/solver/step_ways.hpp"
 
 namespace vibe {
 
-/// Iterations of L-BFGS on top of the scratch's factor towards the minimum of a potential under the scratch's rows.
+/// Iterations of L-BFGS on top of the scratch's factor towards the minimum of a potential under the scratch's rows. The
+/// direction is that of the two-loop recursion with the factor, rows and gas eliminated, as the initial inverse
+/// (Nocedal 1980, doi 10.1090/S0025-5718-1980-0572855-7); the search along it is that of Armijo, with the approximate
+/// Wolfe condition where rounding hides a decrease (Hager, Zhang 2005, doi 10.1137/030601880).
 class QuasiNewton {
  public:
   /// @param safe_length      a last move shorter than this is not verified [m]
@@ -26,15 +30,15 @@ class QuasiNewton {
   /// That length, after the first direction [m].
   double judgedBy() const { return first_length_; }
   /// Forgets the history; needed after a new factor.
-  void restart() { scratch_.pairs = 0; }
+  void restart() { history_.count = 0; }
   /// Finds the direction that the next iterate takes, if it is not known yet.
   void aim();
   /// Where that leads.
   const std::vector<double>& foreseen();
-  /// The rows are others than when this was made, and nothing has moved since.
+  /// Takes the scratch's rows: once they are built, and again when others count, before anything moves.
   void takeRows();
   /// One step: direction, then as much of it as lowers the energy.
-  /// @param most    no node moves farther [m]
+  /// @param max     no node moves farther [m]
   /// @param verify  false: the end point is not evaluated if the move is safe, because it is short or
   ///                because the iteration is contracting (then no more iterations may follow)
   /// @returns how far a node moved at most [m]
@@ -57,6 +61,8 @@ class QuasiNewton {
   bool exhausted() const { return evaluations_ >= max_evaluations_; }
   int evaluations() const { return evaluations_; }
   int solves() const { return solves_; }
+  /// Which ways the iterations have taken.
+  const StepWays& ways() const { return ways_; }
   /// How far the next iterate would move a node: the last direction times the rate at which directions shrink, or the
   /// last direction where no rate is known [m].
   double residual() const;
@@ -86,10 +92,14 @@ class QuasiNewton {
   GasLoad& gas_;
   const EnergyTerm* extra_;
   StepperWorkspace& scratch_;
+  Iterate& at_;
+  PairHistory& history_;
+  RowSystem& system_;
   RowUnknowns& unknowns_;
   double safe_length_;
   int max_evaluations_;
   int evaluations_ = 0, solves_ = 0;
+  StepWays ways_;
   double value_ = 0;
   GasLaw::Piece gas_piece_ = GasLaw::Piece::Kept;
   double direction_length_ = 0, last_length_ = -1, before_length_ = -1;

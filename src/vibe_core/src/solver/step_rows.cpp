@@ -1,19 +1,15 @@
-#include "solver/time_scheme.hpp"
+#include "solver/step_rows.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <limits>
 
 #include "arithmetic/ordered_algebra.hpp"
+#include "solver/contact_bound.hpp"
 #include "solver/couplings.hpp"
 #include "suture/capstan.hpp"
 
 namespace vibe {
 namespace {
-
-// Depth in the tool at which a contact without a row is given one. Design choice: a tenth of half a wall; the guard of
-// the tool would stop wall and tool [m].
-constexpr double kLeftOut = 1e-4;
 
 Eigen::Vector3d positionOf(const AttachmentPoint& attachment, const MotionView& motion) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -120,31 +116,6 @@ double stepTarget(const LinearForm& form, double target, const MotionView& motio
   return free + scheme.z_gain / scheme.x_gain * residual;
 }
 
-void setTargetsOfStep(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
-                      StepperWorkspace& scratch) {
-  const auto set = [&](int row, const LinearForm& form) {
-    scratch.target[row] = stepTarget(form, scratch.target[row], motion, scheme);
-  };
-  setTargets(loads, scratch.rows, scratch.target);
-  scratch.rows.forEachMultiplier(set);
-  scratch.rows.forEachSpring([&set](int row, const LinearForm& form, double) { set(row, form); });
-}
-
-// @param yielded  by the tool, against its forces
-double depthOf(const ContactRows& contact, const YieldVector& yielded, const std::vector<double>& z) {
-  return contact.target - fixedDot(contact.yield.row(0).transpose(), yielded) - contact.form[0].value(z);
-}
-
-// The first ones of an order count, in the order that they have already.
-void countFirstOf(std::vector<std::pair<double, std::size_t>>& order, StepperWorkspace& scratch) {
-  ConstraintRows& rows = scratch.rows;
-  std::sort(order.begin(), order.begin() + kMaxContacts,
-            [](const auto& one, const auto& other) { return one.second < other.second; });
-  for (std::size_t k = 0; k < kMaxContacts; ++k) std::swap(rows.contacts[k], rows.contacts[order[k].second]);
-  rows.number(kMaxContacts);
-  scratch.rhs.resize(rows.count());
-}
-
 void scaleSegment(double gain, SegmentRows& segment) {
   segment.compliance *= gain;
   segment.spare *= gain;
@@ -160,19 +131,19 @@ void scaleCompliances(double gain, ConstraintRows& rows) {
     for (SegmentRows& segment : thread.segments) scaleSegment(gain, segment);
 }
 
-void storeThread(const StepperWorkspace& scratch, const ThreadRows& rows, double gain, ThreadLoad& thread) {
+void storeThread(const RowSystem& system, const ThreadRows& rows, double gain, ThreadLoad& thread) {
   thread.tension.resize(thread.length.size());
   for (int k = 0; k < rows.count(); ++k) {
-    thread.tension[k] = scratch.schur.forces()[rows.pullRow(k)];
-    thread.length[k] -= scratch.unknowns.lost()[rows.pullRow(k)] / gain;
+    thread.tension[k] = system.schur.forces()[rows.pullRow(k)];
+    thread.length[k] -= system.unknowns.lost()[rows.pullRow(k)] / gain;
   }
   fillShortSegments(thread.length);
 }
 
 }  // namespace
 
-void buildRows(const BodyLoads& loads, const MotionView& motion, StepperWorkspace& scratch) {
-  ConstraintRows& rows = scratch.rows;
+void buildRows(const BodyLoads& loads, const MotionView& motion, RowSystem& system) {
+  ConstraintRows& rows = system.rows;
   rows.clear();
   for (const LinearConstraint& constraint : loads.constraints) {
     EquationRow& row = rows.equations.add();
@@ -186,68 +157,35 @@ void buildRows(const BodyLoads& loads, const MotionView& motion, StepperWorkspac
   rows.tool_yields = loads.tool_yield.dofs > 0;
   if (rows.tool_yields) rows.tool_compliance = loads.tool_yield.compliance;
   rows.number();
-  scratch.target.resize(rows.count());
-  scratch.rhs.resize(rows.count());
+  system.target.resize(rows.count());
+  system.rhs.resize(rows.count());
 }
 
-void setEquilibriumTargets(const BodyLoads& loads, StepperWorkspace& scratch) {
-  setTargets(loads, scratch.rows, scratch.target);
-  if (limitContacts(scratch)) setTargets(loads, scratch.rows, scratch.target);
+void setEquilibriumTargets(const BodyLoads& loads, const std::vector<double>& z, RowSystem& system) {
+  setTargets(loads, system.rows, system.target);
+  if (limitContacts(z, system)) setTargets(loads, system.rows, system.target);
+}
+
+void setTargetsOfStep(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme, RowSystem& system) {
+  const auto set = [&](int row, const LinearForm& form) {
+    system.target[row] = stepTarget(form, system.target[row], motion, scheme);
+  };
+  setTargets(loads, system.rows, system.target);
+  system.rows.forEachMultiplier(set);
+  system.rows.forEachSpring([&set](int row, const LinearForm& form, double) { set(row, form); });
 }
 
 void setStepTargets(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
-                    const std::vector<StiffnessCoupling>& in_factor, StepperWorkspace& scratch) {
-  setTargetsOfStep(loads, motion, scheme, scratch);
-  scaleCompliances(scheme.z_gain / scheme.x_gain, scratch.rows);
-  findMissingTurns(loads, in_factor, scratch.rows);
-  if (limitContacts(scratch)) setTargetsOfStep(loads, motion, scheme, scratch);
+                    const std::vector<StiffnessCoupling>& in_factor, const std::vector<double>& z, RowSystem& system) {
+  setTargetsOfStep(loads, motion, scheme, system);
+  scaleCompliances(scheme.z_gain / scheme.x_gain, system.rows);
+  findMissingTurns(loads, in_factor, system.rows);
+  if (limitContacts(z, system)) setTargetsOfStep(loads, motion, scheme, system);
 }
 
-bool limitContacts(StepperWorkspace& scratch) {
-  ConstraintRows& rows = scratch.rows;
-  if (rows.contacts.size() <= kMaxWithFriction) return false;
-  std::vector<std::pair<double, std::size_t>>& order = scratch.contact_order;
-  order.clear();
-  for (std::size_t c = 0; c < rows.contacts.size(); ++c) {
-    rows.contacts[c].target = scratch.target[rows.contactRow(c)];
-    order.emplace_back(rows.contacts[c].form[0].value(scratch.z) - rows.contacts[c].target, c);
-  }
-  std::sort(order.begin(), order.end());
-  for (std::size_t k = kMaxWithFriction; k < order.size(); ++k) rows.contacts[order[k].second].friction = 0;
-  if (order.size() <= kMaxContacts) return false;
-  countFirstOf(order, scratch);
-  return true;
-}
-
-bool exchangeContacts(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
-                      const std::vector<double>& z, StepperWorkspace& scratch) {
-  const ConstraintRows& rows = scratch.rows;
-  if (!(depthLeftOut(z, scratch) > kLeftOut)) return false;
-  const YieldVector yielded = rows.tool_compliance * scratch.schur.pull();
-  std::vector<std::pair<double, std::size_t>>& order = scratch.contact_order;
-  order.clear();
-  for (std::size_t c = 0; c < rows.contacts.size(); ++c) {
-    const bool pushes = c < rows.counted && scratch.schur.forces()[rows.contactRow(c)] > 0;
-    order.emplace_back(pushes ? -std::numeric_limits<double>::max() : -depthOf(rows.contacts[c], yielded, z), c);
-  }
-  std::sort(order.begin(), order.end());
-  countFirstOf(order, scratch);
-  setTargetsOfStep(loads, motion, scheme, scratch);
-  return true;
-}
-
-double depthLeftOut(const std::vector<double>& z, const StepperWorkspace& scratch) {
-  const ConstraintRows& rows = scratch.rows;
-  const YieldVector yielded = rows.tool_compliance * scratch.schur.pull();
-  double deepest = 0;
-  for (std::size_t c = rows.counted; c < rows.contacts.size(); ++c)
-    deepest = std::max(deepest, depthOf(rows.contacts[c], yielded, z));
-  return deepest;
-}
-
-void storeToolForces(const StepperWorkspace& scratch, BodyLoads& loads) {
-  const Eigen::VectorXd& force = scratch.schur.forces();
-  const ConstraintRows& rows = scratch.rows;
+void storeToolForces(const RowSystem& system, BodyLoads& loads) {
+  const Eigen::VectorXd& force = system.schur.forces();
+  const ConstraintRows& rows = system.rows;
   for (ContactConstraint& contact : loads.contacts) contact.force.setZero();
   for (std::size_t c = 0; c < rows.counted; ++c) {
     ContactConstraint& contact = loads.contacts[rows.contacts[c].load];
@@ -258,15 +196,12 @@ void storeToolForces(const StepperWorkspace& scratch, BodyLoads& loads) {
   if (rows.tool_yields) loads.tool_yield.displacement = loads.tool_yield.free - loads.tool_yield.compliance * pull;
 }
 
-void storeForces(const StepperWorkspace& scratch, double gain, BodyLoads& loads) {
-  storeToolForces(scratch, loads);
-  const Eigen::VectorXd& force = scratch.schur.forces();
-  const ConstraintRows& rows = scratch.rows;
+void storeForces(const RowSystem& system, double gain, BodyLoads& loads) {
+  storeToolForces(system, loads);
+  const Eigen::VectorXd& force = system.schur.forces();
+  const ConstraintRows& rows = system.rows;
   for (std::size_t i = 0; i < loads.constraints.size(); ++i) loads.constraints[i].force = force[i];
-  for (std::size_t t = 0; t < loads.threads.size(); ++t) storeThread(scratch, rows.threads[t], gain, loads.threads[t]);
-  loads.gas.volume = scratch.last.volume;
-  loads.gas.pressure = scratch.last.pressure;
-  loads.gas.stiffness = scratch.gas_stiffness;
+  for (std::size_t t = 0; t < loads.threads.size(); ++t) storeThread(system, rows.threads[t], gain, loads.threads[t]);
 }
 
 }  // namespace vibe

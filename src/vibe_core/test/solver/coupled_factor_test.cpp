@@ -3,8 +3,8 @@
 
 #include "solver/implicit_worlds.hpp"
 #include "solver/quasi_newton.hpp"
+#include "solver/step_rows.hpp"
 #include "solver/stepper_workspace.hpp"
-#include "solver/time_scheme.hpp"
 #include "vibe_core/solver/energy_term.hpp"
 
 namespace vibe::coupled_factor_test {
@@ -94,17 +94,18 @@ struct Descent {
       : body(platesBody()), springs(plates(), true), stepper(body, {}, FactorStorage::Double), motion(body) {
     const auto scratch = stepper.makeWorkspace();
     const std::vector<StiffnessCoupling> none;
-    EXPECT_TRUE(factorAt(body, {{}, in_factor ? springs.couplings() : none}, 0, 1, scratch->plan, scratch->matrix,
-                         *scratch->factor, scratch->single));
-    scratch->schur.reset(*scratch->factor);
+    EXPECT_TRUE(factorAt(body, {{}, in_factor ? springs.couplings() : none}, 0, 1, scratch->factors.plan,
+                         scratch->factors.matrix, *scratch->factors.current, scratch->single));
+    scratch->system.schur.reset(*scratch->factors.current);
     for (int i = 0; i < body.nodeCount(); ++i)
-      for (int k = 0; k < 3; ++k) scratch->z[4 * i + k] = body.rest[i][k];
+      for (int k = 0; k < 3; ++k) scratch->iterate.z[4 * i + k] = body.rest[i][k];
     loads.extra = &springs;
-    buildRows(loads, motion.view(), *scratch);
-    setEquilibriumTargets(loads, *scratch);
-    scratch->schur.setRows(scratch->rows, *scratch->factor, scratch->columns);
+    buildRows(loads, motion.view(), scratch->system);
+    setEquilibriumTargets(loads, scratch->iterate.z, scratch->system);
+    scratch->system.schur.setRows(scratch->system.rows, *scratch->factors.current, scratch->factors.columns);
     Potential potential(body, loads, 0, *scratch);
     QuasiNewton newton(body, potential, loads, *scratch);
+    newton.takeRows();
     newton.start();
     for (int i = 0; i < 5; ++i) {
       newton.iterate(1, true);
@@ -198,10 +199,10 @@ TEST(CoupledFactor, FixedNodesAreLeftOut) {
   ASSERT_TRUE(some_fixed);
   const ImplicitStepper stepper(body, {});
   const auto scratch = stepper.makeWorkspace();
-  ASSERT_TRUE(factorAt(body, {{}, springs.couplings()}, 3600, 1, scratch->plan, scratch->matrix, *scratch->factor,
-                       scratch->single));
-  ASSERT_FALSE(scratch->matrix.pairs().empty());
-  for (const NodePair& pair : scratch->matrix.pairs()) {
+  ASSERT_TRUE(factorAt(body, {{}, springs.couplings()}, 3600, 1, scratch->factors.plan, scratch->factors.matrix,
+                       *scratch->factors.current, scratch->single));
+  ASSERT_FALSE(scratch->factors.matrix.pairs().empty());
+  for (const NodePair& pair : scratch->factors.matrix.pairs()) {
     EXPECT_EQ(body.fixed[static_cast<std::size_t>(pair.row)] + body.fixed[static_cast<std::size_t>(pair.column)], 0);
     EXPECT_LT(pattern.find(pair.row, pair.column), 0);
   }

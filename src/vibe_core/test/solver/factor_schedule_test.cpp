@@ -17,11 +17,11 @@ struct Fixture {
   Fixture() : body(cantilever({3, 1, 1})), stepper(body, {}), motion(body), scratch(stepper.makeWorkspace()) {}
   void moveTip(double by) { motion.x[2].back() = body.rest.back().z() + by; }
   void advance(const FactorSchedule& schedule = kSchedule) {
-    schedule.advance(body, motion.view(), loads, memory, *scratch);
+    schedule.advance(body, motion.view(), loads, memory, scratch->factors);
   }
   void step() {
     advance();
-    kSchedule.provide(body, {}, memory, *scratch);
+    kSchedule.provide(body, {}, memory, scratch->factors, scratch->single);
     ++memory.steps;
   }
   std::vector<float> solution(const StepperWorkspace& of) const {
@@ -63,11 +63,11 @@ TEST(FactorSchedule, PositionsAreNamedWhenANodeIsFarAndTakeOverAfterTheGivenStep
   for (int i = 0; i < kSchedule.steps - 1; ++i) {
     fixture.step();
     EXPECT_EQ(fixture.memory.linearization_id, rest) << "step " << i;
-    EXPECT_EQ(fixture.scratch->factor_id, rest);
+    EXPECT_EQ(fixture.scratch->factors.current_id, rest);
   }
   fixture.step();
   EXPECT_EQ(fixture.memory.linearization_id, next);
-  EXPECT_EQ(fixture.scratch->factor_id, next);
+  EXPECT_EQ(fixture.scratch->factors.current_id, next);
   EXPECT_FLOAT_EQ(fixture.memory.linearization_point.back(), static_cast<float>(fixture.body.rest.back().z() + 1.1e-3));
 }
 
@@ -84,7 +84,7 @@ TEST(FactorSchedule, AFactorThatTakesMoreOperationsTakesOverLater) {
     BodyMotion motion = fixture.motion;
     StepperMemory memory;
     const auto scratch = stepper.makeWorkspace();
-    stepper.step(motion.view(), fixture.loads, memory, *scratch);
+    stepper.step(motion.view(), fixture.loads, memory, scratch->factors, scratch->single);
     EXPECT_EQ(memory.due, steps);
   }
 }
@@ -127,7 +127,7 @@ TEST(FactorSchedule, AFactorFromTheBackgroundHasTheBitsOfOneMadeAtOnce) {
   const auto fresh = fixture.stepper.makeWorkspace();
   StepperMemory memory = fixture.memory;
   memory.next.clear();
-  kSchedule.provide(fixture.body, {}, memory, *fresh);
+  kSchedule.provide(fixture.body, {}, memory, fresh->factors, fresh->single);
   EXPECT_EQ(fixture.solution(*fresh), from_background);
 }
 
@@ -136,15 +136,15 @@ TEST(FactorSchedule, AttachmentColumnsFollowTheirFactor) {
   BodyLoads loads;
   loads.attachments = {{{4, 5}, {0.5, 0.5}}};
   fixture.advance();
-  kSchedule.provide(fixture.body, loads, fixture.memory, *fixture.scratch);
-  const ColumnCache& columns = fixture.scratch->columns;
+  kSchedule.provide(fixture.body, loads, fixture.memory, fixture.scratch->factors, fixture.scratch->single);
+  const ColumnCache& columns = fixture.scratch->factors.columns;
   const std::vector<float> first = columns.columns(columns.attachmentSlot(0)).value;
   loads.attachments.push_back({{7}, {1}});
-  kSchedule.provide(fixture.body, loads, fixture.memory, *fixture.scratch);
+  kSchedule.provide(fixture.body, loads, fixture.memory, fixture.scratch->factors, fixture.scratch->single);
   EXPECT_EQ(columns.columns(columns.attachmentSlot(0)).value, first);
   EXPECT_FALSE(columns.columns(columns.attachmentSlot(1)).value.empty());
   loads.attachments = {{{7}, {1}}};
-  kSchedule.provide(fixture.body, loads, fixture.memory, *fixture.scratch);
+  kSchedule.provide(fixture.body, loads, fixture.memory, fixture.scratch->factors, fixture.scratch->single);
   EXPECT_NE(columns.columns(columns.attachmentSlot(0)).value, first);
 }
 

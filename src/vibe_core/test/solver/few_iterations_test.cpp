@@ -44,7 +44,7 @@ double minimumJerk(double part) {
 // Of the motion, the wall, the foundation and the gas; but for the gas's at the start [J].
 double energyOf(Ball& ball, double start_volume) {
   Body& run = *ball.run;
-  double energy = run.kinetic() + run.stepper.elasticEnergy(run.motion.view(), *run.scratch);
+  double energy = run.kinetic() + run.stepper.elastic(run.motion.view(), *run.scratch).energy;
   const ElasticBody& body = run.stepper.body();
   for (int i = 0; i < run.nodes(); ++i)
     energy += 0.5 * body.foundation[i] * (run.position(i) - body.rest[i]).squaredNorm();

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "solver/implicit_worlds.hpp"
+#include "solver/step_rows.hpp"
 #include "solver/stepper_workspace.hpp"
-#include "solver/time_scheme.hpp"
 #include "vibe_core/solver/energy_term.hpp"
 
 namespace vibe::quasi_newton_test {
@@ -30,19 +30,19 @@ struct Problem {
   /// @param factored  the body that the factor is made for
   explicit Problem(const ElasticBody& factored)
       : body(springs()), stepper(body, {}, FactorStorage::Double), scratch(stepper.makeWorkspace()), motion(body) {
-    EXPECT_TRUE(factorAt(factored, {}, 0, 1, scratch->matrix, *scratch->factor));
-    scratch->schur.reset(*scratch->factor);
+    EXPECT_TRUE(factorAt(factored, {}, 0, 1, scratch->factors.matrix, *scratch->factors.current));
+    scratch->system.schur.reset(*scratch->factors.current);
     for (int i = 0; i < body.nodeCount(); ++i)
-      for (int k = 0; k < 3; ++k) scratch->z[4 * i + k] = body.rest[i][k];
+      for (int k = 0; k < 3; ++k) scratch->iterate.z[4 * i + k] = body.rest[i][k];
   }
   void setLoads() {
-    buildRows(loads, motion.view(), *scratch);
-    setEquilibriumTargets(loads, *scratch);
-    scratch->schur.setRows(scratch->rows, *scratch->factor, scratch->columns);
+    buildRows(loads, motion.view(), scratch->system);
+    setEquilibriumTargets(loads, scratch->iterate.z, scratch->system);
+    scratch->system.schur.setRows(scratch->system.rows, *scratch->factors.current, scratch->factors.columns);
   }
   double errorAt(int node) const {
     const Eigen::Vector3d expected = body.rest[node] + body.load[node] / kSpring;
-    return (Eigen::Vector3d(&scratch->z[4 * node]) - expected).norm();
+    return (Eigen::Vector3d(&scratch->iterate.z[4 * node]) - expected).norm();
   }
   double maxError() const {
     double max = 0;
@@ -61,6 +61,7 @@ TEST(QuasiNewton, TheExactFactorOfAQuadraticLeadsThereInOneIteration) {
   problem.setLoads();
   Potential potential(problem.body, problem.loads, 0, *problem.scratch);
   QuasiNewton newton(problem.body, potential, problem.loads, *problem.scratch);
+  newton.takeRows();
   EXPECT_GT(problem.maxError(), 5e-4) << "negative control: it starts at the solution";
   newton.start();
   EXPECT_GT(newton.iterate(kFar, true), 5e-4);
@@ -76,6 +77,7 @@ std::vector<double> lengths(bool with_history, int iterations) {
   problem.setLoads();
   Potential potential(problem.body, problem.loads, 0, *problem.scratch);
   QuasiNewton newton(problem.body, potential, problem.loads, *problem.scratch);
+  newton.takeRows();
   newton.start();
   std::vector<double> result;
   for (int i = 0; i < iterations; ++i) {
@@ -101,6 +103,7 @@ TEST(QuasiNewton, AMoveIsShortenedToTheLongestAllowed) {
   problem.setLoads();
   Potential potential(problem.body, problem.loads, 0, *problem.scratch);
   QuasiNewton newton(problem.body, potential, problem.loads, *problem.scratch);
+  newton.takeRows();
   newton.start();
   EXPECT_NEAR(newton.iterate(1e-4, true), 1e-4, 1e-9);
   EXPECT_FALSE(newton.contracts());
@@ -122,18 +125,20 @@ TEST(QuasiNewton, ADirectionWithoutLowerEnergyIsReportedAndNotTaken) {
   problem.loads.extra = &liar;
   Potential potential(problem.body, problem.loads, 0, *problem.scratch);
   QuasiNewton newton(problem.body, potential, problem.loads, *problem.scratch);
+  newton.takeRows();
   newton.start();
   const StepperWorkspace& scratch = *problem.scratch;
-  const std::vector<double> before = scratch.z;
-  const std::vector<float> displacement = scratch.last.displacement, elastic = scratch.last.elastic_gradient;
-  const double energy = scratch.last.elastic_value;
+  const std::vector<double> before = scratch.iterate.z;
+  const std::vector<float> displacement = scratch.iterate.last.displacement,
+                           elastic = scratch.iterate.last.elastic_gradient;
+  const double energy = scratch.iterate.last.elastic_value;
   EXPECT_EQ(newton.iterate(kFar, true), 0);
   EXPECT_TRUE(newton.failed());
-  EXPECT_EQ(scratch.z, before);
+  EXPECT_EQ(scratch.iterate.z, before);
   // forces and works of the step are those at z, not those of the trial that was rejected
-  EXPECT_EQ(scratch.last.displacement, displacement);
-  EXPECT_EQ(scratch.last.elastic_gradient, elastic);
-  EXPECT_EQ(scratch.last.elastic_value, energy);
+  EXPECT_EQ(scratch.iterate.last.displacement, displacement);
+  EXPECT_EQ(scratch.iterate.last.elastic_gradient, elastic);
+  EXPECT_EQ(scratch.iterate.last.elastic_value, energy);
 }
 
 TEST(QuasiNewton, AConstraintIsMetAtTheMinimum) {
@@ -143,10 +148,11 @@ TEST(QuasiNewton, AConstraintIsMetAtTheMinimum) {
   problem.setLoads();
   Potential potential(problem.body, problem.loads, 0, *problem.scratch);
   QuasiNewton newton(problem.body, potential, problem.loads, *problem.scratch);
+  newton.takeRows();
   newton.start();
   for (int i = 0; i < 3; ++i) newton.iterate(kFar, true);
-  storeForces(*problem.scratch, 1, problem.loads);
-  EXPECT_NEAR(problem.scratch->z[4 * node + 2], problem.body.rest[node].z() + 2e-3, 1e-8);
+  storeForces(problem.scratch->system, 1, problem.loads);
+  EXPECT_NEAR(problem.scratch->iterate.z[4 * node + 2], problem.body.rest[node].z() + 2e-3, 1e-8);
   EXPECT_NEAR(problem.loads.pointForce(0).z(), kSpring * 2e-3 - problem.body.load[node].z(), 1e-5);
   EXPECT_LT(problem.errorAt(0), 1e-7) << "other nodes do not feel it";
 }

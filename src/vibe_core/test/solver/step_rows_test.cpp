@@ -1,5 +1,5 @@
 // Loads as rows: their order, directions and targets, and the way of the forces back.
-#include "solver/time_scheme.hpp"
+#include "solver/step_rows.hpp"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ struct Fixture {
     thread.friction = 0.15;
     thread.tension = {2, 0};
     loads.threads.push_back(thread);
-    buildRows(loads, motion.view(), *scratch);
+    buildRows(loads, motion.view(), scratch->system);
   }
   Eigen::Vector3d place(int attachment) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -52,7 +52,7 @@ struct Fixture {
 
 TEST(StepRows, AreNumberedEquationsContactsThreads) {
   Fixture fixture;
-  const ConstraintRows& rows = fixture.scratch->rows;
+  const ConstraintRows& rows = fixture.scratch->system.rows;
   EXPECT_EQ(rows.count(), 3 + 3 + 6);
   EXPECT_EQ(rows.contactRow(0), 3);
   ASSERT_EQ(rows.threads.size(), 1u);
@@ -65,13 +65,13 @@ TEST(StepRows, AreNumberedEquationsContactsThreads) {
   rows.forEachSpring([&order](int row, const LinearForm&, double) { order.push_back(row); });
   EXPECT_EQ(order, (std::vector<int>{8, 9, 10, 11}));
   // negative control: without loads there is nothing
-  buildRows({}, fixture.motion.view(), *fixture.scratch);
+  buildRows({}, fixture.motion.view(), fixture.scratch->system);
   EXPECT_EQ(rows.count(), 0);
 }
 
 TEST(StepRows, AContactHasItsNormalAndTwoTangents) {
   Fixture fixture;
-  const ContactRows& contact = fixture.scratch->rows.contacts[0];
+  const ContactRows& contact = fixture.scratch->system.rows.contacts[0];
   Eigen::Matrix3d frame;
   for (int k = 0; k < 3; ++k) frame.col(k) = contact.form[static_cast<std::size_t>(k)].coefficient[0];
   EXPECT_LT((frame.transpose() * frame - Eigen::Matrix3d::Identity()).norm(), 1e-14);
@@ -89,40 +89,40 @@ TEST(StepRows, TheDeepestContactsCountWhereThereAreTooMany) {
     fixture.loads.contacts.push_back(first);
     fixture.loads.contacts.back().offset = 1e-5 * ((7 * i) % kCount);
   }
-  scratch.z = fixture.four(fixture.motion);
-  buildRows(fixture.loads, fixture.motion.view(), scratch);
-  setEquilibriumTargets(fixture.loads, scratch);
-  ASSERT_EQ(scratch.rows.counted, 128);
+  scratch.iterate.z = fixture.four(fixture.motion);
+  buildRows(fixture.loads, fixture.motion.view(), scratch.system);
+  setEquilibriumTargets(fixture.loads, scratch.iterate.z, scratch.system);
+  ASSERT_EQ(scratch.system.rows.counted, 128);
   for (int i = 0; i < kCount; ++i) {
-    const ContactRows& contact = scratch.rows.contacts[i];
+    const ContactRows& contact = scratch.system.rows.contacts[i];
     const int deeper = kCount - 1 - static_cast<int>(7 * contact.load) % kCount;
     EXPECT_EQ(contact.friction, deeper < 32 ? first.friction : 0) << deeper;
     EXPECT_EQ(i < 128, deeper < 128) << deeper;
-    EXPECT_TRUE(i == 0 || i >= 128 || scratch.rows.contacts[i - 1].load < contact.load) << i;
+    EXPECT_TRUE(i == 0 || i >= 128 || scratch.system.rows.contacts[i - 1].load < contact.load) << i;
   }
-  ASSERT_TRUE(factorAt(fixture.body, {}, 3600, 1, scratch.matrix, *scratch.factor));
-  scratch.schur.reset(*scratch.factor);
-  scratch.columns.setAttachments(*scratch.factor, fixture.loads.attachments);
-  scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
-  scratch.rhs.setZero();
-  for (int i = 0; i < 128; ++i) scratch.rhs[scratch.rows.contactRow(i)] = 1e-3;
-  scratch.schur.eliminate(scratch.rhs, 0, scratch.half.data());
-  EXPECT_LT(scratch.schur.violation(), 1e-8);
+  ASSERT_TRUE(factorAt(fixture.body, {}, 3600, 1, scratch.factors.matrix, *scratch.factors.current));
+  scratch.system.schur.reset(*scratch.factors.current);
+  scratch.factors.columns.setAttachments(*scratch.factors.current, fixture.loads.attachments);
+  scratch.system.schur.setRows(scratch.system.rows, *scratch.factors.current, scratch.factors.columns);
+  scratch.system.rhs.setZero();
+  for (int i = 0; i < 128; ++i) scratch.system.rhs[scratch.system.rows.contactRow(i)] = 1e-3;
+  scratch.system.schur.eliminate(scratch.system.rhs, 0, scratch.iterate.half.data());
+  EXPECT_LT(scratch.system.schur.violation(), 1e-8);
   double pushing = 0;
-  for (int i = 0; i < 128; ++i) pushing += scratch.schur.forces()[scratch.rows.contactRow(i)];
+  for (int i = 0; i < 128; ++i) pushing += scratch.system.schur.forces()[scratch.system.rows.contactRow(i)];
   EXPECT_GT(pushing, 1e-3);
-  scratch.unknowns.begin(scratch.rows);
-  storeForces(scratch, 1, fixture.loads);
+  scratch.system.unknowns.begin(scratch.system.rows);
+  storeForces(scratch.system, 1, fixture.loads);
   for (int i = 0; i < kCount; ++i) {
-    const ContactRows& contact = scratch.rows.contacts[i];
-    const double row_force = i < 128 ? scratch.schur.forces()[scratch.rows.contactRow(i)] : 0;
+    const ContactRows& contact = scratch.system.rows.contacts[i];
+    const double row_force = i < 128 ? scratch.system.schur.forces()[scratch.system.rows.contactRow(i)] : 0;
     EXPECT_NEAR(fixture.loads.contacts[contact.load].force.dot(first.normal), row_force, 1e-12);
   }
 }
 
 TEST(StepRows, ASegmentPullsAlongItselfAndResistsTurning) {
   Fixture fixture;
-  const ThreadRows& thread = fixture.scratch->rows.threads[0];
+  const ThreadRows& thread = fixture.scratch->system.rows.threads[0];
   const Eigen::Vector3d between = fixture.place(1) - fixture.place(0);
   const SegmentRows& segment = thread.segments[0];
   EXPECT_LT((segment.along - between.normalized()).norm(), 1e-14);
@@ -137,11 +137,11 @@ TEST(StepRows, ASegmentPullsAlongItselfAndResistsTurning) {
 
 TEST(StepRows, TargetsOfAnEquilibriumAreThoseOfTheLoads) {
   Fixture fixture;
-  setEquilibriumTargets(fixture.loads, *fixture.scratch);
-  const Eigen::VectorXd& target = fixture.scratch->target;
+  setEquilibriumTargets(fixture.loads, fixture.scratch->iterate.z, fixture.scratch->system);
+  const Eigen::VectorXd& target = fixture.scratch->system.target;
   EXPECT_EQ(Eigen::Vector3d(target.head<3>()), Eigen::Vector3d(0.1, 0.2, 0.3));
   EXPECT_EQ(target[3], 0.7);
-  const ContactRows& contact = fixture.scratch->rows.contacts[0];
+  const ContactRows& contact = fixture.scratch->system.rows.contacts[0];
   EXPECT_EQ(target[4], contact.form[1].coefficient[0].dot(fixture.loads.contacts[0].anchor));
   EXPECT_EQ(target[6], -0.02);
   EXPECT_TRUE(target.tail<4>().isZero(0));
@@ -153,9 +153,9 @@ TEST(StepRows, TargetsOfAStepAreMetAtItsEnd) {
   for (int i = 0; i < fixture.body.nodeCount(); ++i)
     for (int k = 0; k < 3; ++k) fixture.motion.v[k][i] = 0.1 * (k + 1) + 0.01 * i, fixture.motion.a[k][i] = 2.0 * k - i;
   const TimeScheme scheme(fixture.stepper.settings(), 1.5, 0.01);
-  setStepTargets(fixture.loads, fixture.motion.view(), scheme, {}, *fixture.scratch);
-  const LinearForm& form = fixture.scratch->rows.equations[0].form;
-  const double target = fixture.scratch->target[0];
+  setStepTargets(fixture.loads, fixture.motion.view(), scheme, {}, fixture.scratch->iterate.z, fixture.scratch->system);
+  const LinearForm& form = fixture.scratch->system.rows.equations[0].form;
+  const double target = fixture.scratch->system.target[0];
   // one acceleration for all nodes, such that z is at the target
   BodyMotion z = fixture.motion, end = fixture.motion;
   const auto place = [&](double acceleration) {
@@ -170,26 +170,26 @@ TEST(StepRows, TargetsOfAStepAreMetAtItsEnd) {
   const double at_zero = place(0), per_unit = (place(1) - at_zero);
   EXPECT_NEAR(place((target - at_zero) / per_unit), target, 1e-12);
   EXPECT_NEAR(form.value(fixture.four(end)), 0.1, 1e-12);
-  EXPECT_DOUBLE_EQ(fixture.scratch->rows.equations[0].compliance, 0.02 * scheme.z_gain / scheme.x_gain);
+  EXPECT_DOUBLE_EQ(fixture.scratch->system.rows.equations[0].compliance, 0.02 * scheme.z_gain / scheme.x_gain);
   EXPECT_GT(std::abs(target - 0.1), 1e-6) << "negative control: the two targets are the same";
 }
 
 TEST(StepRows, ForcesComeBackToTheLoads) {
   Fixture fixture;
   StepperWorkspace& scratch = *fixture.scratch;
-  setEquilibriumTargets(fixture.loads, scratch);
-  ASSERT_TRUE(factorAt(fixture.body, {}, 3600, 1, scratch.matrix, *scratch.factor));
-  scratch.schur.reset(*scratch.factor);
-  scratch.columns.setAttachments(*scratch.factor, fixture.loads.attachments);
-  scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
-  scratch.rhs.setConstant(1e-3);
-  scratch.rhs.tail<4>().setZero();
-  scratch.schur.eliminate(scratch.rhs, 0, scratch.half.data());
-  scratch.unknowns.begin(scratch.rows);
-  scratch.unknowns.lose(6, 2e-3);
-  scratch.unknowns.lose(7, -2e-3);
-  storeForces(scratch, 2, fixture.loads);
-  const Eigen::VectorXd& force = scratch.schur.forces();
+  setEquilibriumTargets(fixture.loads, scratch.iterate.z, scratch.system);
+  ASSERT_TRUE(factorAt(fixture.body, {}, 3600, 1, scratch.factors.matrix, *scratch.factors.current));
+  scratch.system.schur.reset(*scratch.factors.current);
+  scratch.factors.columns.setAttachments(*scratch.factors.current, fixture.loads.attachments);
+  scratch.system.schur.setRows(scratch.system.rows, *scratch.factors.current, scratch.factors.columns);
+  scratch.system.rhs.setConstant(1e-3);
+  scratch.system.rhs.tail<4>().setZero();
+  scratch.system.schur.eliminate(scratch.system.rhs, 0, scratch.iterate.half.data());
+  scratch.system.unknowns.begin(scratch.system.rows);
+  scratch.system.unknowns.lose(6, 2e-3);
+  scratch.system.unknowns.lose(7, -2e-3);
+  storeForces(scratch.system, 2, fixture.loads);
+  const Eigen::VectorXd& force = scratch.system.schur.forces();
   ASSERT_GT(force.head<8>().cwiseAbs().maxCoeff(), 0);
   EXPECT_EQ(fixture.loads.pointForce(0), Eigen::Vector3d(force.head<3>()));
   EXPECT_NEAR(fixture.loads.contacts[0].force.norm(), force.segment<3>(3).norm(), 1e-12);
@@ -201,14 +201,14 @@ TEST(StepRows, ForcesComeBackToTheLoads) {
 TEST(StepRows, AsMuchThreadAsAFoldNeedsStaysBetweenTwoBites) {
   Fixture fixture;
   StepperWorkspace& scratch = *fixture.scratch;
-  scratch.unknowns.begin(scratch.rows);
-  ASSERT_TRUE(factorAt(fixture.body, {}, 3600, 1, scratch.matrix, *scratch.factor));
-  scratch.schur.reset(*scratch.factor);
-  scratch.columns.setAttachments(*scratch.factor, fixture.loads.attachments);
-  scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
-  scratch.unknowns.lose(6, 0.018);
-  scratch.unknowns.lose(7, -0.018);
-  storeForces(scratch, 1, fixture.loads);
+  scratch.system.unknowns.begin(scratch.system.rows);
+  ASSERT_TRUE(factorAt(fixture.body, {}, 3600, 1, scratch.factors.matrix, *scratch.factors.current));
+  scratch.system.schur.reset(*scratch.factors.current);
+  scratch.factors.columns.setAttachments(*scratch.factors.current, fixture.loads.attachments);
+  scratch.system.schur.setRows(scratch.system.rows, *scratch.factors.current, scratch.factors.columns);
+  scratch.system.unknowns.lose(6, 0.018);
+  scratch.system.unknowns.lose(7, -0.018);
+  storeForces(scratch.system, 1, fixture.loads);
   EXPECT_DOUBLE_EQ(fixture.loads.threads[0].length[0], kMinThread);
   EXPECT_NEAR(fixture.loads.threads[0].length[1], 0.035 - kMinThread, 1e-15) << "the sum stays";
 }

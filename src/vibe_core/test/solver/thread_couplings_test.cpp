@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/implicit_worlds.hpp"
-#include "solver/time_scheme.hpp"
+#include "solver/step_rows.hpp"
 
 namespace vibe::thread_couplings_test {
 namespace {
@@ -21,10 +21,12 @@ struct Fixture {
     loads.threads.push_back(thread);
     for (int i = 0; i < body.nodeCount(); ++i)
       for (int k = 0; k < 4; ++k) positions.push_back(k < 3 ? body.rest[i][k] : 0);
-    buildRows(loads, motion.view(), *scratch);
+    buildRows(loads, motion.view(), scratch->system);
   }
-  const SegmentRows& segment(std::size_t k) const { return scratch->rows.threads[0].segments[k]; }
-  void find(const std::vector<StiffnessCoupling>& in_factor) { findMissingTurns(loads, in_factor, scratch->rows); }
+  const SegmentRows& segment(std::size_t k) const { return scratch->system.rows.threads[0].segments[k]; }
+  void find(const std::vector<StiffnessCoupling>& in_factor) {
+    findMissingTurns(loads, in_factor, scratch->system.rows);
+  }
   ElasticBody body;
   ImplicitStepper stepper;
   BodyMotion motion;

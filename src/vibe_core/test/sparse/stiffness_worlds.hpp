@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
+#include "solver/factor_schedule.hpp"
 #include "solver/implicit_worlds.hpp"
-#include "solver/stepper_workspace.hpp"
 #include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/builder/tissue_registry.hpp"
 #include "vibe_core/scene/scene_parser.hpp"

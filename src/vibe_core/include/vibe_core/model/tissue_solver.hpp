@@ -6,6 +6,7 @@
 
 #include "vibe_core/clocks/step_stages.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
+#include "vibe_core/solver/step_ways.hpp"
 #include "vibe_core/tool/tool_model.hpp"
 
 namespace vibe {
@@ -26,6 +27,7 @@ struct StepReport {
   std::array<int, kJointCount> stopped{};                 ///< joints that tissue has stopped: sign of their motion
   int blocking_particle = -1;  ///< nearest to what has stopped the whole tool; -1: it goes on, or rests by itself
   int contact_count = 0;       ///< see State
+  StepWays ways;               ///< that the step took where something was not as foreseen
   int solves = 0;              ///< of an implicit solver: 1, more where the wall stops the tool or it ends elsewhere
   int iterations = 0;          ///< of an implicit solver, in the last of them
   int evaluations = 0;         ///< of the elastic energy, by an implicit solver, in all of them

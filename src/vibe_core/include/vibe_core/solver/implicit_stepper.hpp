@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
 
 #include "vibe_core/solver/elastic_body.hpp"
+#include "vibe_core/solver/step_ways.hpp"
 #include "vibe_core/sparse/factor.hpp"
 #include "vibe_core/state/stepper_memory.hpp"
 
@@ -41,12 +41,12 @@ struct StepOutcome {
   bool converged = false;    ///< last_move is below the tolerance
   bool fallback = false;     ///< backward Euler, because of the settings or because one of the last did not arrive
   bool arrived = true;       ///< false: the step ended because its work is limited; the next steps go on
-  double residual = 0;   ///< how far the next iteration would have moved a node, or a contact or thread is violated [m]
-  int evaluations = 0;   ///< of the energy and its gradient
-  int solves = 0;        ///< with the factor
-  bool finite = true;    ///< false: the state is not usable
-  bool refused = false;  ///< nothing has moved: the caller wants other loads, see step()
-  StepWork work;         ///< of a step
+  double residual = 0;  ///< how far the next iteration would have moved a node, or a contact or thread is violated [m]
+  int evaluations = 0;  ///< of the energy and its gradient
+  int solves = 0;       ///< with the factor
+  bool finite = true;   ///< false: the state is not usable
+  StepWays ways;        ///< those that were taken
+  StepWork work;        ///< of a step
 };
 
 struct StepSettings {
@@ -71,8 +71,7 @@ struct StepSettings {
 
 /// The memory of a stepper: factors, histories, vectors. One per thread of control.
 class StepperWorkspace;
-class QuasiNewton;
-struct TimeScheme;
+struct StepPlan;
 
 /// Evaluations of the energy that a step may take beyond StepSettings::iterations. Design choice: eight, so that L-BFGS
 /// with a history of six pairs shows its superlinear rate in a step that needs it.
@@ -92,8 +91,8 @@ class ImplicitStepper {
   ImplicitStepper(ElasticBody body, StepSettings settings, FactorStorage storage = FactorStorage::Half);
   ~ImplicitStepper();
 
-  const ElasticBody& body() const { return body_; }           ///< as constructed
-  const StepSettings& settings() const { return settings_; }  ///< as constructed
+  const ElasticBody& body() const;       ///< as constructed
+  const StepSettings& settings() const;  ///< as constructed
 
   /// Memory for one thread of control. Workspaces of one stepper share the factors that they have, see shareFactor().
   std::shared_ptr<StepperWorkspace> makeWorkspace() const;
@@ -105,53 +104,35 @@ class ImplicitStepper {
   /// Names the present positions as those that the factor is about, at once. Costs tens of step times.
   void refactor(const MotionView& motion, StepperMemory& memory) const;
 
-  /// One step. It starts along the velocities where these carry a node far, else from the positions. Its work is
-  /// limited by counts: settings().iterations + kSpareEvaluations evaluations of the energy, or settings().iterations +
-  /// kSpareInFallback with backward Euler, and at most two solves for each. A step that does not arrive ends at the
-  /// best point it has found, with the mean velocity over the step, and the next few steps take backward Euler. Forces
-  /// of the loads are their means over the step.
-  /// @param accepts  asked once, before anything moves, with the forces of contacts and the displacement of the tool in
-  ///                 the loads that the first direction foresees; where it says no, stepAgain() must follow. Empty: not
-  ///                 asked
-  StepOutcome step(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch,
-                   const std::function<bool()>& accepts = {}) const;
+  /// One step, by one solve. It starts along the velocities where these carry a node far, else from the positions. Its
+  /// work is limited by counts: settings().iterations + kSpareEvaluations evaluations of the energy, or
+  /// settings().iterations + kSpareInFallback with backward Euler, and at most two solves for each. A step that does
+  /// not arrive ends at the best point it has found, with the mean velocity over the step, and the next few steps take
+  /// backward Euler. Forces of the loads are their means over the step.
+  StepOutcome step(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
 
-  /// The last step() once more, with other loads, from where that has ended if it arrived, or where it was refused. All
-  /// solves of a step together take as many evaluations as two without backward Euler may, but each has some at least.
-  /// @param motion  as before that step
-  StepOutcome stepAgain(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
+  /// A step of several solves, with other loads in each: begin(), a StepSolve, and for each further one beginAgain(),
+  /// with the motion as at the start of the step. A further solve starts where the one before has ended, if that
+  /// arrived, or was abandoned. All together take as many evaluations as two without backward Euler may, but each has
+  /// some at least.
+  void begin(const MotionView& motion, const BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
+  void beginAgain(StepperMemory& memory, StepperWorkspace& scratch) const;
+  const StepPlan& plan() const { return *plan_; }
 
   /// The equilibrium under the loads from the positions in `motion` (velocities become 0), refactoring as it goes.
   /// @param tolerance  no node would move farther [m]
   StepOutcome settle(MotionView motion, BodyLoads& loads, StepperWorkspace& scratch, double tolerance,
                      int max_iterations = 400) const;
 
-  /// Elastic energy at the positions [J].
-  double elasticEnergy(const MotionView& motion, StepperWorkspace& scratch) const;
+  /// Elastic energy at the positions, and its gradient.
+  struct Elastic {
+    double energy;                       ///< [J]
+    const std::vector<float>& gradient;  ///< (4 per node), in the workspace until it is used again [N]
+  };
+  Elastic elastic(const MotionView& motion, StepperWorkspace& scratch) const;
 
  private:
-  StepOutcome advance(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch,
-                      const std::function<bool()>& accepts) const;
-  struct Plan;
-  bool extrapolates(bool fallback) const;
-  double guess(const MotionView& motion, bool fallback, StepperWorkspace& scratch) const;
-  double predict(const MotionView& motion, const TimeScheme& scheme, StepperWorkspace& scratch) const;
-  static void correctStored(StepperMemory& memory, const StepperWorkspace& scratch, StepOutcome& outcome);
-  void iterateStep(const MotionView& motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch,
-                   const std::function<bool()>& accepts, StepOutcome& outcome) const;
-  void chooseContacts(const MotionView& motion, const BodyLoads& loads, const TimeScheme& scheme, QuasiNewton& newton,
-                      StepperWorkspace& scratch) const;
-  static void refuse(const QuasiNewton& newton, StepperWorkspace& scratch, StepOutcome& outcome);
-  int evaluationsLeft(bool fallback, int spent) const;
-  void iterate(QuasiNewton& newton, StepperWorkspace& scratch, StepperMemory& memory, StepOutcome& outcome) const;
-  void startFromHere(const MotionView& motion, QuasiNewton& newton, StepperWorkspace& scratch) const;
-  void toPresent(const MotionView& motion, StepperWorkspace& scratch) const;
-  void refactorHere(const BodyLoads& loads, StepperWorkspace& scratch) const;
-  void placeAtRest(const StepperWorkspace& scratch, const MotionView& motion) const;
-
-  ElasticBody body_;
-  StepSettings settings_;
-  std::unique_ptr<Plan> plan_;
+  std::unique_ptr<const StepPlan> plan_;
 };
 
 }  // namespace vibe
