@@ -148,9 +148,50 @@ def draw_technique(axes):
              title="least value {:.2f}; a U needs < -0.7".format(ends.min()))
     axes.title.set_fontsize(9)
 
+# --- the order of a step: boxes in a grid of columns and rows, and arrows between them
+
+STEP_BOXES = {  # name: (column, row, width, text, number of the way or None)
+    "gather": (0, 0, 1, "blocks add loads;\ncontacts where the\ntool is expected", None),
+    "asleep": (0, 1, 1, "1 asleep\n2 recovery", "way"),
+    "guess": (1, 0, 1, "start: along the\nvelocities, or here", None),
+    "drop": (1, 1, 1, "3 guess tangled\n4 guess misled", "way"),
+    "aim": (2, 0, 1, "first direction,\nrows eliminated", None),
+    "exchange": (2, 1, 1, "5 contacts exchanged", "way"),
+    "early": (2, 2, 1, "6 tool reaimed early", "way"),
+    "iterate": (3, 0, 1, "iterations\n(L-BFGS, line search)", None),
+    "search": (3, 1, 1, "7 pairs dropped\n8 search restarted\n9 constraints met\n10 last move unseen", "way"),
+    "arrived": (3, 2, 1, "11 not arrived\n12 backward Euler", "way"),
+    "separate": (4, 0, 1, "walls and tool\non their sides", None),
+    "again": (4, 1, 1, "13 tool reaimed\n14 tool limited", "way"),
+    "stop": (4, 2, 1, "15 wall stopped", "way"),
+    "store": (5, 0, 1, "forces, works,\nimpedance", None),
+    "finite": (5, 1, 1, "16 not finite", "way"),
+}
+STEP_ARROWS = (("gather", "guess"), ("guess", "aim"), ("aim", "iterate"), ("iterate", "separate"), ("separate", "store"),
+               ("gather", "asleep"), ("guess", "drop"), ("aim", "exchange"), ("exchange", "early"), ("iterate", "search"),
+               ("search", "arrived"), ("separate", "again"), ("again", "stop"), ("store", "finite"))
+
+
+def draw_ways(axes):
+    axes.set(xlim=(-0.55, 5.55), ylim=(-3.05, 0.55))
+    axes.axis("off")
+    for first, second in STEP_ARROWS:
+        (x, y), (u, v) = (STEP_BOXES[name][:2] for name in (first, second))
+        start, end = ((x + 0.43, -y), (u - 0.43, -v)) if y == v else ((x, -y - 0.3), (u, -v + 0.3))
+        axes.annotate("", end, start, arrowprops={"arrowstyle": "->", "color": "0.4"})
+    for column, row, _, text, kind in STEP_BOXES.values():
+        axes.text(column, -row, text, ha="center", va="center", fontsize=7.5,
+                  bbox={"boxstyle": "round,pad=0.35", "fc": "#fdd9b0" if kind else "0.92", "ec": "0.4"})
+    for column, low in ((2, -2.3), (4.3, -1.3)):
+        axes.plot([column, column], [low, -2.75], color="tab:red", linewidth=1)
+    axes.plot([4.3, -0.5, -0.5], [-2.75, -2.75, 0], color="tab:red", linewidth=1)
+    axes.annotate("", (-0.4, 0), (-0.51, 0), arrowprops={"arrowstyle": "->", "color": "tab:red"})
+    axes.text(0.7, -2.75, "another attempt, from the state before the step", fontsize=8, va="center", ha="center",
+              color="tab:red", bbox={"fc": "white", "ec": "none"})
+
 
 FIGURES = {"laws": draw_laws, "damping": draw_damping, "contact": draw_contact, "capstan": draw_capstan, "dose": draw_dose,
-           "technique": draw_technique}
+           "technique": draw_technique, "ways": draw_ways}
 
 
 def main():
@@ -158,7 +199,8 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     folder = parser.parse_args().folder
     for name, draw in FIGURES.items():
-        figure, axes = plt.subplots(figsize=(4.8, 3.2), layout="constrained")
+        size = (10.5, 4.2) if name == "ways" else (4.8, 3.2)
+        figure, axes = plt.subplots(figsize=size, layout="constrained")
         draw(axes)
         figure.savefig(folder / "computation_{}.png".format(name), dpi=110, metadata={"Software": None})
         plt.close(figure)

@@ -64,6 +64,12 @@ def contact_parts():
     yield Part("steps_1_ms_small", (*words, "--scene", "{small}"), 0.3)
 
 
+def ways_parts():
+    yield Part("states", ("vibe_contact", "ways", "free", "pressed", "wound", "cinch1", "cinch6"), 3)
+    yield Part("jump", ("vibe_contact", "ways", "jump"), 1)
+    yield Part("sleeve", ("vibe_contact", "ways", "sleeve"), 6)
+
+
 def threads_parts():
     for count in ("2", "4", "8"):
         words = ("vibe_contact", "states", "free", "pressed", "wound", "--no-reference", "--real-time", "--repeats", "3")
@@ -144,6 +150,7 @@ def sections(root, meshes=()):
         Section("pulling", "two bites pulled together by thread and by groups", case, (),
                 (Part("pulling", ("vibe_bench", "--pulling"), 3),)),
         Section("states", "steps in contact", ("state", "rate", "iterations"), STATE_ERRORS, tuple(contact_parts())),
+        Section("ways", "ways on which steps go on otherwise than foreseen", ("case", "way"), (), tuple(ways_parts())),
         Section("threads", "wall time of steps by number of threads", ("state", "threads"), (), tuple(threads_parts())),
         Section("instructions", "instructions of steps in contact", ("state",), (), tuple(instructions_parts())),
         Section("refinement", "force of a grip on finer meshes", ("grip", "site"), (), tuple(refinement_parts())),

@@ -167,6 +167,24 @@ def steps_1_ms(store):
     return table(("state, 1,020 Hz, 1 iteration", "mean", "p50, p99 ms", "iterations"), lines), rows
 
 
+@made_from("ways")
+def ways(store):
+    """Steps of 1,000 that take each way, and in brackets their evaluations over those of all steps of the case."""
+    rows = store.rows("ways")
+    cases, words = (list(dict.fromkeys(row[name] for row in rows)) for name in ("case", "way"))
+    found = {(row["case"], row["way"]): row for row in rows}
+
+    def cell(case, word):
+        row = found.get((case, word))
+        if row is None:
+            return ""
+        cost = number(row["evaluations"]) / number(row["evaluations_of_all"])
+        return "{} ({})".format(digits(1000 * number(row["taken"]) / number(row["steps"])), digits(cost))
+
+    lines = [(word, *(cell(case, word) for case in cases)) for word in words]
+    return table(("of 1,000 steps", *(f"`{case}`" for case in cases)), lines), [(f"`{row['case']}`", row) for row in rows]
+
+
 @made_from("threads")
 def threads(store):
     """Of a state the row with one thread of the first part; ratios are those within a part, which is one run."""

@@ -1,4 +1,5 @@
 // Measures steps in contact: speed beside the error against a time-converged motion, and the hard cases.
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <string>
@@ -6,6 +7,7 @@
 #include "contact/contact_table.hpp"
 #include "contact/grip_refinement.hpp"
 #include "contact/hard_cases.hpp"
+#include "contact/way_counts.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/program/command_line.hpp"
 #include "vibe_core/program/error.hpp"
@@ -104,6 +106,23 @@ OptionList addHard(OptionList& line, Options& o) {
   return hard;
 }
 
+std::vector<std::string> wayCaseNames() {
+  std::vector<std::string> names = contactStateNames();
+  names.insert(names.end(), hardCaseNames().begin(), hardCaseNames().end());
+  return names;
+}
+
+OptionList addWays(OptionList& line, Options& o) {
+  OptionList ways = line.subcommand("ways", "how often steps go on otherwise than foreseen, and what those steps cost");
+  ways.option("CASE", o.names, "states and hard cases (default: all states, and sleeve)")
+      .typeName("")
+      .check(oneOf(wayCaseNames()).hidden());
+  ways.option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)").typeName("FILE");
+  ways.flag("--brief", o.brief, "shorter motions, fewer sets");
+  ways.option("--csv", o.csv, "write the rows there (- for standard output)").typeName("FILE");
+  return ways;
+}
+
 OptionList addRefinement(OptionList& line, Options& o) {
   OptionList refinement = line.subcommand("refinement", "force of a pull by 20 mm on finer and finer meshes");
   refinement.option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)").typeName("FILE");
@@ -164,7 +183,7 @@ void runHard(const Options& options) {
   HardCases cases(scene, readTextFile(resolveAddress(scene.scope->urdf), "URDF"), options.brief, std::cerr);
   std::ofstream steps(options.steps);
   if (!options.steps.empty()) writeHardStepHeader(steps);
-  const HardOutput output{options.steps.empty() ? nullptr : &steps, options.first_crossing};
+  const HardOutput output{options.steps.empty() ? nullptr : &steps, nullptr, options.first_crossing};
   std::vector<HardResult> results;
   const auto run = [&](const HardCase& hard) {
     results.push_back(runHardCase(hard, output));
@@ -177,6 +196,32 @@ void runHard(const Options& options) {
       run(cases.prepare(name, seed));
   for (const std::string& script : options.scripts) run(cases.session(script, options.duration));
   save(options.csv, [&](std::ostream& out) { writeHardResults(results, out); });
+}
+
+void runWays(const Options& options) {
+  const Scene scene = sceneOf(options);
+  const std::string urdf = readTextFile(resolveAddress(scene.scope->urdf), "URDF");
+  std::vector<std::string> names = options.names;
+  if (names.empty()) {
+    names = contactStateNames();
+    names.emplace_back("sleeve");
+  }
+  ContactStates states(scene, urdf, std::cerr);
+  HardCases cases(scene, urdf, options.brief, std::cerr);
+  std::vector<WayCounts> counts;
+  for (const std::string& name : names) {
+    std::cerr << name << std::endl;
+    WayCounts& ways = counts.emplace_back(name);
+    const auto& known = contactStateNames();
+    if (std::find(known.begin(), known.end(), name) != known.end())
+      runContact(states.prepare(name), {60, scene.tissue.iterations, scene.tissue.spectral_radius}, &ways);
+    else
+      runHardCase(cases.prepare(name), {nullptr, &ways, ""});
+  }
+  save(options.csv.empty() ? "-" : options.csv, [&](std::ostream& out) {
+    writeWayHeader(out);
+    for (const WayCounts& ways : counts) ways.write(out);
+  });
 }
 
 void runRefinement(const Options& options) {
@@ -193,10 +238,12 @@ int main(int argc, char** argv) {
   const OptionList states = addStates(line, options);
   const OptionList hard = addHard(line, options);
   const OptionList refinement = addRefinement(line, options);
+  const OptionList ways = addWays(line, options);
   line.requireSubcommand();
   return runProgram(line, argc, argv, [&] {
     if (states.isChosen()) runStates(options);
     if (hard.isChosen()) runHard(options);
     if (refinement.isChosen()) runRefinement(options);
+    if (ways.isChosen()) runWays(options);
   });
 }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <thread>
 
+#include "contact/way_counts.hpp"
 #include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/constraints/wall_contacts.hpp"
 #include "vibe_core/model/accounting.hpp"
@@ -86,8 +87,9 @@ double timeOfOthers() {
 /// Steps one case and fills its record.
 class Recorder {
  public:
-  Recorder(const ContactCase& one, const ContactSetting& setting)
+  Recorder(const ContactCase& one, const ContactSetting& setting, WayCounts* ways)
       : one_(one),
+        ways_(ways),
         simulation_(modelAt(one, setting), settingsOf(setting)),
         check_(simulation_.model()),
         contacts_(simulation_.model()) {
@@ -125,6 +127,7 @@ class Recorder {
     const State& state = simulation_.state();
     noteTimes(end);
     const StepReport& report = simulation_.report();
+    if (ways_ != nullptr) ways_->add(report);
     trace_.iterations += report.iterations;
     trace_.max_iterations = std::max(trace_.max_iterations, report.iterations);
     trace_.fallback_steps += report.fallback ? 1 : 0;
@@ -156,6 +159,7 @@ class Recorder {
   }
 
   const ContactCase& one_;
+  WayCounts* ways_;
   Simulation simulation_;
   ContactCheck check_;
   WallContacts contacts_;
@@ -171,8 +175,8 @@ class Recorder {
   return simulation.step(input);
 }
 
-ContactTrace runContact(const ContactCase& one, const ContactSetting& setting) {
-  return Recorder(one, setting).run();
+ContactTrace runContact(const ContactCase& one, const ContactSetting& setting, WayCounts* ways) {
+  return Recorder(one, setting, ways).run();
 }
 
 void takeFaster(const ContactTrace& other, ContactTrace& trace) {

@@ -19,6 +19,8 @@
 
 namespace vibe::benchmarks {
 
+class WayCounts;
+
 /// Force that a case compares.
 enum class ContactSignal { ToolForce, ThreadTension };
 
@@ -88,7 +90,8 @@ struct ContactTrace {
   std::string stages;        ///< StageSummary of all steps, if it was asked for
 };
 
-ContactTrace runContact(const ContactCase& one, const ContactSetting& setting);
+/// @param ways  counts the ways of its steps; null: they are not counted
+ContactTrace runContact(const ContactCase& one, const ContactSetting& setting, WayCounts* ways = nullptr);
 
 /// The steps of runContact() but the first; a function of its own for scripts/instructions, which counts in it.
 const std::vector<Event>& countedStep(Simulation& simulation, const StepInput& input);

@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include "contact/contact_run.hpp"
+#include "contact/way_counts.hpp"
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 
@@ -98,6 +99,7 @@ class Runner {
   void lookAtSolver() {
     const State& state = simulation_->state();
     const StepReport& report = simulation_->report();
+    if (output_.ways != nullptr) output_.ways->add(report);
     result_.iterations += report.iterations;
     result_.max_iterations = std::max(result_.max_iterations, report.iterations);
     result_.fallback_steps += report.fallback ? 1 : 0;

@@ -12,6 +12,8 @@
 
 namespace vibe::benchmarks {
 
+class WayCounts;
+
 /// A stretch of a hard case.
 struct HardPhase {
   std::string name;
@@ -68,6 +70,7 @@ struct HardResult {
 /// What runHardCase() writes beside its result.
 struct HardOutput {
   std::ostream* steps = nullptr;  ///< one line of CSV per step; null: none
+  WayCounts* ways = nullptr;      ///< counts the ways of the steps; null: they are not counted
   std::string first_crossing;     ///< file for a snapshot of the state before the first crossing; empty: none
 };
 

@@ -106,12 +106,14 @@ std::optional<AttemptResult> ImplicitStep::solve(Attempt attempt) {
     stepper_.beginAgain(state_.solver, scratch);
   StepSolve solve(stepper_.plan(), motionOf(state_), scratch_.loads, state_.solver, scratch);
   solve.foresee();
+  // another attempt costs little now
   if (first && tool_ && state_.solver.fallback == 0 && tool_->misses()) {
     report_.evaluations += solve.abandon();
     report_.ways.count(StepWay::ToolReaimedEarly);
     follow_ = stepPolicy().aim_foreseen;
     return AttemptResult::ReaimTool;
   }
+  // and more now, but the forces are those of the step
   const StepOutcome outcome = solve.finish();
   take(outcome);
   if (!outcome.finite) return AttemptResult::Unusable;

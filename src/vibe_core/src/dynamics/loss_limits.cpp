@@ -31,6 +31,7 @@ LossLimits::LossLimits(const ShellElements& shell, const std::vector<Eigen::Vect
     for (int piece = 0; piece < shell.pieceCount(); ++piece) energy += shell.evaluate(piece, u.data(), gradient.data());
     return energy;
   };
+  // all other loads store far less than a wall that is twice as large
   unheld_energy_ = 0.1 * energyAt(2);
   double before = energyAt(1);
   for (int k = 0; k < kStretches && rest_volume_ > 0; ++k) {
@@ -38,6 +39,7 @@ LossLimits::LossLimits(const ShellElements& shell, const std::vector<Eigen::Vect
     pressure_.push_back((energy - before) / kSpacing / (3 * stretch * stretch * rest_volume_));
     before = energy;
   }
+  // the first maximum: beyond it more gas means less pressure
   for (std::size_t k = 1; k + 1 < pressure_.size(); ++k)
     if (pressure_[k] > pressure_[k - 1] && pressure_[k] >= pressure_[k + 1]) {
       limit_stretch_ = 1 + (static_cast<double>(k) + 0.5) * kSpacing;

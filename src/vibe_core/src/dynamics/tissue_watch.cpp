@@ -41,13 +41,13 @@ bool TissueWatch::isLost(bool insufflator_on) const {
 
 // Loops of a coarse wall may catch in each other. Their forces then lead through each other, for good.
 bool TissueWatch::isJammed() const {
-  return -state_.solver.recovery_steps * model_.scene.step_period >= stepPolicy().jammed_time;
+  return state_.solver.jammed_steps * model_.scene.step_period >= stepPolicy().jammed_time;
 }
 
 void TissueWatch::countJam(double given, double held) {
-  int& steps = state_.solver.recovery_steps;
+  int& steps = state_.solver.jammed_steps;
   const bool jams = given > stepPolicy().jammed_rate * model_.scene.step_period * held;
-  steps = jams ? steps - 1 : std::min(0, steps + 1);
+  steps = jams ? steps + 1 : std::max(0, steps - 1);
 }
 
 // Whether the gas bears most of the wall's tension. By the virial theorem, forces in balance have opposite sums of

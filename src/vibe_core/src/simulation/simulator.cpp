@@ -8,6 +8,7 @@
 #include "procedure/marking.hpp"
 #include "procedure/procedure.hpp"
 #include "procedure/suturing.hpp"
+#include "tool/hand_model.hpp"
 #include "tool/tool_motion.hpp"
 #include "vibe_core/constraints/gas.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
@@ -148,11 +149,8 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   std::optional<ToolMotion> motion;
   ToolPoses& poses = workspace.solverWorkspace().tool;
   if (model.tool) {
-    auto end = limitedMotion(*model.tool, state.joints, input.joints, dt);
-    end = model.scope_springs ? model.scope_springs->handMotion(state.joints, end, state.tool_displacement, dt)
-                              : stalledMotion(*model.tool, state.joints, end, state.hand_effort);
-    end = feltMotion(state.joints, end, state.hand_effort, state.tool_force.norm());
-    end = heldMotion(state.joints, end, state.stall);
+    const ScopeSprings* const springs = model.scope_springs ? &*model.scope_springs : nullptr;
+    const auto end = HandModel(*model.tool, springs).follow(input.joints, state, dt);
     motion.emplace(*model.tool, model.tool_base, state.joints, end, state.tool_displacement);
     std::swap(poses.start, poses.end);  // it starts where the last step ended
     motion->linkPoses(0, poses.start);
@@ -173,7 +171,7 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   state.time = static_cast<double>(state.step) * dt;
   if (model.tool) {
     state.tool_displacement = report.tool_displacement;
-    updateStall(report.stopped, state.stall);
+    HandModel::countStall(report.stopped, state.stall);
     ToolMotion(*model.tool, model.tool_base, state.joints, state.joints, state.tool_displacement)
         .linkPoses(1, poses.end);
     storeForces(model, report, poses.end, state);
@@ -189,62 +187,6 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   if (report.put_back) log.emit(Event::Kind::Recovery).detail = EventDetail::Distorted;
   if (!isFinite(state)) recover(model, state, log);
   if (stages != nullptr) report.stage_times = stages->stop();
-}
-
-}  // namespace vibe
-
-// XXH_INLINE_ALL: the functions become part of this file, and nothing is linked
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
-#include "vibe_core/model/model.hpp"
-#include "vibe_core/state/state_fields.hpp"
-
-namespace vibe {
-
-namespace {
-
-class HashArchive {
- public:
-  HashArchive() { XXH3_64bits_reset(&state_); }
-  template <class T>
-  void block(const T* data, std::size_t count) {
-    XXH3_64bits_update(&state_, data, count * sizeof(T));
-  }
-  template <class T>
-  void list(const std::vector<T>& items) {
-    transferList(*this, items);
-  }
-  std::uint64_t result() const { return XXH3_64bits_digest(&state_); }
-
- private:
-  XXH3_state_t state_;
-};
-
-template <class T>
-void addFields(const T& object, HashArchive& archive) {
-  const std::uint64_t fields = fieldFingerprint<T>();
-  archive.block(&fields, 1);
-  transfer(archive, object);
-}
-
-}  // namespace
-
-std::uint64_t hash(const State& state) {
-  HashArchive archive;
-  addFields(state, archive);
-  return archive.result();
-}
-
-std::uint64_t hash(const StepInput& input, std::int64_t step) {
-  HashArchive archive;
-  archive.block(&step, 1);
-  addFields(input, archive);
-  return archive.result();
-}
-
-std::uint64_t hash(const std::string& text) {
-  return XXH3_64bits(text.data(), text.size());
 }
 
 }  // namespace vibe

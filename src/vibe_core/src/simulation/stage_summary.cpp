@@ -12,6 +12,7 @@ void StageSummary::add(const StepReport& report) {
   evaluations_ += report.evaluations;
   rows_ += report.rows;
   wall_pairs_ += report.wall_pairs;
+  for (std::size_t k = 0; k < kStepWayCount; ++k) ways_[k] += report.ways.of(static_cast<StepWay>(k)) > 0 ? 1 : 0;
 }
 
 std::string StageSummary::text() const {
@@ -28,7 +29,16 @@ std::string StageSummary::text() const {
   add("all", whole_);
   std::snprintf(line, sizeof line, "per step: %.2f iterations, %.2f evaluations, %.1f rows, %.1f pairs of walls\n",
                 iterations_ / steps, evaluations_ / steps, rows_ / steps, wall_pairs_ / steps);
-  return text + line;
+  text += line;
+  text += "ways per 1,000 steps (docs/computation.md):";
+  const char* separator = " ";
+  for (std::size_t k = 0; k < kStepWayCount; ++k) {
+    if (ways_[k] == 0) continue;
+    std::snprintf(line, sizeof line, "%s%s %.1f", separator, nameOf(static_cast<StepWay>(k)), 1e3 * ways_[k] / steps);
+    text += line;
+    separator = ", ";
+  }
+  return text + "\n";
 }
 
 }  // namespace vibe

@@ -92,16 +92,19 @@ void ConstraintSchur::setRows(const ConstraintRows& rows, const Factor& factor, 
 void ConstraintSchur::sortRows(const ConstraintRows& rows) {
   equations_.clear(), inequalities_.clear(), contact_list_.clear(), idle_.clear();
   threads_held_ = false;
+  // equations, and the turns of threads that the factor does not have: linear
   for (int i = 0; i < static_cast<int>(rows.equations.size()); ++i) equations_.push_back(i);
   for (const ThreadRows& thread : rows.threads)
     for (int k = 0; k < 2 * thread.count(); ++k)
       if (thread.segments[k / 2].turn_missing > 0) equations_.push_back(thread.turnRow(k / 2, k % 2));
+  // contacts that count; tangents without friction have a row and no force
   for (std::size_t c = 0; c < rows.counted; ++c) {
     const double friction = rows.contacts[c].friction;
     contact_list_.push_back({static_cast<int>(inequalities_.size()), friction});
     inequalities_.push_back(rows.contactRow(c));
     for (int k = 1; k < 3; ++k) (friction > 0 ? inequalities_ : idle_).push_back(rows.contactRow(c) + k);
   }
+  // pulls of threads, which are solved by themselves where no tool touches
   first_pull_ = static_cast<int>(inequalities_.size());
   thread_slides_.clear();
   for (const ThreadRows& thread : rows.threads) {
@@ -163,6 +166,7 @@ void ConstraintSchur::formBlocks() {
   blocks_formed_ = true;
   const auto e = static_cast<Eigen::Index>(equations_.size());
   const auto c = static_cast<Eigen::Index>(inequalities_.size());
+  // equations hold whatever contacts and threads do: they are eliminated first
   if (e > 0) {
     block_.resize(e, e);
     for (Eigen::Index j = 0; j < e; ++j)
@@ -174,6 +178,7 @@ void ConstraintSchur::formBlocks() {
     for (Eigen::Index i = 0; i < c; ++i)
       contacts_.compliance(static_cast<int>(i), static_cast<int>(j)) = compliance_(inequalities_[i], inequalities_[j]);
   if (e > 0) eliminateEquations(e, c);
+  // what is left is the compliance between contacts and threads
   for (const Contact& contact : contact_list_) contacts_.addContact(contact.first, contact.friction);
   contacts_.finish();
   thread_slides_.beginCompliance();
@@ -271,6 +276,7 @@ void ConstraintSchur::eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, do
   formCompliance();
   formBlocks();
   const int m = rowCount();
+  // what the vector does to the gas and to the rows, before their forces
   double gas_residual = 0;
   const double along = multiplyRows(y, gas_stiffness_ != 0);
   if (gas_stiffness_ != 0) gas_residual = swelling - along;
@@ -279,9 +285,11 @@ void ConstraintSchur::eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, do
   lost_.setZero(m);
   holds_.assign(static_cast<std::size_t>(m), 1);
   for (const int row : idle_) holds_[static_cast<std::size_t>(row)] = 0;
+  // what the rows lack, the gas taken into account: it takes a part of every force (Woodbury)
   residual_ = rhs - row_value_;
   if (gas_stiffness_ != 0 && m > 0) residual_ -= gas_row_ * (gas_residual / gas_norm2_);
   solveRows();
+  // rows give by their compliance, and with a tool that yields
   for (int i = 0; i < m; ++i) moves_[i] -= rows_.compliance(i) * force_[i];
   pull_.setZero();
   if (yields_) {

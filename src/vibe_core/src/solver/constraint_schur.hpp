@@ -8,6 +8,7 @@
 #include "solver/column_cache.hpp"
 #include "solver/constraint_rows.hpp"
 #include "solver/contact_problem.hpp"
+#include "solver/half_rows.hpp"
 #include "solver/thread_slides.hpp"
 #include "vibe_core/sparse/factor.hpp"
 #include "vibe_core/threads/thread_pool.hpp"

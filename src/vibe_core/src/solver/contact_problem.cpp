@@ -113,6 +113,7 @@ bool ContactProblem::classify(double* force) {
     const int i = group.first;
     const double normal = force[i] + group.normal_gain * left(i);
     mode_[g] = Mode::Sticks;
+    // a contact that would pull is open
     if (!(normal > 0)) {
       mode_[g] = Mode::Open;
       for (int k = 0; k < group.rows; ++k) {
@@ -122,10 +123,12 @@ bool ContactProblem::classify(double* force) {
       continue;
     }
     if (group.rows == 1) continue;
+    // the force that would make it stick, if friction allows it
     const double wanted[2] = {force[i + 1] + group.tangent_gain * left(i + 1),
                               force[i + 2] + group.tangent_gain * left(i + 2)};
     const double size = sizeOf(wanted);
     if (size <= group.friction * normal) continue;
+    // it slips along that force; while the contact is light, its direction may turn
     mode_[g] = Mode::Slips;
     Slip& slip = slip_[g];
     for (int k = 0; k < 2; ++k) slip.direction[k] = wanted[k] / size;

@@ -1,12 +1,12 @@
 #include "solver/factor_schedule.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <iterator>
 #include <thread>
 #include <utility>
 
 #include "solver/couplings.hpp"
+#include "vibe_core/files/fnv1a.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/solver/energy_term.hpp"
 
@@ -55,26 +55,17 @@ namespace {
 // the rounding of single precision, in which the solution is stored.
 constexpr double kShift = 1e-7;
 
-// FNV-1a over 32-bit words
-template <class Word>
-void mix(std::uint64_t& hash, Word word) {
-  static_assert(sizeof(Word) == sizeof(std::uint32_t));
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &word, sizeof bits);
-  hash = (hash ^ bits) * 1099511628211ULL;
-}
-
 // 1: about rest, without couplings
 std::uint64_t hashOf(const std::vector<float>& positions, const std::vector<StiffnessCoupling>& couplings) {
   if (positions.empty() && couplings.empty()) return 1;
-  std::uint64_t hash = 1469598103934665603ULL;
-  for (const float value : positions) mix(hash, value);
+  Fnv1a hash;
+  hash.addWords(positions.data(), positions.size());
   for (const StiffnessCoupling& coupling : couplings) {
-    for (const int node : coupling.node) mix(hash, node);
-    for (const float value : coupling.weight) mix(hash, value);
-    for (const float value : coupling.stiffness) mix(hash, value);
+    hash.addWords(coupling.node.data(), coupling.node.size());
+    hash.addWords(coupling.weight.data(), coupling.weight.size());
+    hash.addWords(coupling.stiffness.data(), coupling.stiffness.size());
   }
-  return hash;
+  return hash.result();
 }
 
 void copyPositions(const MotionView& motion, int nodes, std::vector<float>& out) {

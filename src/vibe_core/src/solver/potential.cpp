@@ -172,6 +172,7 @@ double Potential::addBodyTerms(const std::vector<double>& z, std::vector<float>&
   for (int i = 0; i < body_.nodeCount(); ++i) {
     float *const g = &gradient[4 * i], *const push = &area[4 * i];
     if (body_.fixed[i] != 0) {
+      // a fixed node takes no force, and the volume does not depend on it
       for (int k = 0; k < 4; ++k) g[k] = 0, push[k] = 0;
       continue;
     }

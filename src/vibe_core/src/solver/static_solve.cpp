@@ -17,6 +17,7 @@ StepOutcome StaticSolve::run(const MotionView& motion, double tolerance, int max
   FactorSlots& factors = scratch_.factors;
   if (factors.making) factors.making->finish();
   factors.current_id = factors.next_id = 0;
+  // the factor is renewed at once, so that none is about anything that a step named
   toPresent(motion, plan_.body.nodeCount(), scratch_.iterate.z);
   buildRows(loads_, motion, scratch_.system);
   setEquilibriumTargets(loads_, scratch_.iterate.z, scratch_.system);
@@ -26,6 +27,7 @@ StepOutcome StaticSolve::run(const MotionView& motion, double tolerance, int max
   StepOutcome outcome;
   double before = std::numeric_limits<double>::max();
   while (outcome.iterations < max_iterations && !outcome.converged && std::isfinite(outcome.last_move)) {
+    // far from equilibrium the factor is soon old; near it, it may stay
     const bool slow = newton.directionLength() > policy.slow_contraction * before;
     before = newton.directionLength();
     if (outcome.iterations % policy.refactor_every == 0 || (slow && outcome.iterations % policy.refactor_slow == 0)) {
@@ -33,12 +35,14 @@ StepOutcome StaticSolve::run(const MotionView& motion, double tolerance, int max
       newton.start();
       ++outcome.refactorisations;
     }
+    // the gas is as stiff as at the last point: the iteration changes it where it must
     newton.setGas(scratch_.iterate.last.volume);
     outcome.last_move = newton.iterate(policy.fallback_max_move * plan_.size, true);
     ++outcome.iterations;
     outcome.converged = newton.directionLength() < std::max(tolerance, newton.resolution());
     if (newton.failed()) newton.start();
   }
+  // a body that has run away is left as it was
   outcome.finite = std::isfinite(outcome.last_move);
   if (!outcome.finite) return outcome;
   storeForces(scratch_.system, 1, loads_);

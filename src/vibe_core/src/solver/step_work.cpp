@@ -31,6 +31,7 @@ void moveAxis(const ElasticBody& body, const TimeScheme& scheme, int k, const Mo
   for (int i = 0; i < body.nodeCount(); ++i) {
     move[4 * i] = 0;
     if (body.fixed[i] != 0) continue;
+    // the acceleration at the end, from which the scheme gives position and velocity
     const double end = (z[4 * i] - scheme.free_z(x[i], v[i], a[i])) * per_gain;
     const double to = scheme.free_x(x[i], v[i], a[i]) + scheme.x_gain * end, d = to - x[i];
     const double speed = v[i] + scheme.free_v_a * a[i] + scheme.v_gain * end, mass = body.mass[i];
@@ -38,6 +39,7 @@ void moveAxis(const ElasticBody& body, const TimeScheme& scheme, int k, const Mo
     sums.move2 += d * d;
     sums.inertia += mass * ((1 - scheme.alpha_m) * end + scheme.alpha_m * a[i]) * d;
     sums.damping += mass * (speed + scheme.alpha_f * (v[i] - speed)) * d;
+    // what the step leaves behind may be the mean velocity; then the kinetic energy is that of it
     const double stored = mean_velocity ? d * per_step : speed;
     sums.kinetic += 0.5 * mass * (stored * stored - v[i] * v[i]);
     sums.weight += mass * body.gravity[k] * d;
@@ -127,6 +129,7 @@ StepWork finishMotion(const ElasticBody& body, const TimeScheme& scheme, const M
   for (int k = 0; k < 3; ++k) moveAxis(body, scheme, k, motion, mean_velocity, scratch, s);
   StepWork work;
   const double rows = workOfRows(scratch, loads);
+  // nothing moved: no force has worked
   if (!(s.move2 > 0)) return work;
   const std::vector<double>& move = scratch.moves;
   const double first = s.to_first / s.move2, last = s.to_last / s.move2, at = s.to_z / s.move2;
@@ -139,6 +142,8 @@ StepWork finishMotion(const ElasticBody& body, const TimeScheme& scheme, const M
                       .at(at);
   if (loads.gas.control != GasLoad::Control::None)
     work.gas = scratch.iterate.last.pressure * dotInDouble(scratch.iterate.last.volume_gradient, move);
+  // what the scheme and the damping take is the difference between forces at their points of evaluation and along the
+  // way
   work.mass_damping = scheme.rate * s.damping;
   work.viscous = elastic.at(at) - elastic.at(scheme.part());
   work.stored = elastic.integral();

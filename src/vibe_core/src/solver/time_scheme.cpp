@@ -38,6 +38,7 @@ void moveRigidly(const ElasticBody& body, const MotionView& motion, const TimeSc
       sum[k] = scheme.free_z(0, motion.v[k][i], motion.a[k][i]) + scheme.z_gain * motion.a[k][i];
     return sum;
   };
+  // the linear momentum of the nodes' own moves gives the translation
   Eigen::Vector3d center = Eigen::Vector3d::Zero(), shift = center, spin = center;
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
   double mass = 0;
@@ -47,6 +48,7 @@ void moveRigidly(const ElasticBody& body, const MotionView& motion, const TimeSc
     shift += body.mass[i] * move(i);
   }
   center /= mass, shift /= mass;
+  // their angular momentum gives the turn
   for (int i = 0; i < body.nodeCount(); ++i) {
     const Eigen::Vector3d arm = at(i) - center;
     spin += body.mass[i] * arm.cross(move(i));

@@ -7,17 +7,6 @@
 
 namespace vibe {
 
-namespace {
-
-// Steps until a joint that tissue has stopped tries to go on. Design choice: the tissue has a few steps to give way to
-// a tool that stands still, and the hand tries often enough to go on with it [1].
-constexpr int kStallSteps = 6;
-// Force on the tool at which the hand slows down, and at which it stops. Design choice: forces in endoscopic suturing
-// reach 8 N (Trejos 2011); a force across the shaft, which the entry bears, reaches no joint of the hand [N].
-constexpr double kHandSlows = 10, kHandStops = 20;
-
-}  // namespace
-
 std::array<double, kJointCount> ToolMotion::inputs(double fraction) const {
   std::array<double, kJointCount> inputs{};
   for (int i = 0; i < kJointCount; ++i) inputs[i] = start_[i] + fraction * (end_[i] - start_[i]);
@@ -58,56 +47,6 @@ double ToolMotion::travel(const std::vector<Eigen::Isometry3d>& from, const std:
     }
   }
   return farthest;
-}
-
-std::array<double, kJointCount> limitedMotion(const ToolModel& tool, const std::array<double, kJointCount>& position,
-                                              const std::array<double, kJointCount>& command, double dt) {
-  std::array<double, kJointCount> result = position;
-  for (int i = 0; i < kJointCount; ++i) {
-    if (!std::isfinite(command[i])) continue;
-    const JointLimits& limit = tool.limits()[i];
-    const double target = std::clamp(command[i], limit.lower, limit.upper);
-    const double furthest = limit.velocity * dt;
-    result[i] = position[i] + std::clamp(target - position[i], -furthest, furthest);
-  }
-  return result;
-}
-
-std::array<double, kJointCount> stalledMotion(const ToolModel& tool, const std::array<double, kJointCount>& start,
-                                              const std::array<double, kJointCount>& end,
-                                              const std::array<double, kScopeJointCount>& effort) {
-  std::array<double, kJointCount> result = end;
-  for (int j = 0; j < kScopeJointCount; ++j) {
-    const bool over = std::abs(effort[j]) > tool.limits()[j].effort;
-    if (over && (end[j] - start[j]) * effort[j] > 0) result[j] = start[j];
-  }
-  return result;
-}
-
-std::array<double, kJointCount> feltMotion(const std::array<double, kJointCount>& start,
-                                           const std::array<double, kJointCount>& end,
-                                           const std::array<double, kScopeJointCount>& effort, double force) {
-  const double part = std::clamp((kHandStops - force) / (kHandStops - kHandSlows), 0.0, 1.0);
-  std::array<double, kJointCount> result = end;
-  for (int j = 0; j < kScopeJointCount; ++j)
-    if ((end[j] - start[j]) * effort[j] > 0) result[j] = start[j] + part * (end[j] - start[j]);
-  return result;
-}
-
-std::array<double, kJointCount> heldMotion(const std::array<double, kJointCount>& start,
-                                           const std::array<double, kJointCount>& end,
-                                           const std::array<int, kJointCount>& stall) {
-  std::array<double, kJointCount> result = end;
-  for (int j = 0; j < kJointCount; ++j)
-    if ((end[j] - start[j]) * stall[j] > 0) result[j] = start[j];
-  return result;
-}
-
-void updateStall(const std::array<int, kJointCount>& stopped, std::array<int, kJointCount>& stall) {
-  for (int j = 0; j < kJointCount; ++j) {
-    stall[j] -= stall[j] > 0 ? 1 : stall[j] < 0 ? -1 : 0;
-    if (stopped[j] != 0) stall[j] = stopped[j] * kStallSteps;
-  }
 }
 
 namespace {

@@ -52,36 +52,6 @@ class ToolMotion {
   ToolDisplacement start_displacement_, end_displacement_;
 };
 
-/// Positions of the inputs after `dt` on the way to `command`, within the limits of position and speed. Entries that
-/// are not finite keep their position.
-std::array<double, kJointCount> limitedMotion(const ToolModel& tool, const std::array<double, kJointCount>& position,
-                                              const std::array<double, kJointCount>& command, double dt);
-
-/// The same with a hand whose force is limited: it does not move a joint of the scope on against an effort beyond
-/// JointLimits::effort.
-/// @param effort  of the hand on the joints in the last step [N], [N m]
-std::array<double, kJointCount> stalledMotion(const ToolModel& tool, const std::array<double, kJointCount>& start,
-                                              const std::array<double, kJointCount>& end,
-                                              const std::array<double, kScopeJointCount>& effort);
-
-/// The same with a hand that feels the force on the tip: the nearer it is to the largest that a hand applies, the less
-/// it moves a joint of the scope on against it.
-/// @param effort  of the hand on the joints in the last step [N], [N m]
-/// @param force   on the tool in the last step [N]
-std::array<double, kJointCount> feltMotion(const std::array<double, kJointCount>& start,
-                                           const std::array<double, kJointCount>& end,
-                                           const std::array<double, kScopeJointCount>& effort, double force);
-
-/// The same with joints that tissue has stopped a moment ago: the hand does not push them on in that direction.
-/// @param stall  steps for which that holds, with the sign of the direction; 0: not stopped
-std::array<double, kJointCount> heldMotion(const std::array<double, kJointCount>& start,
-                                           const std::array<double, kJointCount>& end,
-                                           const std::array<int, kJointCount>& stall);
-
-/// State::stall after a step.
-/// @param stopped  sign of the motion of each joint that tissue has stopped in the step, 0: it has not
-void updateStall(const std::array<int, kJointCount>& stopped, std::array<int, kJointCount>& stall);
-
 /// Derivative of the position of a point on a link with respect to the tool inputs: columns in the order of vibe::Joint
 /// [m/m], [m/rad].
 /// @param poses  of the links in any one frame, as from ToolModel::forwardKinematics(); the result is in that frame

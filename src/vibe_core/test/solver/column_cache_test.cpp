@@ -1,5 +1,6 @@
 // Columns of nodes and attachment points: their products are compliances, whatever was known before.
 #include "solver/column_cache.hpp"
+#include "solver/half_rows.hpp"
 
 #include <gtest/gtest.h>
 

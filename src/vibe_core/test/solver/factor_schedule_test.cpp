@@ -25,11 +25,11 @@ struct Fixture {
     ++memory.steps;
   }
   std::vector<float> solution(const StepperWorkspace& of) const {
-    std::vector<float> nodes4(4 * body.rest.size(), 1.0F), half(of.half.size(), 0.0F);
-    of.factor->load(nodes4.data(), half.data());
-    of.factor->forward(half.data());
-    of.factor->backward(half.data());
-    of.factor->store(half.data(), nodes4.data());
+    std::vector<float> nodes4(4 * body.rest.size(), 1.0F), half(of.iterate.half.size(), 0.0F);
+    of.factors.current->load(nodes4.data(), half.data());
+    of.factors.current->forward(half.data());
+    of.factors.current->backward(half.data());
+    of.factors.current->store(half.data(), nodes4.data());
     return nodes4;
   }
   ElasticBody body;
@@ -84,7 +84,7 @@ TEST(FactorSchedule, AFactorThatTakesMoreOperationsTakesOverLater) {
     BodyMotion motion = fixture.motion;
     StepperMemory memory;
     const auto scratch = stepper.makeWorkspace();
-    stepper.step(motion.view(), fixture.loads, memory, scratch->factors, scratch->single);
+    stepper.step(motion.view(), fixture.loads, memory, *scratch);
     EXPECT_EQ(memory.due, steps);
   }
 }

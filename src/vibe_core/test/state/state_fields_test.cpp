@@ -150,7 +150,7 @@ TEST(Fields, TheListNamesFieldsAndTheirTypes) {
 /// version in state_fields.hpp, so that older files are refused by name, then put the new
 /// values here.
 TEST(Fields, AnotherListOfFieldsHasAnotherVersion) {
-  EXPECT_EQ(kStateVersion, 8U);
+  EXPECT_EQ(kStateVersion, 9U);
   EXPECT_EQ(fieldFingerprint<State>(), 12146903226937308152U) << fieldList<State>();
   EXPECT_EQ(kStepInputVersion, 2U);
   EXPECT_EQ(fieldFingerprint<StepInput>(), 12597398189629362862U) << fieldList<StepInput>();

@@ -148,7 +148,7 @@ TEST(CompliantScope, HandsForceIsLimited) {
   scene.scope->compliance->shaft_rigidity = 10;  // or it buckles
   scene.foundation->stiffness = 1e7;             // a wall that does not give way
   World world = scopeWorld(scene);
-  const double limit = 20;  // of a hand that feels the force, see feltMotion(); it could push with more
+  const double limit = 20;  // of a hand that feels the force, see HandModel::slowedByForce(); it could push with more
   ASSERT_GT(world.model->tool->limits()[Insertion].effort, limit);
   double most = 0;
   for (int i = 0; i < 300; ++i) {

@@ -141,10 +141,10 @@ TEST(ShellScene, WhatTheSolverRemembersCounts) {
 // Walls that catch in each other for good are a case of vibe_contact, wind; here, what is counted of it.
 TEST(ShellScene, WallsThatWereJammedForASecondAreLedBackToRest) {
   World freed = livelyWorld(), jammed = livelyWorld();
-  freed.state.solver.recovery_steps = -30;
-  jammed.state.solver.recovery_steps = -60;
+  freed.state.solver.jammed_steps = 30;
+  jammed.state.solver.jammed_steps = 60;
   freed.run(0.6);
-  EXPECT_EQ(freed.state.solver.recovery_steps, 0) << "what is free is counted back";
+  EXPECT_EQ(freed.state.solver.jammed_steps, 0) << "what is free is counted back";
   EXPECT_EQ(freed.count(Event::Kind::Recovery), 0);
   jammed.run(0.1);
   EXPECT_GT(jammed.state.solver.recovery_steps, 0);

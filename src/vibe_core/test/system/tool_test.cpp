@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "tool/hand_model.hpp"
 #include "tool/tool_motion.hpp"
 #include "tool_contact/tool_collision.hpp"
 #include "vibe_core/model/accounting.hpp"
@@ -171,16 +172,17 @@ TEST_F(Grip, MissesInTheAir) {
   EXPECT_TRUE(world.state.grip.empty());
 }
 
-TEST(LimitedMotion, GoesNoFasterThanTheLimit) {
+TEST(HandModel, GoesNoFasterThanTheLimit) {
   World world = scopeWorld();
   const ToolModel& tool = *world.model->tool;
+  const HandModel hand(tool, nullptr);
   std::array<double, kJointCount> position{}, command{};
   command[Insertion] = 0.1;
-  EXPECT_DOUBLE_EQ(limitedMotion(tool, position, command, 0.01)[Insertion], tool.limits()[Insertion].velocity * 0.01);
+  EXPECT_DOUBLE_EQ(hand.withinLimits(position, command, 0.01)[Insertion], tool.limits()[Insertion].velocity * 0.01);
   command[Insertion] = 1e-5;
-  EXPECT_DOUBLE_EQ(limitedMotion(tool, position, command, 0.01)[Insertion], 1e-5);
+  EXPECT_DOUBLE_EQ(hand.withinLimits(position, command, 0.01)[Insertion], 1e-5);
   command[Insertion] = -1;
-  EXPECT_DOUBLE_EQ(limitedMotion(tool, position, command, 0.01)[Insertion], tool.limits()[Insertion].lower);
+  EXPECT_DOUBLE_EQ(hand.withinLimits(position, command, 0.01)[Insertion], tool.limits()[Insertion].lower);
 }
 
 }  // namespace

@@ -15,7 +15,9 @@ class Fnv1a {
   }
 
   /// Hashes whole 32-bit words instead of bytes. The result differs and is four times as fast to compute.
-  void addWords(const float* values, std::size_t count) {
+  template <class Word>
+  void addWords(const Word* values, std::size_t count) {
+    static_assert(sizeof(Word) == sizeof(std::uint32_t));
     for (std::size_t i = 0; i < count; ++i) {
       std::uint32_t bits = 0;
       std::memcpy(&bits, values + i, sizeof bits);

@@ -31,7 +31,8 @@ struct StepperMemory {
   double elastic_energy = 0;  ///< of elements and foundation at the end of the last step; < 0: unknown [J]
   double usual_length = 0;    ///< running mean of the first moves of steps [m]
   int rest_steps = 0;         ///< consecutive steps in which nothing moved
-  int recovery_steps = 0;     ///< that remain of a recovery, straight to rest; < 0: minus those that walls were jammed
+  int recovery_steps = 0;     ///< that remain of a recovery, straight to rest
+  int jammed_steps = 0;       ///< in which walls were jammed, less those in which they were not; 0 or more
   int fallback = 0;           ///< remaining steps with backward Euler, after one that did not arrive
 };
 
