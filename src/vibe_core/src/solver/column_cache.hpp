@@ -38,6 +38,7 @@ class ColumnCache {
   void makeGrams(int one, const std::vector<int>& slots, std::size_t count);
 
  private:
+  // Design choice: more than the 384 nodes that 128 contacts have at most; the products of so many take 4.7 MB.
   static constexpr int kMaxNodes = 512;
   static constexpr int kFirstAttachment = 1 << 28;  // keys from here on
   int newSlot(int key);

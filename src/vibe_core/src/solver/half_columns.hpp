@@ -12,6 +12,7 @@ namespace vibe {
 
 /// Product of two sparse vectors: both consist of whole runs; those on the common part of the paths are the same runs.
 Eigen::Matrix3f product(const HalfColumns& a, const HalfColumns& b);
+/// Products at once. Design choice: as many sums as it takes that an addition need not wait for the one before.
 constexpr int kProducts = 4;
 /// The same of several at once, with the same bits. Alone, each is a sum in which every term waits for the one before;
 /// together they share what their paths have in common.

@@ -8,6 +8,8 @@
 #include "vibe_core/solver/energy_term.hpp"
 #include "vibe_core/tissue/shell.hpp"
 
+#include "vibe_core/solver/step_policy.hpp"
+
 namespace vibe {
 
 namespace {
@@ -83,11 +85,11 @@ double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gra
   double volume = 0;
   double value = addElements(gradient, volume);
   elastic_ = value;
-  noise_ = 1e-6 * std::abs(value);
-  scratch_.iterate.last.elastic_value = value += addRareTerms(z, gradient);
-  scratch_.iterate.last.elastic_gradient = gradient;
+  noise_ = stepPolicy().elastic_noise * std::abs(value);
+  at_.last.elastic_value = value += addRareTerms(z, gradient);
+  at_.last.elastic_gradient = gradient;
   if (has_gas) {
-    scratch_.iterate.last.volume = volume;
+    at_.last.volume = volume;
     value += gasEnergy();
   }
   if (extra_ != nullptr) value += addExtra(z, gradient);
@@ -96,18 +98,18 @@ double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gra
 
 double Potential::addElements(std::vector<float>& gradient, double& volume) {
   const bool has_gas = gas_.control != GasLoad::Control::None;
-  const float* const u = scratch_.iterate.last.displacement.data();
+  const float* const u = at_.last.displacement.data();
   SharedEvaluation& shared = scratch_.shared;
   if (!shared.shares.empty()) {
     const double all = shared.evaluate(*body_.shell, *scratch_.pool, u, gradient.data(),
-                                       has_gas ? scratch_.iterate.last.volume_gradient.data() : nullptr);
+                                       has_gas ? at_.last.volume_gradient.data() : nullptr);
     for (const double part : shared.volume) volume += part;
     return all;
   }
   double value = 0;
   for (int p = 0; p < body_.elements->pieceCount(); ++p) {
     double part = 0;
-    value += has_gas ? body_.shell->evaluate(p, u, gradient.data(), scratch_.iterate.last.volume_gradient.data(), part)
+    value += has_gas ? body_.shell->evaluate(p, u, gradient.data(), at_.last.volume_gradient.data(), part)
                      : body_.elements->evaluate(p, u, gradient.data());
     volume += part;
   }
@@ -118,8 +120,7 @@ double Potential::addElements(std::vector<float>& gradient, double& volume) {
 void Potential::startSums(const std::vector<double>& z, std::vector<float>& gradient) {
   const std::size_t size = z.size();
   const double *const at = z.data(), *const rest = scratch_.rest.data();
-  float *const u = scratch_.iterate.last.displacement.data(), *const g = gradient.data(),
-               *const v = scratch_.iterate.last.volume_gradient.data();
+  float *const u = at_.last.displacement.data(), *const g = gradient.data(), *const v = at_.last.volume_gradient.data();
   for (std::size_t i = 0; i < size; ++i) {
     u[i] = static_cast<float>(at[i] - rest[i]);
     g[i] = 0;
@@ -128,7 +129,7 @@ void Potential::startSums(const std::vector<double>& z, std::vector<float>& grad
 }
 
 double Potential::addExtra(const std::vector<double>& z, std::vector<float>& gradient) const {
-  std::vector<float>& extra = scratch_.iterate.last.extra_gradient;
+  std::vector<float>& extra = at_.last.extra_gradient;
   std::fill(extra.begin(), extra.end(), 0.0F);
   const double value = extra_->evaluate(z.data(), extra.data());
   for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] += extra[i];
@@ -137,8 +138,8 @@ double Potential::addExtra(const std::vector<double>& z, std::vector<float>& gra
 
 double Potential::addSprings(const std::vector<double>& z, std::vector<float>& gradient) const {
   double energy = 0;
-  scratch_.system.rows.forEachSpring([&](int r, const LinearForm& form, double compliance) {
-    double longer = -scratch_.system.target[r];
+  system_.rows.forEachSpring([&](int r, const LinearForm& form, double compliance) {
+    double longer = -system_.target[r];
     for (std::size_t i = 0; i < form.node.size(); ++i)
       for (int k = 0; k < 3; ++k) longer += form.coefficient[i][k] * z[4 * static_cast<std::size_t>(form.node[i]) + k];
     const double force = longer / compliance;
@@ -149,24 +150,23 @@ double Potential::addSprings(const std::vector<double>& z, std::vector<float>& g
 }
 
 double Potential::gasEnergy() {
-  Evaluation& here = scratch_.iterate.last;
+  Evaluation& here = at_.last;
   here.pressure = gas_law_.pressure(here.volume);
-  noise_ += 1e-7 * std::abs(here.pressure * here.volume);
+  noise_ += stepPolicy().gas_noise * std::abs(here.pressure * here.volume);
   return gas_law_.energy(here.volume);
 }
 
 void Potential::moveVolume(double change) {
-  scratch_.iterate.last.volume += change;
-  scratch_.iterate.last.pressure = gas_law_.pressure(scratch_.iterate.last.volume);
+  at_.last.volume += change;
+  at_.last.pressure = gas_law_.pressure(at_.last.volume);
 }
 
 // Gas pressure, inertia and weight. Four lanes per node, the last of them zero, so that the compiler can
 // use vectors of them.
 double Potential::addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient) {
-  const double *const hat = scratch_.iterate.z_hat.data(), *const rest = scratch_.rest.data();
-  float* const area = scratch_.iterate.last.volume_gradient.data();
-  const float pressure =
-      gas_.control != GasLoad::Control::None ? static_cast<float>(scratch_.iterate.last.pressure) : 0.0F;
+  const double *const hat = at_.z_hat.data(), *const rest = scratch_.rest.data();
+  float* const area = at_.last.volume_gradient.data();
+  const float pressure = gas_.control != GasLoad::Control::None ? static_cast<float>(at_.last.pressure) : 0.0F;
   const double pull[4] = {body_.gravity[0], body_.gravity[1], body_.gravity[2], 0};
   double twice[4] = {0, 0, 0, 0}, work[4] = {0, 0, 0, 0}, rounded[4] = {0, 0, 0, 0};
   for (int i = 0; i < body_.nodeCount(); ++i) {
@@ -177,7 +177,7 @@ double Potential::addBodyTerms(const std::vector<double>& z, std::vector<float>&
       continue;
     }
     const double mass = body_.mass[i], spring = inertia_ * mass;
-    const float* const u = &scratch_.iterate.last.displacement[4 * i];
+    const float* const u = &at_.last.displacement[4 * i];
     for (int k = 0; k < 4; ++k) {
       const double away = z[4 * i + k] - hat[4 * i + k], moved = z[4 * i + k] - rest[4 * i + k];
       const double force = spring * away, weight = mass * pull[k];

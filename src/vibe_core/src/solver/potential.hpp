@@ -55,7 +55,9 @@ class Potential {
         gas_law_(loads.gas, part),
         extra_(loads.extra),
         inertia_(inertia),
-        scratch_(scratch) {}
+        scratch_(scratch),
+        at_(scratch.iterate),
+        system_(scratch.system) {}
 
   /// Value [J] at z; the gradient [N] goes to `gradient` (4 per node). Also sets the scratch's volume, pressure and
   /// volume gradient.
@@ -81,6 +83,8 @@ class Potential {
   const EnergyTerm* extra_;
   double inertia_;
   StepperWorkspace& scratch_;
+  Iterate& at_;
+  const RowSystem& system_;
   double noise_ = 0, elastic_ = 0;
 };
 

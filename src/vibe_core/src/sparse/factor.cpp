@@ -55,7 +55,8 @@ void receive(const FactorPlan& plan, const FactorPlan::Task& task, const float* 
   }
 }
 
-// The root is divided into parts of the same size, of rows 0 to n of a triangle, or of columns.
+// The root is divided into parts of the same size, of rows 0 to n of a triangle, or of columns. Design choice: as many
+// as a shell has shares.
 constexpr int kRootParts = 4;
 BlockRange rowsOfPart(int part, int blocks) {
   const auto end = [=](int k) { return static_cast<int>(std::lround(blocks * std::sqrt(k / double{kRootParts}))); };

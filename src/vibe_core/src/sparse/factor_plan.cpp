@@ -9,6 +9,8 @@
 namespace vibe {
 namespace {
 
+// METIS is asked for several orders, and the one that solves fastest is taken. Design choice: four, since an order is
+// made once per model.
 constexpr int kFirstSeed = 1, kSeeds = 4;
 // A branch has at most this part of the factor. Design choice: small enough that four threads get equal shares, large
 // enough that a branch outlasts its start by far.

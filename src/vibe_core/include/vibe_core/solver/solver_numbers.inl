@@ -31,6 +31,10 @@ VIBE_REAL(longest_part, 0.5, "", "largest next part of a direction over the one 
 VIBE_REAL(energy_roundings, 10, "",
           "rounding errors of a value that may hide a decrease; then the slope decides (approximate Wolfe)",
           "Hager, Zhang 2005, doi 10.1137/030601880, equation 2.4; the errors of many elements seldom add up to more")
+VIBE_REAL(elastic_noise, 1e-6, "", "rounding error of the elastic energy over the energy",
+          "single precision, in which triangles are evaluated: 6e-8, times what several thousand of them add up to")
+VIBE_REAL(gas_noise, 1e-7, "", "the same of the energy of the gas over pressure times volume",
+          "the volume is a sum in double precision of terms in single precision")
 VIBE_COUNT(search_trials, 5, "trials along a direction before it counts as useless",
            "at the shortest, a part of 1e-4 of a direction, which is below what a step can use")
 VIBE_REAL(unmet_roundings, 100, "",
