@@ -34,7 +34,7 @@ class QuasiNewton {
   /// The rows are others than when this was made, and nothing has moved since.
   void takeRows();
   /// One step: direction, then as much of it as lowers the energy.
-  /// @param most    no node moves farther [m]
+  /// @param max     no node moves farther [m]
   /// @param verify  false: the end point is not evaluated if the move is safe, because it is short or
   ///                because the iteration is contracting (then no more iterations may follow)
   /// @returns how far a node moved at most [m]
