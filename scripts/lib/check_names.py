@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Checks names in unnamed namespaces. The sources of a folder are compiled as one file, in which they share one unnamed
+"""Checks names. In unnamed namespaces: the sources of a folder are compiled as one file, in which they share one unnamed
 namespace: a name that stands in two of them may be defined twice, and a name that also stands in a header hides that of
-the header in all of them, without a word of the compiler.
+the header in all of them, without a word of the compiler. In comments of headers: `@param` names a parameter of what
+follows.
 
 Prints FILE:LINE: PROBLEM. Exit status: 0 nothing found, 1 something found, 2 wrong call.
 """
@@ -18,6 +19,9 @@ DECLARATIONS = (
     re.compile(r"^using\s+(\w+)\s*="),
     re.compile(r"^(?!return|else|using|namespace|template|public|private)[\w:<>,&*\s\[\]]*?[\w>&*]\s+[&*]?(\w+)\("),
 )
+
+
+COMMENTED = re.compile(r"((?:^[ \t]*///.*\n)+)((?:(?![ \t]*///).*\n)+)", re.MULTILINE)
 
 
 def without_comments(text):
@@ -94,6 +98,16 @@ def problems_of_folder(folder, headers, root):
                     place, name, headers[name].relative_to(root), ", ".join(hidden))
 
 
+def wrong_parameters(header, root):
+    text = header.read_text(encoding="utf-8")
+    for found in COMMENTED.finditer(text):
+        for names in re.findall(r"@param\s+((?:\w+,\s+)*\w+)", found.group(1)):
+            for name in re.split(r",\s+", names):
+                if not re.search(r"\b{}\b".format(name), re.split(r";|\{\s*$", without_comments(found.group(2)), flags=re.MULTILINE)[0]):
+                    yield "{}:{}: '@param {}' is no parameter of what follows".format(
+                        header.relative_to(root), text.count("\n", 0, found.start(2)) + 1, name)
+
+
 def main():
     if len(sys.argv) != 2 or not (pathlib.Path(sys.argv[1]) / "src" / "vibe_core").is_dir():
         print("usage: check_names.py ROOT  (the folder that has src/vibe_core)", file=sys.stderr)
@@ -104,6 +118,8 @@ def main():
         headers = header_names(root, package)
         for folder in folders(package):
             found += problems_of_folder(folder, headers, root)
+        for header in sorted(package.rglob("*.hpp")):
+            found += wrong_parameters(header, root)
     print("\n".join(found), end="\n" if found else "")
     return 1 if found else 0
 

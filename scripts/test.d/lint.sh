@@ -84,7 +84,7 @@ findsName() {
   "$tree/scripts/lint" --only names || { echo 'finds a problem where none is'; return 1; }
   printf 'namespace vibe {\nnamespace {\n%s\n}  // namespace\n}  // namespace vibe\n' "$2" >"$core/src/solver/$1"
   refuses 1 'not clean: names' bash -c '"$1" --only names 2>&1 >"$2"' - "$tree/scripts/lint" "$tree/said" &&
-    cat "$tree/said" && grep -qE "^src/vibe_core/src/solver/[a-z]+.cpp:3: .*$3" "$tree/said"
+    cat "$tree/said" && grep -qE "^src/vibe_core/src/solver/[a-z]+.[ch]pp:[34]: .*$3" "$tree/said"
 }
 check 'lint sees a value that hides that of a header' findsName other.cpp 'enum Item { kFirst = 7 };' \
   "'kFirst' hides that of .*kind.hpp in use.cpp"
@@ -93,6 +93,8 @@ check 'lint sees a constant that hides a value of a header' findsName other.cpp 
 check 'lint sees a function in two sources of a folder' findsName very.cpp 'double used(double x) {
   return x;
 }' "'used' stands in use.cpp, too"
+check 'lint sees a comment on a parameter that has another name' findsName very.hpp '/// @param lack  [m]
+double tension(double residual);' "'@param lack' is no parameter of what follows"
 
 # findsLink LINE PATTERN: two pages pass; with a line in one of them lint must name the problem
 findsLink() {

@@ -3,7 +3,9 @@
 #include <QImage>
 #include <cstdio>
 #include <filesystem>
+#include <initializer_list>
 #include <iomanip>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
 
@@ -13,7 +15,7 @@
 namespace vibe::endoscope {
 namespace {
 
-constexpr int kDigits = 17;  // of a double that is read back exactly
+using Json = nlohmann::ordered_json;  // writes numbers so that they read back exactly, and what is none as null
 
 void savePng(const std::string& file, const std::uint8_t* pixels, int width, int height, QImage::Format format) {
   const int channels = format == QImage::Format_RGB888 ? 3 : 1;
@@ -23,30 +25,15 @@ void savePng(const std::string& file, const std::uint8_t* pixels, int width, int
                              "' cannot be written; make room if the disk is full, or give another --output.");
 }
 
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    if (static_cast<unsigned char>(c) >= 0x20) result += c;
-  }
-  return result + "\"";
+Json jsonOf(const geometry_msgs::Point& point) {
+  return {point.x, point.y, point.z};
 }
 
-std::string pointText(const geometry_msgs::Point& point) {
-  std::ostringstream text;
-  text << std::setprecision(kDigits) << "[" << point.x << ", " << point.y << ", " << point.z << "]";
-  return text.str();
-}
-
-std::string sutureText(const vibe_msgs::Suture& suture) {
-  std::ostringstream text;
-  text << std::setprecision(kDigits) << "{\"stage\": " << int{suture.stage} << ", \"thread\": [";
-  for (std::size_t k = 0; k < suture.thread.size(); ++k) text << (k ? ", " : "") << pointText(suture.thread[k]);
-  text << "], \"bites\": [";
-  for (std::size_t k = 0; k < suture.bites.size(); ++k) text << (k ? ", " : "") << pointText(suture.bites[k].position);
-  text << "], \"tension\": [";
-  for (std::size_t k = 0; k < suture.tension.size(); ++k) text << (k ? ", " : "") << suture.tension[k];
-  return text.str() + "]}";
+Json jsonOf(const vibe_msgs::Suture& suture) {
+  Json thread = Json::array(), bites = Json::array();
+  for (const geometry_msgs::Point& point : suture.thread) thread.push_back(jsonOf(point));
+  for (const auto& bite : suture.bites) bites.push_back(jsonOf(bite.position));
+  return {{"stage", int{suture.stage}}, {"thread", thread}, {"bites", bites}, {"tension", suture.tension}};
 }
 
 /// What begins with a dot is of the script that calls this program.
@@ -54,58 +41,37 @@ bool isOfDataSet(const std::filesystem::path& path) {
   return path.filename().string()[0] != '.';
 }
 
-using Values = std::vector<std::pair<const char*, double>>;
-
-std::string textOf(const Values& values) {
-  std::ostringstream text;
-  text << std::setprecision(kDigits);
-  for (const auto& [name, value] : values) text << (text.tellp() > 0 ? ", \"" : "{\"") << name << "\": " << value;
-  return text.str() + "}";
+Json jsonOf(const SensorStyle& s) {
+  return {
+      {"exposure", s.exposure}, {"red_gain", s.red_gain},     {"blue_gain", s.blue_gain}, {"vignetting", s.vignetting},
+      {"blur", s.blur},         {"distortion", s.distortion}, {"full_well", s.full_well}, {"read_noise", s.read_noise}};
 }
 
-std::string textOf(const SensorStyle& s) {
-  return textOf(Values{{"exposure", s.exposure},
-                       {"red_gain", s.red_gain},
-                       {"blue_gain", s.blue_gain},
-                       {"vignetting", s.vignetting},
-                       {"blur", s.blur},
-                       {"distortion", s.distortion},
-                       {"full_well", s.full_well},
-                       {"read_noise", s.read_noise}});
+Json jsonOf(const graphics::MucosaLook& m) {
+  return {{"shift_x", m.shift.x()},     {"shift_y", m.shift.y()}, {"shift_z", m.shift.z()},
+          {"areae_size", m.areae_size}, {"paleness", m.paleness}, {"yellowness", m.yellowness},
+          {"vessels", m.vessels},       {"wetness", m.wetness},   {"mucus", m.mucus}};
 }
 
-std::string textOf(const graphics::MucosaLook& m) {
-  return textOf(Values{{"shift_x", m.shift.x()},
-                       {"shift_y", m.shift.y()},
-                       {"shift_z", m.shift.z()},
-                       {"areae_size", m.areae_size},
-                       {"paleness", m.paleness},
-                       {"yellowness", m.yellowness},
-                       {"vessels", m.vessels},
-                       {"wetness", m.wetness},
-                       {"mucus", m.mucus}});
-}
-
-std::string textOf(const graphics::EndoscopeLight& light) {
+Json jsonOf(const graphics::EndoscopeLight& light) {
   const auto& [right, left] = light.guides;
-  return textOf(Values{{"right_guide_x", right.right},
-                       {"right_guide_y", right.up},
-                       {"right_guide_strength", right.strength},
-                       {"left_guide_x", left.right},
-                       {"left_guide_y", left.up},
-                       {"left_guide_strength", left.strength},
-                       {"sideward", light.sideward},
-                       {"temperature", light.temperature}});
+  return {{"right_guide_x", right.right}, {"right_guide_y", right.up},       {"right_guide_strength", right.strength},
+          {"left_guide_x", left.right},   {"left_guide_y", left.up},         {"left_guide_strength", left.strength},
+          {"sideward", light.sideward},   {"temperature", light.temperature}};
 }
 
-std::string variedText(const DatasetOptions& options) {
-  std::string text;
-  for (const auto& [name, on] : {std::pair("lens", options.vary_lens),
-                                 {"sensor", options.vary_sensor},
-                                 {"mucosa", options.vary_mucosa},
-                                 {"light", options.vary_light}})
-    if (on && options.seed != 0) text += (text.empty() ? "\"" : ", \"") + std::string(name) + "\"";
-  return "[" + text + "]";
+/// The names of what is on.
+Json namesOf(std::initializer_list<std::pair<const char*, bool>> choices) {
+  Json names = Json::array();
+  for (const auto& [name, on] : choices)
+    if (on) names.push_back(name);
+  return names;
+}
+
+std::string hex(std::uint64_t number) {
+  std::ostringstream text;
+  text << std::hex << number;
+  return text.str();
 }
 
 }  // namespace
@@ -225,12 +191,11 @@ void DatasetFolder::writeTopology(const vibe_msgs::TissueTopology& topology) {
 }
 
 void DatasetFolder::writeSutures(std::size_t number, const vibe_msgs::SutureArray& sutures) {
-  std::string text = "[\n";
-  for (std::size_t k = 0; k < sutures.sutures.size(); ++k)
-    text += sutureText(sutures.sutures[k]) + (k + 1 < sutures.sutures.size() ? ",\n" : "\n");
+  Json json = Json::array();
+  for (const vibe_msgs::Suture& suture : sutures.sutures) json.push_back(jsonOf(suture));
   char name[32];
   std::snprintf(name, sizeof name, "sutures/%06zu.json", number);
-  writeText(name, text + "]\n");
+  writeText(name, json.dump() + "\n");
 }
 
 void DatasetFolder::writeText(const std::string& name, const std::string& text) {
@@ -244,51 +209,64 @@ void DatasetFolder::writeText(const std::string& name, const std::string& text) 
 
 std::string DatasetFolder::intrinsics() const {
   const graphics::CameraNumbers numbers = graphics::numbersOf(options_.round, options_.stereo ? options_.baseline : 0);
-  std::ostringstream text;
-  text << std::setprecision(kDigits) << "{\n\"width\": " << options_.round.width
-       << ",\n\"height\": " << options_.round.height << ",\n\"model\": \"" << numbers.distortion_model
-       << "\",\n\"field_of_view\": " << options_.round.field_of_view / graphics::kDegree
-       << ",\n\"fx\": " << numbers.k[0] << ",\n\"fy\": " << numbers.k[4] << ",\n\"cx\": " << numbers.k[2]
-       << ",\n\"cy\": " << numbers.k[5] << ",\n\"radius\": " << options_.round.radius()
-       << ",\n\"distortion_of_truth\": [";
-  for (std::size_t k = 0; k < numbers.d.size(); ++k) text << (k ? ", 0" : "0");
-  text << "],\n\"distortion_of_image\": [" << options_.sensor.distortion;
-  for (std::size_t k = 1; k < numbers.d.size(); ++k) text << ", 0";
-  text << "],\n\"baseline\": " << (options_.stereo ? options_.baseline : 0) << "\n}\n";
-  return text.str();
+  std::vector<double> of_image(numbers.d.size(), 0);
+  of_image[0] = options_.sensor.distortion;
+  const Json json{{"width", options_.round.width},
+                  {"height", options_.round.height},
+                  {"model", numbers.distortion_model},
+                  {"field_of_view", options_.round.field_of_view / graphics::kDegree},
+                  {"fx", numbers.k[0]},
+                  {"fy", numbers.k[4]},
+                  {"cx", numbers.k[2]},
+                  {"cy", numbers.k[5]},
+                  {"radius", options_.round.radius()},
+                  {"distortion_of_truth", std::vector<int>(numbers.d.size(), 0)},
+                  {"distortion_of_image", of_image},
+                  {"baseline", options_.stereo ? options_.baseline : 0}};
+  return json.dump(1) + "\n";
 }
 
 std::string DatasetFolder::description(const vibe_msgs::SessionInfo& info, const std::string& frame) const {
-  std::ostringstream text;
-  text << std::setprecision(kDigits) << "{\n\"recording\": " << quoted(options_.name)
-       << ",\n\"version\": " << quoted(info.version) << ",\n\"arithmetic\": " << quoted(info.arithmetic)
-       << ",\n\"scene_hash\": \"" << std::hex << info.scene_hash << "\",\n\"urdf_hash\": \"" << info.urdf_hash
-       << "\",\n\"model_hash\": \"" << info.model_hash << std::dec << "\",\n\"frame\": " << quoted(frame)
-       << ",\n\"images\": " << images_ << ",\n\"first\": " << first_ << ",\n\"last\": " << last_
-       << ",\n\"rate\": " << options_.rate << ",\n\"every\": " << options_.every << ",\n\"lens\": \""
-       << (options_.round.lens == graphics::LensKind::Equidistant ? "equidistant" : "rectilinear")
-       << "\",\n\"stereo\": " << (options_.stereo ? "true" : "false") << ",\n\"content\": [\"image\"";
-  for (const auto& [name, on] : {std::pair("depth", options_.depth),
-                                 {"normals", options_.normals},
-                                 {"labels", options_.labels},
-                                 {"flow", options_.flow},
-                                 {"particles", options_.particles},
-                                 {"sutures", options_.sutures}})
-    if (on) text << ", \"" << name << "\"";
-  text << "],\n\"seed\": " << options_.seed << ",\n\"varied\": " << variedText(options_)
-       << ",\n\"mount\": {\"roll\": " << options_.roll << ", \"pitch\": " << options_.pitch
-       << ", \"yaw\": " << options_.yaw << "},\n\"sensor\": " << textOf(options_.sensor)
-       << ",\n\"mucosa\": " << textOf(options_.mucosa) << ",\n\"light\": " << textOf(options_.light)
-       << ",\n\"label_pixels\": {";
-  bool first = true;
+  const DatasetOptions& o = options_;
+  const Json content = namesOf({{"image", true},
+                                {"depth", o.depth},
+                                {"normals", o.normals},
+                                {"labels", o.labels},
+                                {"flow", o.flow},
+                                {"particles", o.particles},
+                                {"sutures", o.sutures}});
+  const bool varies = o.seed != 0;
+  const Json varied = namesOf({{"lens", varies && o.vary_lens},
+                               {"sensor", varies && o.vary_sensor},
+                               {"mucosa", varies && o.vary_mucosa},
+                               {"light", varies && o.vary_light}});
+  Json label_pixels = Json::object();
   for (std::size_t k = 0; k < pixels_.size(); ++k)
-    if (pixels_[k] > 0) text << (first ? "" : ", ") << "\"" << k << "\": " << pixels_[k], first = false;
-  text << "},\n\"scene\": ";
-  // the scene is text with line breaks
-  std::string scene;
-  for (const char c : info.scene)
-    scene += c == '\n' ? std::string("\\n") : c == '"' || c == '\\' ? std::string{'\\', c} : std::string(1, c);
-  return text.str() + "\"" + scene + "\"\n}\n";
+    if (pixels_[k] > 0) label_pixels[std::to_string(k)] = pixels_[k];
+  const Json json{{"recording", o.name},
+                  {"version", info.version},
+                  {"arithmetic", info.arithmetic},
+                  {"scene_hash", hex(info.scene_hash)},
+                  {"urdf_hash", hex(info.urdf_hash)},
+                  {"model_hash", hex(info.model_hash)},
+                  {"frame", frame},
+                  {"images", images_},
+                  {"first", first_},
+                  {"last", last_},
+                  {"rate", o.rate},
+                  {"every", o.every},
+                  {"lens", o.round.lens == graphics::LensKind::Equidistant ? "equidistant" : "rectilinear"},
+                  {"stereo", o.stereo},
+                  {"content", content},
+                  {"seed", o.seed},
+                  {"varied", varied},
+                  {"mount", {{"roll", o.roll}, {"pitch", o.pitch}, {"yaw", o.yaw}}},
+                  {"sensor", jsonOf(o.sensor)},
+                  {"mucosa", jsonOf(o.mucosa)},
+                  {"light", jsonOf(o.light)},
+                  {"label_pixels", label_pixels},
+                  {"scene", info.scene}};
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 void DatasetFolder::finish(const vibe_msgs::SessionInfo& info, const std::string& labels, const std::string& frame) {

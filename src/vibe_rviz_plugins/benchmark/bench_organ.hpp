@@ -9,7 +9,7 @@ namespace vibe::rviz_plugins {
 enum class Motion { Nothing, Patch, Everything };
 
 /// An organ to measure with: a closed egg of 3,618 particles and 7,232 triangles, 20 cm long.
-/// @param skinned  drawn with four times as many triangles, whose vertices follow one or two particles each
+/// @param subdivided  drawn with four times as many triangles, whose vertices follow one or two particles each
 graphics::TissueMesh benchOrgan(bool subdivided);
 
 /// The organ at frame number `frame` as the simulator sends it, in 32 bytes per particle. Everything breathes; a patch

@@ -25,7 +25,7 @@ class VisionPublisher {
  public:
   VisionPublisher(ros::NodeHandle handle, const VisionConfig& config, const VisionParameters& parameters);
 
-  /// @param times  times of the frame; `publish` is filled. @return that time [s]
+  /// @return when it was published [s]
   double publish(const FrameResult& result);
   /// Without an image: only suturing_device/tracking and suturing_device/doubts.
   void publishSilence(const FrameResult& result);

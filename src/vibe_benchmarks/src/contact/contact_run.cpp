@@ -30,11 +30,11 @@ ContactCheck::ContactCheck(const Model& model) : model_(model) {
   for (const End end : model.organ.end) open_.push_back(end != End::None ? 1 : 0);
 }
 
-const std::vector<WallCrossings::Pair>& ContactCheck::wall(const State& state) {
-  return wall_.find({model_.organ.surface.triangles, state.x, state.y, state.z});
+std::vector<test::CrossingPair> ContactCheck::wall(const State& state) {
+  return test::findWallCrossings({model_.organ.surface.triangles, state.x, state.y, state.z});
 }
 
-ToolCrossing ContactCheck::tool(const State& state) {
+test::ToolCrossing ContactCheck::tool(const State& state) {
   if (!model_.tool) return {};
   passes_ = open_;
   const double whole = wholeWeight(state.grip);
@@ -42,7 +42,8 @@ ToolCrossing ContactCheck::tool(const State& state) {
     if (point.weight >= whole) passes_[static_cast<std::size_t>(point.particle)] = 1;
   model_.tool->forwardKinematics(state.joints, state.tool_displacement, poses_);
   for (Eigen::Isometry3d& pose : poses_) pose = model_.tool_base * pose;
-  return findToolCrossing(*model_.tool, poses_, {model_.organ.surface.triangles, state.x, state.y, state.z}, passes_);
+  return test::findToolCrossing(*model_.tool, poses_, {model_.organ.surface.triangles, state.x, state.y, state.z},
+                                passes_);
 }
 
 namespace {

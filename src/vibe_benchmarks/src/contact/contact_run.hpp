@@ -12,10 +12,9 @@
 #include <Eigen/Geometry>
 
 #include "vibe_core/model/model.hpp"
-#include "vibe_core/self_contact/wall_crossings.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/state/state.hpp"
-#include "vibe_core/tool_contact/tool_crossings.hpp"
+#include "vibe_testing/tool_crossings.hpp"
 
 namespace vibe::benchmarks {
 
@@ -56,14 +55,13 @@ class ContactCheck {
   explicit ContactCheck(const Model& model);
 
   /// Pairs of triangles without common vertex that intersect.
-  const std::vector<WallCrossings::Pair>& wall(const State& state);
+  std::vector<test::CrossingPair> wall(const State& state);
 
   /// The tool in the wall, without the open ends and what the helix holds.
-  ToolCrossing tool(const State& state);
+  test::ToolCrossing tool(const State& state);
 
  private:
   const Model& model_;
-  WallCrossings wall_;
   std::vector<char> open_, passes_;
   std::vector<Eigen::Isometry3d> poses_;
 };

@@ -169,7 +169,7 @@ class Runner {
   std::shared_ptr<const Model> model_;
   std::unique_ptr<Simulation> simulation_;
   std::unique_ptr<ContactCheck> check_;
-  ToolCrossing tool_;
+  test::ToolCrossing tool_;
   HardResult result_;
   State before_;
   std::vector<double> cpu_;

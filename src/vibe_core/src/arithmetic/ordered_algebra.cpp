@@ -86,18 +86,6 @@ void addTransposedProduct(const MatrixView& a, const VectorView& x, double facto
     addColumns(a, x, factor, out);
 }
 
-// Four columns are added up first, except those after the last four and in an odd row at the end.
-void sumRows(const MatrixView& a, Eigen::Ref<Eigen::VectorXd> out) {
-  const Index paired = a.rows() / 2 * 2, fours = (a.cols() - 1) / 4 * 4;
-  for (Index i = 0; i < a.rows(); ++i) {
-    Index j = 1;
-    double sum = a(i, 0);
-    for (; i < paired && j < fours; j += 4) sum += a(i, j) + a(i, j + 1) + (a(i, j + 2) + a(i, j + 3));
-    for (; j < a.cols(); ++j) sum += a(i, j);
-    out[i] = sum;
-  }
-}
-
 /// Row and column `largest` change places with row and column k of the symmetric rest.
 void OrderedLdlt::bringUp(Index k, Index largest) {
   swapped_[static_cast<std::size_t>(k)] = largest;

@@ -29,9 +29,6 @@ void addProduct(const MatrixView& a, const VectorView& x, double factor, Eigen::
 /// out += factor A^T x
 void addTransposedProduct(const MatrixView& a, const VectorView& x, double factor, Eigen::Ref<Eigen::VectorXd> out);
 
-/// The sum of the coefficients of each row.
-void sumRows(const MatrixView& a, Eigen::Ref<Eigen::VectorXd> out);
-
 /// P A P^T = L D L^T of a symmetric matrix, with the largest pivot first; asks for memory only for a larger matrix.
 class OrderedLdlt {
  public:

@@ -9,10 +9,6 @@
 
 namespace vibe {
 
-namespace {
-constexpr double kSmallestVolume = 1e-9;
-}
-
 double gaugePressure(double amount, double volume) {
   return amount / std::max(volume, kSmallestVolume) - kAmbientPressure;
 }
@@ -48,7 +44,6 @@ class GasBlock : public ConstraintBlock {
     loads.gas.amount_min = range.min;
     loads.gas.amount_max = range.max;
     loads.gas.set_pressure = scene.regulated_pressure;
-    loads.gas.ambient = kAmbientPressure;
     loads.gas.volume = state.volume;
   }
 

@@ -20,6 +20,8 @@ namespace vibe {
 /// rows is Z^T Z.
 class ConstraintSchur {
  public:
+  /// @param thread_guesses  see ThreadSlides
+  explicit ConstraintSchur(int thread_guesses = ThreadSlides::kGuesses) : thread_slides_(thread_guesses) {}
   /// What follows is done by a pool, which must outlive that. The bits do not depend on it.
   void use(ThreadPool& pool) { pool_ = &pool; }
   /// Forgets everything about the old factor.
@@ -46,7 +48,7 @@ class ConstraintSchur {
   const Eigen::VectorXd& moves() const { return moves_; }
   /// The row moves to where `rhs` wants it: it is not a contact that opens or slips, nor a slack thread.
   bool holds(int row) const { return holds_[static_cast<std::size_t>(row)] != 0; }
-  /// Largest violation of a contact or thread that the last elimination left [m].
+  /// Largest violation of a contact or thread that the last elimination left, by friction in eyelets, too [m].
   double violation() const { return violation_; }
   /// Per row: thread that slid out of it into others of its thread [m].
   const Eigen::VectorXd& lost() const { return lost_; }

@@ -12,11 +12,6 @@
 
 namespace vibe {
 
-namespace {
-// A smaller volume counts as this, so that pressure and energy stay finite in any state [m^3].
-constexpr double kSmallestVolume = 1e-12;
-}  // namespace
-
 GasLaw::GasLaw(const GasLoad& load, double part)
     : load_(load),
       amount_min_(load.amount + part * (load.amount_min - load.amount)),

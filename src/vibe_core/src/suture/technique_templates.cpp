@@ -101,6 +101,9 @@ namespace {
 using Complex = std::complex<double>;
 using Points = std::vector<Complex>;
 
+// Angles, proportions and weights of all drawings are design choices (docs/technique.md): no published measurement of
+// how sets are drawn was found. An affine map fits a drawing to the bites, so that a few angles cover those between
+// them, and proportions along the legs count, not their scale. A drawing that a technique has rarely has less weight.
 constexpr int kMaxUneven = 6;         // largest ratio of the numbers of bite vectors on two sides of a polygon
 constexpr double kAlongShare = 0.25;  // share of drawings with evenly spaced bites and corners anywhere
 
@@ -218,18 +221,23 @@ void addAlong(Album& album, Technique technique, double turn, double back, const
   }
 }
 
+/// Legs of opposite directions: the corners turn by 180 degrees in all. Half as often both lean to the same side, as a
+/// parallelogram without its fourth side.
 void addU(Album& album) {
   for (const double lean : {-20, 0, 20})
     addTwoCorners(album, Technique::U, (90 + lean) * kDegree, (90 - lean) * kDegree, lean == 0 ? 1 : 0.5);
   if (album.count() >= 5) addAlong(album, Technique::U, 90 * kDegree, 90 * kDegree, {0.25, 0.5, 0.8});
 }
 
+/// Legs of the same direction, joined by a bar that runs straight across (95 degrees, which is rare) or back, up to the
+/// sharp corners of a written Z (150 degrees).
 void addZ(Album& album) {
   for (const double turn : {95, 120, 135, 150})
     addTwoCorners(album, Technique::Z, turn * kDegree, -turn * kDegree, turn < 100 ? 0.5 : 1);
   if (album.count() >= 5) addAlong(album, Technique::Z, 130 * kDegree, -130 * kDegree, {1, 1.4});
 }
 
+/// Two legs that meet in one sharp corner: that of an equilateral triangle (120 degrees), or 20 degrees more or less.
 void addCorner(Album& album) {
   const int vectors = album.count() - 1;
   for (int first = 1; first <= vectors - 1; ++first) {
@@ -250,6 +258,7 @@ void addCorner(Album& album) {
 }
 
 /// A polygon whose last side may end short of the first bite.
+/// @param shortest  length of such a side, which is half as frequent, over that of the others
 void addPolygon(Album& album, Technique technique, int sides, double shortest, double weight) {
   const double turn = 360 * kDegree / sides;
   const int vectors = album.count() - 1;
@@ -287,12 +296,15 @@ Points arc(int count, double sweep) {
   return points;
 }
 
+/// Arcs from half to three quarters of a circle, 10 degrees beyond either end.
 void addC(Album& album) {
   // with four bites the chords of three quarters of a circle are three sides of a square, which is a U
   const int max = album.count() == 4 ? 210 : 280;
   for (int sweep = 170; sweep <= max; sweep += 20) album.add(Technique::C, arc(album.count(), sweep * kDegree));
 }
 
+/// A straight line, a zigzag with bites beside it by up to 0.3 of their spacing along it, or an arc that is much less
+/// than that of a C.
 void addRunning(Album& album) {
   for (const double zigzag : {0.0, 0.15, 0.3}) {
     Points points;
@@ -309,7 +321,7 @@ std::vector<TechniqueTemplate> techniqueTemplates(int bite_count) {
   addU(album);
   addZ(album);
   addCorner(album);
-  addPolygon(album, Technique::Triangular, 3, 0.67, 2);
+  addPolygon(album, Technique::Triangular, 3, 0.67, 2);  // three sides are more frequent than one corner
   addPolygon(album, Technique::Square, 4, 0.6, 1);
   addC(album);
   addRunning(album);

@@ -35,9 +35,8 @@ struct GeneralLaw {
   static constexpr double kLimit = std::numeric_limits<double>::infinity();
 };
 
-/// P(K) and its derivatives for K below the limit; above it P is extended by its second-order Taylor polynomial.
-/// @param inside  K, or the limit if K is above it
-/// @param x       stiffening * inside
+/// P(K) and its derivatives for K below the limit; above it P is extended by its second-order Taylor polynomial. In
+/// profile(), `inside` is K, or the limit if K is above it, and `x` is stiffening * inside.
 template <Law law>
 struct LawFormula;
 

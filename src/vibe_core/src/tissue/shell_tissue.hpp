@@ -20,7 +20,7 @@ ShellFibres wallFibres(const FibreScene& scene, const Organ& organ, const std::v
 /// The wall of an organ as a shell whose nodes are the particles (tissue.model: shell).
 class ShellTissue : public TissueModel {
  public:
-  /// @param masses  of the particles [kg]; where fixed[i] is not 0 the particle is held
+  /// @param fixed  per particle: not 0 where it is held
   /// @throws Error for an unknown tissue.law, and as ShellElements
   ShellTissue(const TissueScene& tissue, const Organ& organ, const std::vector<char>& fixed);
 

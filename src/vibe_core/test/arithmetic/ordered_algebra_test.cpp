@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-
-#include "arithmetic/ordered_lu.hpp"
 #include "arithmetic/symmetric_eigen.hpp"
 #include "vibe_core/arithmetic/random.hpp"
 #include "vibe_core/files/fnv1a.hpp"
@@ -74,30 +71,6 @@ TEST(OrderedAlgebra, EigenvectorsAreOrthogonalAndGiveTheMatrix) {
   }
 }
 
-/// 1 / (i + j + 1): the first 12 rows have a condition of 1e16.
-Eigen::MatrixXd hilbert(Eigen::Index n) {
-  return Eigen::MatrixXd::NullaryExpr(n, n, [](auto i, auto j) { return 1.0 / static_cast<double>(i + j + 1); });
-}
-
-TEST(OrderedAlgebra, LuSolvesTheSystemAsWellAsEigen) {
-  std::uint64_t state = 4;
-  for (const Eigen::Index n : {0, 1, 2, 7, 8, 16, 17, 18, 24, 39, 64})
-    for (const Eigen::MatrixXd& a : {anyMatrix(n, n, state), hilbert(n)}) {
-      const Eigen::MatrixXd b = anyMatrix(n, 2, state), other = a.partialPivLu().solve(b);
-      Eigen::MatrixXd factor = a, found = b;
-      solveByOrderedLu(factor, found);
-      // relative to what rounding of the solution alone leaves
-      EXPECT_LE((a * found - b).norm(), 1e-14 * static_cast<double>(n) * a.norm() * found.norm()) << n;
-      EXPECT_LE((a * found - b).norm(), 4 * (a * other - b).norm() + 1e-15) << n;
-    }
-}
-
-TEST(OrderedAlgebra, LuOfASingularMatrixIsNotFinite) {
-  Eigen::MatrixXd a = Eigen::MatrixXd::Ones(3, 3), b = Eigen::Vector3d(1, 2, 3);
-  solveByOrderedLu(a, b);
-  EXPECT_FALSE(b.allFinite());
-}
-
 /// The bits that recordings were made with, those of Eigen 3.4.0: they must not change with compiler, Eigen or
 /// processor.
 TEST(OrderedAlgebra, BitsAreThoseOfRecordings) {
@@ -118,20 +91,6 @@ TEST(OrderedAlgebra, BitsAreThoseOfRecordings) {
     add(eigen.values, hash), add(Eigen::Map<const Eigen::VectorXd>(eigen.vectors.data(), 9), hash);
   }
   EXPECT_EQ(hash.result(), 0x8a4182ecfe682628ULL);
-}
-
-/// The same of what threads need; they have up to 64 segments.
-TEST(OrderedAlgebra, BitsOfThreadsAreThoseOfRecordings) {
-  std::uint64_t state = 5;
-  Fnv1a hash;
-  for (Eigen::Index n = 1; n <= 64; ++n) {
-    Eigen::MatrixXd a = anyMatrix(n, n, state), b = anyMatrix(n, 2, state);
-    Eigen::VectorXd sums(n);
-    sumRows(a, sums);
-    solveByOrderedLu(a, b);
-    add(sums, hash), add(b.col(0), hash), add(b.col(1), hash);
-  }
-  EXPECT_EQ(hash.result(), 0xed487b154e0d3f86ULL);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <cstdlib>
+#include <limits>
 
 namespace vibe::session_outcome_test {
 namespace {
@@ -30,6 +31,17 @@ TEST(SessionOutcome, readsBackAsItWas) {
   EXPECT_TRUE(json["measures"]["economy"]["value"].IsNull());
   EXPECT_EQ(json["steps"].as<int>(), 7307);
   EXPECT_EQ(json["state_hash"].as<std::string>(), "1f6dad6d7aa7616b");
+}
+
+TEST(SessionOutcome, whatIsNotANumberIsNullAndWhatIsNotUtf8IsReplaced) {
+  SessionOutcome odd = outcome();
+  odd.measures = {{"a", "m", std::numeric_limits<double>::quiet_NaN()},
+                  {"b", "m", std::numeric_limits<double>::infinity()}};
+  odd.goals[0].goal = "\xff";
+  const YAML::Node json = YAML::Load(toJson(odd));
+  EXPECT_TRUE(json["measures"]["a"]["value"].IsNull());
+  EXPECT_TRUE(json["measures"]["b"]["value"].IsNull());
+  EXPECT_EQ(json["goals"][0]["goal"].as<std::string>(), "\xef\xbf\xbd");
 }
 
 TEST(SessionOutcome, countsEveryKindOfEvent) {

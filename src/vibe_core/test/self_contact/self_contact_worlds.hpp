@@ -11,7 +11,7 @@
 
 #include "self_contact/self_contact.hpp"
 #include "sparse/closed_mesh.hpp"
-#include "vibe_core/self_contact/wall_crossings.hpp"
+#include "vibe_testing/wall_crossings.hpp"
 
 namespace vibe::test {
 
@@ -68,8 +68,7 @@ struct ContactWorld {
     for (std::size_t i = 0; i < count(); ++i)
       for (std::size_t k = 0; k < 3; ++k)
         p[k].push_back(from.empty() ? at[4 * i + k] : from[4 * i + k] + part * (at[4 * i + k] - from[4 * i + k]));
-    WallCrossings found;
-    return found.find({rest.triangles, p[0], p[1], p[2]}).size();
+    return findWallCrossings({rest.triangles, p[0], p[1], p[2]}).size();
   }
   std::size_t count() const { return rest.vertices.size(); }
   Eigen::Vector3d get(std::size_t i) const { return {at[4 * i], at[4 * i + 1], at[4 * i + 2]}; }

@@ -1,4 +1,4 @@
-#include "vibe_core/self_contact/wall_crossings.hpp"
+#include "vibe_testing/wall_crossings.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@ namespace vibe::wall_crossings_test {
 namespace {
 
 using Eigen::Vector3d;
+using namespace test;
 
 struct Sheet {
   std::vector<std::array<int, 3>> triangles;
@@ -85,17 +86,17 @@ TEST(WallCrossings, NeighboursDoNotCountAndEverybodyElseDoes) {
   const int a = sheet.add({0, 0, 0}), b = sheet.add({1, 0, 0}), c = sheet.add({0, 1, 0});
   const int d = sheet.add({0.3, 0.3, -1}), e = sheet.add({0.3, 0.3, 1});
   sheet.triangles = {{a, b, c}, {a, d, e}};  // the second passes through the first, with a common vertex
-  EXPECT_TRUE(WallCrossings().find(sheet.view()).empty());
+  EXPECT_TRUE(findWallCrossings(sheet.view()).empty());
   sheet.triangles[1][0] = sheet.add({2, 2, 0});
-  ASSERT_EQ(WallCrossings().find(sheet.view()).size(), 1u);
-  EXPECT_EQ(WallCrossings().find(sheet.view()).front(), (WallCrossings::Pair{0, 1}));
+  ASSERT_EQ(findWallCrossings(sheet.view()).size(), 1u);
+  EXPECT_EQ(findWallCrossings(sheet.view()).front(), (CrossingPair{0, 1}));
 }
 
 TEST(WallCrossings, ParallelSheetsDoNotCross) {
   Sheet sheet;
   addGrid(10, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, sheet);
   addGrid(10, {0.3e-3, 0.2e-3, 1e-6}, {1, 0, 0}, {0, 1, 0}, sheet);
-  EXPECT_TRUE(WallCrossings().find(sheet.view()).empty());
+  EXPECT_TRUE(findWallCrossings(sheet.view()).empty());
 }
 
 TEST(WallCrossings, FindsWhatAllPairsFindOnRandomAndOnRegularSurfaces) {
@@ -110,14 +111,14 @@ TEST(WallCrossings, FindsWhatAllPairsFindOnRandomAndOnRegularSurfaces) {
   }
   const std::size_t expected = countByAllPairs(sheet);
   EXPECT_GT(expected, 50u);
-  EXPECT_EQ(WallCrossings().find(sheet.view()).size(), expected);
+  EXPECT_EQ(findWallCrossings(sheet.view()).size(), expected);
 }
 
 TEST(WallCrossings, OneLargeTriangleDoesNotHideTheSmallOnes) {
   Sheet sheet;
   addGrid(10, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, sheet);
   sheet.addTriangle({5.3e-3, -1, -1}, {5.3e-3, 1, -1}, {5.3e-3, 0.1, 1});
-  EXPECT_EQ(WallCrossings().find(sheet.view()).size(), countByAllPairs(sheet));
+  EXPECT_EQ(findWallCrossings(sheet.view()).size(), countByAllPairs(sheet));
   EXPECT_EQ(countByAllPairs(sheet), 20u);  // both halves of the ten squares in its way
 }
 
@@ -125,8 +126,8 @@ TEST(WallCrossings, PositionsThatAreNotFiniteCrossNothing) {
   Sheet sheet;
   addGrid(2, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, sheet);
   sheet.x[3] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(WallCrossings().find(sheet.view()).empty());
-  EXPECT_TRUE(WallCrossings().find(Sheet().view()).empty());
+  EXPECT_TRUE(findWallCrossings(sheet.view()).empty());
+  EXPECT_TRUE(findWallCrossings(Sheet().view()).empty());
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ Eigen::MatrixXd dense(const BlockMatrix& matrix) {
 }
 
 struct System {
-  System() : matrix(shellMatrix(closedMesh(3), 1.0, 0.3)), a(dense(matrix)), inverse(a.inverse()) {
+  explicit System(int thread_guesses = ThreadSlides::kGuesses)
+      : matrix(shellMatrix(closedMesh(3), 1.0, 0.3)), a(dense(matrix)), inverse(a.inverse()), schur(thread_guesses) {
     factor = std::make_unique<Factor>(makeFactorPlan(matrix.pattern()), FactorStorage::Double);
     EXPECT_TRUE(factor->compute(matrix));
     schur.reset(*factor);
@@ -184,7 +185,7 @@ TEST(ConstraintSchur, AContactNeverPulls) {
 
 // Two segments between three points; turning costs nothing.
 struct ThreeBites {
-  explicit ThreeBites(double capstan) {
+  explicit ThreeBites(double capstan, int guesses = ThreadSlides::kGuesses) : system(guesses) {
     RowList<AttachmentPoint> points{{{2, 3}, {0.5, 0.5}}, {{30}, {1}}, {{60, 61}, {0.3, 0.7}}};
     system.columns.setAttachments(*system.factor, points);
     ThreadRows& thread = rows.threads.add();
@@ -262,6 +263,15 @@ TEST(ConstraintSchur, ASlidingThreadHasTheCapstanRatioUntilItIsHeld) {
   bites.system.solve(rhs);
   EXPECT_NEAR(bites.system.schur.lost()[0], 0, 1e-9);
   EXPECT_GT(std::abs(bites.system.schur.forces()[0] - force[0]), 1e-3 * force[0]);
+}
+
+TEST(ConstraintSchur, AThreadWhoseGuessDoesNotEndIsAViolation) {
+  ThreeBites found(1.3), missed(1.3, 1);
+  found.system.solve(found.rhs(2.0, 0.1));
+  missed.system.solve(missed.rhs(2.0, 0.1));
+  EXPECT_LT(found.system.schur.violation(), 1e-6);
+  EXPECT_GT(missed.system.schur.violation(), 1e-2);
+  EXPECT_GE(missed.system.schur.forces().head<2>().minCoeff(), 0);
 }
 
 TEST(ConstraintSchur, ASlackThreadDoesNotPush) {

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "vibe_core/scene/scene_parser.hpp"
-#include "vibe_core/tool_contact/tool_crossings.hpp"
 #include "vibe_testing/scope_fixture.hpp"
+#include "vibe_testing/tool_crossings.hpp"
 #include "vibe_testing/worlds.hpp"
 
 namespace vibe::hard_stomach_test {
@@ -163,7 +163,7 @@ int piercedBy(const Stomach& stomach, const std::array<std::vector<double>, 3>& 
   std::vector<char> passes;
   for (const End end : stomach.model->organ.end) passes.push_back(end != End::None ? 1 : 0);
   const SurfaceView view{stomach.model->organ.surface.triangles, wall[0], wall[1], wall[2]};
-  return findToolCrossing(*stomach.model->tool, poses, view, passes).pierced;
+  return test::findToolCrossing(*stomach.model->tool, poses, view, passes).pierced;
 }
 
 TEST(HardStomach, ARecoveryDoesNotLeadTheWallThroughTheTool) {

@@ -1,4 +1,4 @@
-#include "vibe_core/tool_contact/tool_crossings.hpp"
+#include "vibe_testing/tool_crossings.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@ namespace vibe::tool_crossings_test {
 namespace {
 
 using Eigen::Vector3d;
+using namespace test;
 
 struct Plate {
   std::vector<std::array<int, 3>> triangles{{0, 1, 2}};

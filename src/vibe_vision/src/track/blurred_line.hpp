@@ -128,15 +128,15 @@ class MovingLine {
   /// allocation.
   void compose(float low, float high, float half_motion, const MotionParts& parts);
 
-  /// Blackness, slope and second derivative at places x. Variance and half motion may differ from those of the tables,
-  /// which corrects to first order.
-  /// @param count  a multiple of 4, at most kPart
   struct Places {
     const float *x, *variance, *half_motion;
   };
   struct Result {
     float *value, *slope, *bend;
   };
+  /// Blackness, slope and second derivative at places x. Variance and half motion may differ from those of the tables,
+  /// which corrects to first order.
+  /// @param count  a multiple of 4, at most kPart
   void look(const Places& places, std::size_t count, const Result& result) const;
 
  private:

@@ -1,14 +1,13 @@
 #pragma once
 
 #include "vibe_core/scene/scene.hpp"
+#include "vibe_core/solver/body_loads.hpp"
 
 namespace vibe {
 
-constexpr double kAmbientPressure = 101325;  ///< of the surroundings, absolute [Pa]
-
 /// Gauge pressure of an isothermal gas [Pa].
 /// @param amount  absolute pressure times volume [J]
-/// @param volume  of the lumen [m^3]; below a cubic millimetre it counts as that
+/// @param volume  of the lumen [m^3]; below kSmallestVolume it counts as that
 double gaugePressure(double amount, double volume);
 
 /// Amount that gives a gauge pressure in a volume [J].

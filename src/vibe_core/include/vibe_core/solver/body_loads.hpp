@@ -122,6 +122,10 @@ struct ContactConstraint {
   double work = 0;                                   ///< out: of this force on the surface over the step [J]
 };
 
+constexpr double kAmbientPressure = 101325;  ///< of the surroundings, absolute: the standard atmosphere [Pa]
+/// A smaller lumen counts as this, so that pressure and energy stay finite in any state [m^3].
+constexpr double kSmallestVolume = 1e-9;
+
 /// The gas inside a closed shell.
 struct GasLoad {
   /// What is given: nothing (no gas), the pressure, the amount of a closed gas, the set point of an insufflator that
@@ -129,14 +133,14 @@ struct GasLoad {
   enum class Control { None, Pressure, Amount, Regulated, Volume };
   Control control = Control::None;  ///< which of the other members are given
   double pressure = 0;              ///< gauge; given for Pressure, otherwise out: where the forces of the step act [Pa]
-  double amount = 0;         ///< absolute pressure times volume at the start of the step; for Amount, Regulated [J]
-  double amount_min = 0;     ///< least amount at the end of the step, for Regulated [J]
-  double amount_max = 0;     ///< largest amount at the end of the step, for Regulated [J]
-  double set_pressure = 0;   ///< gauge, for Regulated [Pa]
-  double ambient = 101325;   ///< [Pa]
-  double target_volume = 0;  ///< for Volume [m^3]
-  double volume = 0;         ///< at the start of the step; out: where the forces of the step act [m^3]
-  double stiffness = 0;      ///< out: how fast the pressure falls with the volume there [Pa/m^3]
+  double amount = 0;        ///< absolute pressure times volume at the start of the step; for Amount, Regulated [J]
+  double amount_min = 0;    ///< least amount at the end of the step, for Regulated [J]
+  double amount_max = 0;    ///< largest amount at the end of the step, for Regulated [J]
+  double set_pressure = 0;  ///< gauge, for Regulated [Pa]
+  double ambient = kAmbientPressure;  ///< [Pa]
+  double target_volume = 0;           ///< for Volume [m^3]
+  double volume = 0;                  ///< at the start of the step; out: where the forces of the step act [m^3]
+  double stiffness = 0;               ///< out: how fast the pressure falls with the volume there [Pa/m^3]
 };
 
 /// Everything that acts on the body during one step, beside its own elasticity, foundation and weight.

@@ -1,4 +1,4 @@
-#include "vibe_core/tool_contact/tool_crossings.hpp"
+#pragma once
 
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
@@ -8,36 +8,36 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
+#include <Eigen/Geometry>
+
+#include "vibe_core/geometry/surface_mesh.hpp"
 #include "vibe_core/program/error.hpp"
-#include "vibe_core/self_contact/wall_crossings.hpp"
+#include "vibe_core/tool/tool_model.hpp"
+#include "vibe_testing/wall_crossings.hpp"
 
-namespace vibe {
+namespace vibe::test {
 
-namespace {
-
-using Eigen::Vector3d;
-using Triangle = std::array<Vector3d, 3>;
-
-constexpr int kSamples = 16;  // per edge
+namespace solids {
 
 /// A shape in its own frame: all points within `radius` of a segment along z, or a box, or a cylinder along z.
 struct Solid {
   enum class Kind { Round, Box, Cylinder } kind = Kind::Round;
-  Vector3d half = Vector3d::Zero();  ///< of the box; z: of the segment or cylinder [m]
-  double radius = 0;                 ///< [m]
-  Eigen::Isometry3d pose;            ///< in world
+  Eigen::Vector3d half = Eigen::Vector3d::Zero();  ///< of the box; z: of the segment or cylinder [m]
+  double radius = 0;                               ///< [m]
+  Eigen::Isometry3d pose;                          ///< in world
 };
 
 /// Rotation that turns z into an axis.
-Eigen::Matrix3d alongAxis(int axis) {
+inline Eigen::Matrix3d alongAxis(int axis) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   if (axis == 0) turn << 0, 0, 1, 1, 0, 0, 0, 1, 0;
   if (axis == 1) turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
   return turn;
 }
 
-Solid solidOf(const ToolShape& shape, const Eigen::Isometry3d& link) {
+inline Solid solidOf(const ToolShape& shape, const Eigen::Isometry3d& link) {
   Solid solid;
   solid.pose = link * shape.origin;
   switch (shape.shape->getShapeType()) {
@@ -70,8 +70,9 @@ Solid solidOf(const ToolShape& shape, const Eigen::Isometry3d& link) {
   }
 }
 
-double segmentsApart(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Vector3d& v) {
-  const Vector3d w = p - q;
+inline double segmentsApart(const Eigen::Vector3d& p, const Eigen::Vector3d& u, const Eigen::Vector3d& q,
+                            const Eigen::Vector3d& v) {
+  const Eigen::Vector3d w = p - q;
   const double a = u.squaredNorm(), b = u.dot(v), c = v.squaredNorm(), d = u.dot(w), e = v.dot(w);
   const double det = a * c - b * b;
   double s = det > 1e-12 * a * c ? std::clamp((b * e - c * d) / det, 0.0, 1.0) : 0.0;
@@ -84,15 +85,15 @@ double segmentsApart(const Vector3d& p, const Vector3d& u, const Vector3d& q, co
 }
 
 /// Distance of a point from the inside of a triangle; infinite if its foot is outside.
-double aboveTriangle(const Vector3d& p, const Triangle& t) {
-  const Vector3d normal = (t[1] - t[0]).cross(t[2] - t[0]);
+inline double aboveTriangle(const Eigen::Vector3d& p, const TriangleCorners& t) {
+  const Eigen::Vector3d normal = (t[1] - t[0]).cross(t[2] - t[0]);
   for (std::size_t k = 0; k < 3; ++k)
     if ((t[(k + 1) % 3] - t[k]).cross(p - t[k]).dot(normal) < 0) return HUGE_VAL;
   return std::abs((p - t[0]).dot(normal)) / normal.norm();
 }
 
-double depthInRound(const Solid& solid, const Triangle& t) {
-  const Vector3d begin(0, 0, -solid.half.z()), end(0, 0, solid.half.z());
+inline double depthInRound(const Solid& solid, const TriangleCorners& t) {
+  const Eigen::Vector3d begin(0, 0, -solid.half.z()), end(0, 0, solid.half.z());
   if (segmentPierces(begin, end, t)) return solid.radius;
   double apart = std::min(aboveTriangle(begin, t), aboveTriangle(end, t));
   for (std::size_t k = 0; k < 3; ++k)
@@ -101,62 +102,76 @@ double depthInRound(const Solid& solid, const Triangle& t) {
 }
 
 /// Depth of a point that is inside, otherwise negative.
-double depthAt(const Solid& solid, const Vector3d& p) {
+inline double depthAt(const Solid& solid, const Eigen::Vector3d& p) {
   if (solid.kind == Solid::Kind::Box) return (solid.half - p.cwiseAbs()).minCoeff();
   return std::min(solid.radius - p.head<2>().norm(), solid.half.z() - std::abs(p.z()));
 }
 
-double depthInside(const Solid& solid, const Triangle& t) {
+inline double depthInside(const Solid& solid, const TriangleCorners& t) {
   if (solid.kind == Solid::Kind::Round) return depthInRound(solid, t);
+  constexpr int samples = 16;  // per edge
   double depth = -HUGE_VAL;
-  for (int i = 0; i <= kSamples; ++i)
-    for (int j = 0; i + j <= kSamples; ++j)
-      depth = std::max(depth, depthAt(solid, t[0] + (t[1] - t[0]) * i / kSamples + (t[2] - t[0]) * j / kSamples));
+  for (int i = 0; i <= samples; ++i)
+    for (int j = 0; i + j <= samples; ++j)
+      depth = std::max(depth, depthAt(solid, t[0] + (t[1] - t[0]) * i / samples + (t[2] - t[0]) * j / samples));
   return depth;
 }
 
-bool coreIn(const Solid& solid, const Triangle& t) {
+inline bool coreIn(const Solid& solid, const TriangleCorners& t) {
   for (int axis = solid.kind == Solid::Kind::Box ? 0 : 2; axis < 3; ++axis) {
-    const Vector3d end = solid.half[axis] * Vector3d::Unit(axis);
+    const Eigen::Vector3d end = solid.half[axis] * Eigen::Vector3d::Unit(axis);
     if (segmentPierces(-end, end, t)) return true;
   }
   return false;
 }
 
-bool passesThrough(const std::array<int, 3>& corners, const std::vector<char>& passes) {
-  return !passes.empty() &&
-         std::any_of(corners.begin(), corners.end(), [&](int v) { return passes[static_cast<std::size_t>(v)] != 0; });
-}
-
 /// Half of the sides of a box around the shape, in its frame.
-Vector3d extentOf(const Solid& solid) {
+inline Eigen::Vector3d extentOf(const Solid& solid) {
   if (solid.kind == Solid::Kind::Box) return solid.half;
   const double cap = solid.kind == Solid::Kind::Round ? solid.radius : 0;
   return {solid.radius, solid.radius, solid.half.z() + cap};
 }
 
-bool apart(const Triangle& t, const Vector3d& extent) {
-  const Vector3d low = t[0].cwiseMin(t[1]).cwiseMin(t[2]), high = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
+inline bool apart(const TriangleCorners& t, const Eigen::Vector3d& extent) {
+  const Eigen::Vector3d low = t[0].cwiseMin(t[1]).cwiseMin(t[2]), high = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
   return !((low.array() <= extent.array()).all() && (high.array() >= -extent.array()).all());
 }
 
-}  // namespace
+}  // namespace solids
 
-ToolCrossing findToolCrossing(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& link_poses,
-                              const SurfaceView& wall, const std::vector<char>& passes) {
+/// How far a tool and a wall pass through each other.
+struct ToolCrossing {
+  int pierced = 0;    ///< pairs of a triangle and a shape whose core passes through it
+  double depth = 0;   ///< largest distance of a point of the wall below the surface of a shape; 0: all outside [m]
+  int shape = -1;     ///< where it is: index in ToolModel::shapes(), -1: nowhere
+  int triangle = -1;  ///< likewise
+};
+
+/// Tries all triangles against all shapes of the tool. The core of a capsule or cylinder is its axis, of a box the
+/// three lines between the middles of opposite faces, of a sphere nothing. Depths in capsules and spheres are exact; in
+/// boxes and cylinders they are those of points of the triangle at distances of a sixteenth of its edges. To check the
+/// simulation from outside: it shares nothing with its contact.
+/// @param link_poses  of the tool, in world
+/// @param wall        its middle surface, in world
+/// @param passes      triangles with such a vertex do not count, for ends that are open; (vertices), or empty
+inline ToolCrossing findToolCrossing(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& link_poses,
+                                     const SurfaceView& wall, const std::vector<char>& passes) {
   ToolCrossing crossing;
   for (std::size_t k = 0; k < tool.shapes().size(); ++k) {
     const ToolShape& shape = tool.shapes()[k];
-    const Solid solid = solidOf(shape, link_poses[static_cast<std::size_t>(shape.link)]);
+    const solids::Solid solid = solids::solidOf(shape, link_poses[static_cast<std::size_t>(shape.link)]);
     const Eigen::Isometry3d to_shape = solid.pose.inverse();
-    const Vector3d extent = extentOf(solid);
+    const Eigen::Vector3d extent = solids::extentOf(solid);
     for (std::size_t n = 0; n < wall.triangles.size(); ++n) {
       const auto& corners = wall.triangles[n];
-      const Triangle t{to_shape * wall.position(corners[0]), to_shape * wall.position(corners[1]),
-                       to_shape * wall.position(corners[2])};
-      if (apart(t, extent) || passesThrough(corners, passes)) continue;
-      crossing.pierced += coreIn(solid, t) ? 1 : 0;
-      const double depth = depthInside(solid, t);
+      const bool passed = !passes.empty() && std::any_of(corners.begin(), corners.end(), [&](int v) {
+        return passes[static_cast<std::size_t>(v)] != 0;
+      });
+      const TriangleCorners t{to_shape * wall.position(corners[0]), to_shape * wall.position(corners[1]),
+                              to_shape * wall.position(corners[2])};
+      if (passed || solids::apart(t, extent)) continue;
+      crossing.pierced += solids::coreIn(solid, t) ? 1 : 0;
+      const double depth = solids::depthInside(solid, t);
       if (depth <= crossing.depth) continue;
       crossing.depth = depth;
       crossing.shape = static_cast<int>(k);
@@ -166,4 +181,4 @@ ToolCrossing findToolCrossing(const ToolModel& tool, const std::vector<Eigen::Is
   return crossing;
 }
 
-}  // namespace vibe
+}  // namespace vibe::test
