@@ -10,7 +10,7 @@
 namespace vibe {
 
 namespace {
-constexpr double kSmallestVolume = 1e-9;
+constexpr double kSmallestVolume = 1e-9;  // a cubic millimetre: the pressure of a collapsed lumen stays finite [m^3]
 }
 
 double gaugePressure(double amount, double volume) {

@@ -107,7 +107,7 @@ bool ImplicitStep::stopsTool() {
 
 void ImplicitStep::keepToolApart() {
   ToolMotion motion = yielded_ ? *yielded_ : *motion_;
-  const double free = limited_ ? scratch_.guard->keepApart(scratch_.tool, motion, pathOfStep(), scratch_.held) : 1;
+  const double free = limited_ ? scratch_.guard->separate(scratch_.tool, motion, pathOfStep(), scratch_.held) : 1;
   tool_stopped_ = limited_.has_value();
   state_.joints = motion.inputs(1);
   if (model_.scope_springs) report_.tool_displacement = motion.displacement(1);
@@ -153,7 +153,7 @@ void ImplicitStep::recoverAround() {
   path.to = path.from;
   ToolMotion motion = *motion_;
   motion.displaceEnd(report_.tool_displacement);
-  scratch_.guard->keepApart(scratch_.tool, motion, path, scratch_.held);
+  scratch_.guard->separate(scratch_.tool, motion, path, scratch_.held);
   state_.joints = motion.inputs(1);
   if (model_.scope_springs) report_.tool_displacement = motion.displacement(1);
   const ToolMotion stands(*model_.tool, model_.tool_base, state_.joints, state_.joints, motion.displacement(1));

@@ -5,18 +5,9 @@
 
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 
+#include "vibe_core/solver/step_policy.hpp"
+
 namespace vibe {
-
-namespace {
-
-// Steps until a joint that tissue has stopped tries to go on. Design choice: the tissue has a few steps to give way to
-// a tool that stands still, and the hand tries often enough to go on with it [1].
-constexpr int kStallSteps = 6;
-// Force on the tool at which the hand slows down, and at which it stops. Design choice: forces in endoscopic suturing
-// reach 8 N (Trejos 2011); a force across the shaft, which the entry bears, reaches no joint of the hand [N].
-constexpr double kHandSlows = 10, kHandStops = 20;
-
-}  // namespace
 
 std::array<double, kJointCount> ToolMotion::inputs(double fraction) const {
   std::array<double, kJointCount> inputs{};
@@ -87,7 +78,8 @@ std::array<double, kJointCount> stalledMotion(const ToolModel& tool, const std::
 std::array<double, kJointCount> feltMotion(const std::array<double, kJointCount>& start,
                                            const std::array<double, kJointCount>& end,
                                            const std::array<double, kScopeJointCount>& effort, double force) {
-  const double part = std::clamp((kHandStops - force) / (kHandStops - kHandSlows), 0.0, 1.0);
+  const double stops = stepPolicy().hand_stops_force, slows = stepPolicy().hand_slows_force;
+  const double part = std::clamp((stops - force) / (stops - slows), 0.0, 1.0);
   std::array<double, kJointCount> result = end;
   for (int j = 0; j < kScopeJointCount; ++j)
     if ((end[j] - start[j]) * effort[j] > 0) result[j] = start[j] + part * (end[j] - start[j]);
@@ -106,7 +98,7 @@ std::array<double, kJointCount> heldMotion(const std::array<double, kJointCount>
 void updateStall(const std::array<int, kJointCount>& stopped, std::array<int, kJointCount>& stall) {
   for (int j = 0; j < kJointCount; ++j) {
     stall[j] -= stall[j] > 0 ? 1 : stall[j] < 0 ? -1 : 0;
-    if (stopped[j] != 0) stall[j] = stopped[j] * kStallSteps;
+    if (stopped[j] != 0) stall[j] = stopped[j] * stepPolicy().hand_stall_steps;
   }
 }
 

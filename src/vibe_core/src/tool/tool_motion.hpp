@@ -10,7 +10,7 @@
 
 namespace vibe {
 
-/// Path of the tool during one step: every input, and the displacement of a tool that gives way, moves at constant
+/// Path of the tool during one step: every input, and the displacement of a compliant tool, moves at constant
 /// speed from its start to its end value.
 class ToolMotion {
  public:
@@ -57,14 +57,14 @@ class ToolMotion {
 std::array<double, kJointCount> limitedMotion(const ToolModel& tool, const std::array<double, kJointCount>& position,
                                               const std::array<double, kJointCount>& command, double dt);
 
-/// The same with a hand whose force is limited: it does not move a joint of the scope on against an effort beyond
+/// Motion of a hand whose force is limited: it does not move a joint of the scope on against an effort beyond
 /// JointLimits::effort.
 /// @param effort  of the hand on the joints in the last step [N], [N m]
 std::array<double, kJointCount> stalledMotion(const ToolModel& tool, const std::array<double, kJointCount>& start,
                                               const std::array<double, kJointCount>& end,
                                               const std::array<double, kScopeJointCount>& effort);
 
-/// The same with a hand that feels the force on the tip: the nearer it is to the largest that a hand applies, the less
+/// Motion of a hand that feels the force on the tip: the nearer it is to the largest that a hand applies, the less
 /// it moves a joint of the scope on against it.
 /// @param effort  of the hand on the joints in the last step [N], [N m]
 /// @param force   on the tool in the last step [N]
@@ -72,7 +72,7 @@ std::array<double, kJointCount> feltMotion(const std::array<double, kJointCount>
                                            const std::array<double, kJointCount>& end,
                                            const std::array<double, kScopeJointCount>& effort, double force);
 
-/// The same with joints that tissue has stopped a moment ago: the hand does not push them on in that direction.
+/// Motion where tissue has stopped joints a moment ago: the hand does not push them on in that direction.
 /// @param stall  steps for which that holds, with the sign of the direction; 0: not stopped
 std::array<double, kJointCount> heldMotion(const std::array<double, kJointCount>& start,
                                            const std::array<double, kJointCount>& end,
