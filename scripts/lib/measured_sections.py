@@ -155,6 +155,8 @@ def sections(root, meshes=()):
         Section("instructions", "instructions of steps in contact", ("state",), (), tuple(instructions_parts())),
         Section("refinement", "force of a grip on finer meshes", ("grip", "site"), (), tuple(refinement_parts())),
         Section("hard", "hard cases of contact", ("case",), (), tuple(hard_parts())),
+        Section("policy", "what each number that steers a step changes", ("number", "factor"), (),
+                (Part("numbers", ("vibe_policy", "--scene", "{coarse}"), 20),)),
         Section("scenarios", "time of each suture set", ("scenario", "set"), (),
                 (Part("scenarios", ("vibe_sutures", "scenarios", "--quick"), 12),)),
         Section("outcomes", "idealised sleeves in C, U and Z", ("trial", "pattern"), (),

@@ -25,6 +25,7 @@ done
 for mode in states hard refinement; do
   check "no tool: vibe_contact $mode" refuses 2 "needs the sections" program vibe_benchmarks/vibe_contact $mode
 done
+check 'no tool: vibe_policy' refuses 2 "needs the sections" program vibe_benchmarks/vibe_policy
 
 check 'no tool: vibe_factor runs' program vibe_benchmarks/vibe_factor
 
@@ -33,6 +34,6 @@ onlyThese() {
   local found
   found=$(cd "$root/src" && grep -l 'loadScene(' ./*/programs/*.cpp | sed -E 's#.*/##; s/(_main)?\.cpp$//' | sort)
   echo "$found"
-  [ "$(xargs <<<"$found")" = 'vibe_contact vibe_factor vibe_haptic_loop vibe_headless vibe_sutures' ]
+  [ "$(xargs <<<"$found")" = 'vibe_contact vibe_factor vibe_haptic_loop vibe_headless vibe_policy vibe_sutures' ]
 }
 check 'no tool: these are all programs that take a scene' onlyThese

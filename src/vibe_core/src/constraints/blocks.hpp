@@ -12,7 +12,7 @@ namespace vibe {
 /// ends of the organ that are open pass through the tool; held particles do not touch. Null without a tool.
 std::unique_ptr<ConstraintBlock> makeToolContactBlock(const Model& model);
 
-/// What the helix holds: each held particle is at its place in the link that carries the helix, at the end of the step.
+/// What the helix holds: each held particle is at its point of the link that carries the helix, at the end of the step.
 /// Null without a tool.
 std::unique_ptr<ConstraintBlock> makeGripBlock(const Model& model);
 
@@ -23,9 +23,9 @@ std::unique_ptr<ConstraintBlock> makeThreadBlock(const Model& model);
 /// Parts of the wall that meet, see SelfContact. Null without tissue.self_contact.
 std::unique_ptr<ConstraintBlock> makeSelfContactBlock(const Model& model);
 
-/// The diaphragm, see breathingShift(): a force on every particle that is held by the foundation, and the place of the
-/// end of the oesophagus if it is attached. What it does to the tissue counts as pull_work; the work at the oesophagus,
-/// which no force tells, is in numerical_loss. Null in a scene that does not breathe.
+/// The diaphragm, see breathingShift(): a force on every particle that is held by the foundation, and the position of
+/// the end of the oesophagus if it is attached. What it does to the tissue counts as pull_work; the work at the
+/// oesophagus, which no force tells, is in numerical_loss. Null in a scene that does not breathe.
 std::unique_ptr<ConstraintBlock> makeBreathingBlock(const Model& model);
 
 /// The gas in the lumen, isothermal, and the insufflator. Null in a scene without gas.
@@ -39,9 +39,5 @@ std::unique_ptr<ConstraintBlock> makePullSpringBlock(const Model& model);
 /// joints is the work at the point to third order.
 /// @param point  in world, at the poses context.tool->end [m]
 Eigen::Matrix<double, 3, kYieldDofs> toolYield(const StepContext& context, int link, const Eigen::Vector3d& point);
-
-/// Largest speed at which a particle that is found inside the tool is pushed out. Design choice: the usual 2 to 3 mm of
-/// overlap are gone within 0.03 s, and the push adds little kinetic energy [m/s].
-constexpr double kDepenetrationSpeed = 0.1;
 
 }  // namespace vibe

@@ -86,8 +86,8 @@ class BreathingBlock : public ConstraintBlock {
     const Eigen::Vector3d shift = breathingShift(*context.model.scene.breathing, end);
     const Eigen::Vector3d speed = breathingSpeed(*context.model.scene.breathing, end);
     for (const int i : entry_) {
-      const Eigen::Vector3d place = context.model.organ.surface.vertices[i] + shift;
-      state.x[i] = place.x(), state.y[i] = place.y(), state.z[i] = place.z();
+      const Eigen::Vector3d moved = context.model.organ.surface.vertices[i] + shift;
+      state.x[i] = moved.x(), state.y[i] = moved.y(), state.z[i] = moved.z();
       state.vx[i] = speed.x(), state.vy[i] = speed.y(), state.vz[i] = speed.z();
     }
   }

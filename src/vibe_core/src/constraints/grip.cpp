@@ -4,6 +4,7 @@
 #include "arithmetic/symmetric_eigen.hpp"
 #include "constraints/blocks.hpp"
 #include "vibe_core/model/model.hpp"
+#include "vibe_core/solver/step_policy.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {
@@ -13,13 +14,9 @@ namespace {
 // Directions of the claws in the plane of the disc.
 constexpr std::array<std::array<double, 2>, 3> kClaws{
     {{1, 0}, {-0.5, 0.8660254037844386}, {-0.5, -0.8660254037844386}}};
-// How far the claws lie from the middle, in standard deviations of the disc, of which its radius is two. The hold does
-// not depend on it; with this no weight of a full disc is negative [1].
-constexpr double kClawRadius = 0.5;
-
 /// Three claws by which the helix moves the disc that it holds. Each is a weighted mean of the particles; together they
-/// are the mean place of the disc and its mean slopes in both directions. What the disc does beside that is free: held
-/// particle by particle, its size would be that of the mesh.
+/// are the mean position of the disc and its mean slopes in both directions. What the disc does beside that is free:
+/// held particle by particle, its size would be that of the mesh.
 class Claws {
  public:
   void find(const std::vector<GripPoint>& grip) {
@@ -35,7 +32,7 @@ class Claws {
   }
   std::size_t size() const { return local_.size(); }
   const AttachmentPoint& patch(std::size_t claw) const { return patch_[claw]; }
-  /// Where it is in the frame of the link that carries the helix [m].
+  /// Position of a claw in the frame of the link that carries the helix [m].
   const Eigen::Vector3d& local(std::size_t claw) const { return local_[claw]; }
 
  private:
@@ -45,13 +42,16 @@ class Claws {
     Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
     for (const GripPoint& point : grip)
       square += point.weight * (point.local - middle) * (point.local - middle).transpose();
+    // The largest two of the principal axes span the disc; divided by the roots of their values they are in standard
+    // deviations, so that three claws at 120 degrees have the mean and the slopes of the whole disc.
     const SymmetricEigen3 axes(square);  // ascending: the last two span the disc
     const Eigen::Vector3d u = axes.vectors.col(2) / std::sqrt(axes.values[2]);
     const Eigen::Vector3d v = axes.vectors.col(1) / std::sqrt(axes.values[1]);
-    for (const auto& [along_u, along_v] : kClaws) add(grip, middle, kClawRadius * (along_u * u + along_v * v));
+    for (const auto& [along_u, along_v] : kClaws)
+      add(grip, middle, stepPolicy().grip_claw_radius * (along_u * u + along_v * v));
   }
 
-  // The mean slope along an axis is the mean of positions times coordinates.
+  // Adds a claw. The mean slope along an axis is the mean of positions times coordinates.
   void add(const std::vector<GripPoint>& grip, const Eigen::Vector3d& middle, const Eigen::Vector3d& slope) {
     AttachmentPoint& patch = patch_.add();
     patch.node.clear();

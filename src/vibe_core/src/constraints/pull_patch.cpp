@@ -16,7 +16,7 @@ double restDistance(const Model& model, int a, int b) {
   return (rest[a] - rest[b]).norm();
 }
 
-// Along edges, so that a wall that lies close behind this one stays free.
+// Vertices within kPullRadius, reached along edges, so that a wall that lies close behind this one stays free.
 std::vector<char> reachedFrom(const Model& model, int particle) {
   std::vector<char> reached(static_cast<std::size_t>(model.particle_count), 0);
   reached[particle] = 1;
@@ -80,9 +80,9 @@ void movePullSpring(const Model& model, const StepInput& input, State& state) {
     pull.target = heldPosition(state);
   }
   if (!pull.holds()) return;
-  const Eigen::Vector3d place = heldPosition(state);
+  const Eigen::Vector3d held = heldPosition(state);
   pull.target += shortened(input.pull_target - pull.target, kPullSpeed * model.scene.step_period);
-  pull.target = place + shortened(pull.target - place, kPullForce / kPullStiffness);
+  pull.target = held + shortened(pull.target - held, kPullForce / kPullStiffness);
 }
 
 Eigen::Vector3d heldPosition(const State& state) {

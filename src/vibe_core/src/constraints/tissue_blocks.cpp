@@ -7,6 +7,7 @@
 #include "self_contact/self_contact.hpp"
 #include "vibe_core/constraints/wall_contacts.hpp"
 #include "vibe_core/model/model.hpp"
+#include "vibe_core/solver/step_policy.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {
@@ -66,13 +67,6 @@ std::unique_ptr<ConstraintBlock> makeThreadBlock(const Model& model) {
 
 namespace {
 
-// Smallest distance searched for walls that come near each other. Design choice: a quarter of a usual wall, so that a
-// search is seldom repeated for slow motions [m].
-constexpr double kMinReach = 5e-4;
-// Two nodes approach each other with up to twice the largest speed; the rest is for acceleration within the step.
-// Design choice [1].
-constexpr double kReachPerMove = 2.5;
-
 class SelfContactBlock : public ConstraintBlock {
  public:
   explicit SelfContactBlock(const Model& model)
@@ -103,13 +97,15 @@ class SelfContactBlock : public ConstraintBlock {
     context.state.energy.contact_energy = contact_.energy();
   }
   void detect(const StepContext& context) {
-    const double move = kReachPerMove * context.step * std::sqrt(maxSpeedSquared(context.state));
+    // How far walls may approach each other in the step: a search with more finds too much, with less misses contacts.
+    const StepPolicy& policy = stepPolicy();
+    const double move = policy.wall_reach_per_move * context.step * std::sqrt(maxSpeedSquared(context.state));
     const TissueScene& tissue = context.model.scene.tissue;
-    // forces are evaluated 1 - alpha_f of the step after its start, and ahead by the damping time (time_scheme.hpp)
+    // Forces are evaluated 1 - alpha_f of the step after its start, and ahead by the damping time (time_scheme.hpp).
     const double lead = context.step / (1 + tissue.spectral_radius) + tissue.stiffness_damping;
     const State& s = context.state;
     contact_.detect({s.x.data(), s.y.data(), s.z.data()}, {s.vx.data(), s.vy.data(), s.vz.data()},
-                    std::clamp(move, kMinReach, context.model.particle_radius), lead, context.pool);
+                    std::clamp(move, policy.wall_least_reach, context.model.particle_radius), lead, context.pool);
   }
   static MotionView viewOf(State& state) {
     return {{state.x.data(), state.y.data(), state.z.data()},

@@ -5,6 +5,7 @@
 #include "tool/tool_motion.hpp"
 #include "tool_contact/surface_contacts.hpp"
 #include "vibe_core/model/model.hpp"
+#include "vibe_core/solver/step_policy.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {
@@ -18,17 +19,6 @@ Eigen::Matrix<double, 3, kYieldDofs> toolYield(const StepContext& context, int l
 
 namespace {
 
-// Points of the wall that are predicted this near to the tool become contacts, because they may be reached within the
-// step. Design choice: covers 0.12 m/s that the prediction from velocities does not foresee in a step of 1/60 s [m].
-constexpr double kContactMargin = 2e-3;
-// Stiffness of tissue that cannot give way sideways over its Young's modulus: (1 - nu) / ((1 + nu) (1 - 2 nu)) for a
-// Poisson's ratio of 0.49. Design choice: soft tissue hardly changes its volume; the scene's ratio is that of the
-// membrane [1].
-constexpr double kConfined = 17;
-// Share of the largest friction above which a contact counts as sliding. Design choice: the contact iterations stop
-// within this of the cone [1].
-constexpr double kSticks = 0.999;
-
 class ToolContactBlock : public ConstraintBlock {
  public:
   explicit ToolContactBlock(const Model& model)
@@ -40,17 +30,17 @@ class ToolContactBlock : public ConstraintBlock {
 
   Activity prepare(const StepContext& context, BodyLoads& loads) override {
     first_ = loads.contacts.size();
-    place_.clear();
+    local_point_.clear();
     link_.clear();
     if (context.tool == nullptr) return Activity::Sleep;
     lookAhead(context);
     exclude(context);
     findContacts(context, loads);
-    return place_.empty() ? Activity::Sleep : Activity::Disturb;
+    return local_point_.empty() ? Activity::Sleep : Activity::Disturb;
   }
 
   double store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>& touches) override {
-    for (std::size_t c = 0; c < place_.size(); ++c) {
+    for (std::size_t c = 0; c < local_point_.size(); ++c) {
       const ContactConstraint& contact = loads.contacts[first_ + c];
       if (!contact.force.isZero()) touches.push_back(touchOf(context, contact, c));
     }
@@ -58,7 +48,7 @@ class ToolContactBlock : public ConstraintBlock {
   }
 
  private:
-  // Where the wall goes if nothing stops it.
+  // Predicts where the wall goes if nothing stops it.
   void lookAhead(const StepContext& context) {
     const State& state = context.state;
     const std::array<const std::vector<double>*, 3> x{&state.x, &state.y, &state.z}, v{&state.vx, &state.vy, &state.vz};
@@ -69,7 +59,7 @@ class ToolContactBlock : public ConstraintBlock {
     }
   }
 
-  // What is held or fixed cannot give way.
+  // Marks what is held or fixed: it takes no part, because it cannot move.
   void exclude(const StepContext& context) {
     for (std::size_t i = 0; i < excluded_.size(); ++i)
       excluded_[i] = passable_[i] != 0 || context.model.inverse_mass[i] == 0 ? 1 : 0;
@@ -81,39 +71,41 @@ class ToolContactBlock : public ConstraintBlock {
   void findContacts(const StepContext& context, BodyLoads& loads) {
     const ToolPoses& poses = *context.tool;
     for (const SurfaceContact& contact :
-         contacts_.find(poses.start, poses.end, path_, kContactMargin, excluded_, context.when))
+         contacts_.find(poses.start, poses.end, path_, stepPolicy().touch_margin, excluded_, context.when))
       addContact(context, contact, loads);
   }
 
   void addContact(const StepContext& context, const SurfaceContact& contact, BodyLoads& loads) {
     const Model& model = context.model;
     const int link = model.tool->shapes()[contact.shape].link;
-    const Eigen::Vector3d p = placeOf(contact.point, context.state);
-    const Eigen::Vector3d place = context.tool->start[link].inverse() * p, anchor = context.tool->end[link] * place;
+    // The point of the tool that touches goes with its link: friction acts against its motion.
+    const Eigen::Vector3d p = positionOf(contact.point, context.state);
+    const Eigen::Vector3d local = context.tool->start[link].inverse() * p, anchor = context.tool->end[link] * local;
     ContactConstraint& constraint = loads.contacts.add();
     constraint = ContactConstraint();
     constraint.point = contact.point;
     constraint.normal = contact.normal;
     const double surface = contact.normal.dot(contact.tool_point) + contact.clearance;
-    // what is deep inside (the tool was put there) comes out slowly, not at once
-    constraint.offset = std::min(surface, contact.normal.dot(anchor) + kDepenetrationSpeed * context.step);
+    // What is deep inside (the tool was put there) comes out slowly, not at once.
+    constraint.offset = std::min(surface, contact.normal.dot(anchor) + stepPolicy().touch_push_out * context.step);
     constraint.compliance = complianceOf(model, contact);
     constraint.friction = model.scene.scope->friction;
     constraint.anchor = anchor;
     constraint.yield = toolYield(context, link, anchor);
-    place_.push_back(place);
+    local_point_.push_back(local);
     link_.push_back(link);
   }
 
-  // The inner half of the wall between the tool and the mid-surface is compressed where it cannot give way sideways.
+  // Equation (10): the inner half of the wall, between tool and mid-surface, is compressed where it cannot yield
+  // sideways.
   static double complianceOf(const Model& model, const SurfaceContact& contact) {
     double area = 0;
     for (std::size_t k = 0; k < static_cast<std::size_t>(contact.point.count); ++k)
       area += contact.point.weight[k] * model.area[contact.point.node[k]];
-    return contact.clearance / (kConfined * model.scene.tissue.young_modulus * area);
+    return contact.clearance / (stepPolicy().touch_confined * model.scene.tissue.young_modulus * area);
   }
 
-  static Eigen::Vector3d placeOf(const SurfacePoint& point, const State& state) {
+  static Eigen::Vector3d positionOf(const SurfacePoint& point, const State& state) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k) {
       const int i = point.node[k];
@@ -128,9 +120,9 @@ class ToolContactBlock : public ConstraintBlock {
     touch.surface = contact.point;
     touch.compliance = contact.compliance;
     touch.link = link_[number];
-    touch.point = placeOf(contact.point, context.state);
-    const Eigen::Vector3d from = context.tool->start[touch.link] * place_[number];
-    touch.motion = context.tool->end[touch.link] * place_[number] - from;
+    touch.point = positionOf(contact.point, context.state);
+    const Eigen::Vector3d from = context.tool->start[touch.link] * local_point_[number];
+    touch.motion = context.tool->end[touch.link] * local_point_[number] - from;
     touch.middle = from + 0.5 * touch.motion;
     touch.force = contact.force;
     touch.work = contact.work;
@@ -138,7 +130,7 @@ class ToolContactBlock : public ConstraintBlock {
     const double drag = (contact.force - push * contact.normal).norm();
     const Eigen::Vector3d tangent = contact.normal.unitOrthogonal();
     touch.direction = {contact.normal, tangent, contact.normal.cross(tangent)};
-    touch.direction_count = drag < kSticks * contact.friction * push ? 3 : 1;
+    touch.direction_count = drag < stepPolicy().touch_sticks * contact.friction * push ? 3 : 1;
     return touch;
   }
 
@@ -146,9 +138,9 @@ class ToolContactBlock : public ConstraintBlock {
   SurfaceContacts contacts_;
   std::array<std::vector<double>, 3> ahead_;  // [m]
   SurfacePath path_;
-  std::size_t first_ = 0;               // of its contacts in the loads
-  std::vector<Eigen::Vector3d> place_;  // of each contact at the start of the step, in the frame of its link [m]
-  std::vector<int> link_;               // of the tool at each contact
+  std::size_t first_ = 0;                     // of its contacts in the loads
+  std::vector<Eigen::Vector3d> local_point_;  // of each contact at the start of the step, in the frame of its link [m]
+  std::vector<int> link_;                     // of the tool at each contact
 };
 
 }  // namespace

@@ -101,7 +101,7 @@ void ToolStep::limit() {
 double ToolStep::separate() {
   ToolMotion motion = yielded_ ? *yielded_ : *motion_;
   const double free =
-      limited_ ? scratch_.guard->keepApart(scratch_.tool, motion, pathOfStep(scratch_, state_), scratch_.held) : 1;
+      limited_ ? scratch_.guard->separate(scratch_.tool, motion, pathOfStep(scratch_, state_), scratch_.held) : 1;
   state_.joints = motion.inputs(1);
   if (model_.scope_springs) report_.tool_displacement = motion.displacement(1);
   return free;
@@ -131,7 +131,7 @@ void ToolStep::recoverAround() {
   path.to = path.from;
   ToolMotion motion = *motion_;
   motion.displaceEnd(report_.tool_displacement);
-  scratch_.guard->keepApart(scratch_.tool, motion, path, scratch_.held);
+  scratch_.guard->separate(scratch_.tool, motion, path, scratch_.held);
   state_.joints = motion.inputs(1);
   if (model_.scope_springs) report_.tool_displacement = motion.displacement(1);
   // the tool stands where it came to while the wall goes on

@@ -13,6 +13,7 @@
 #include "vibe_core/constraints/constraint_registry.hpp"
 #include "vibe_core/constraints/gas.hpp"
 #include "vibe_core/model/model.hpp"
+#include "vibe_core/solver/step_policy.hpp"
 #include "vibe_core/state/state.hpp"
 #include "vibe_core/threads/thread_pool.hpp"
 
@@ -192,8 +193,8 @@ void XpbdSubstep::pushOut(const Contact& contact) {
   const Eigen::Vector3d tool_step = p - scratch_.old_tool[link] * (scratch_.tool.end[link].inverse() * p);
   const Eigen::Vector3d slide = p - old_p - tool_step;
   const double normal_slide = contact.normal.dot(slide);
-  const double depth =
-      std::min(model_.particle_radius - contact.distance, std::max(-normal_slide, 0.0) + kDepenetrationSpeed * h_);
+  const double depth = std::min(model_.particle_radius - contact.distance,
+                                std::max(-normal_slide, 0.0) + stepPolicy().touch_push_out * h_);
   Eigen::Vector3d shift = depth * contact.normal;
   const Eigen::Vector3d tangential = slide - normal_slide * contact.normal;
   const double sliding = tangential.norm();

@@ -7,31 +7,23 @@
 #include "arithmetic/symmetric_eigen.hpp"
 #include "sparse/factor_plan.hpp"
 #include "vibe_core/files/fnv1a.hpp"
+#include "vibe_core/solver/step_policy.hpp"
 
 namespace vibe {
 
 namespace {
 
-constexpr double kInterval = 0.25;       // between renewals of the stiffness, at least; design choice [s]
-constexpr double kDouble = 2;            // operations in double precision over those in single, by their time [1]
-constexpr double kFar = 5e-4;            // a larger move of a node triggers a renewal; design choice [m]
-constexpr double kShortestStep = 2e-5;   // of the tool in a frame from which a slope is taken; design choice [m]
-constexpr double kMinEigenvalue = 1e-3;  // relative to the maximum; softer directions have no equilibrium
-
-// Compliance of the rows for the moving mass, where several points may have the same nearest node. Design choice: a
-// thousandth of that of a wall [m/N].
-constexpr double kFirm = 1e-5;
-
-// As the factor of the steps, this one must not keep them waiting.
+// Steps between two renewals: as the factor of the steps, this one must not keep them waiting.
 int renewalSteps(const RestStiffness& rest, double step_period) {
-  const double interval = std::max(kInterval, kDouble * rest.plan->operations / kFactorRate);
+  const double interval =
+      std::max(stepPolicy().haptic_interval, stepPolicy().haptic_double_cost * rest.plan->operations / kFactorRate);
   return std::max(1, static_cast<int>(std::lround(interval / step_period)));
 }
 
 // The displacement that relieves the force, in the directions that have a stiffness.
 Eigen::Vector3d solveWhereStiff(const Eigen::Matrix3d& stiffness, const Eigen::Vector3d& force) {
   const SymmetricEigen3 eigen(stiffness);
-  const double min = kMinEigenvalue * eigen.values.maxCoeff();
+  const double min = stepPolicy().haptic_least_stiffness * eigen.values.maxCoeff();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i)
     if (eigen.values[i] > min && min > 0)
@@ -50,7 +42,7 @@ std::uint64_t idOf(const ImpedanceBasis& basis) {
   return std::max<std::uint64_t>(1, hash.result());
 }
 
-// Keeps the capacity of the lists.
+// Empties a basis, but keeps the capacity of its lists.
 void clear(ImpedanceBasis& basis) {
   basis.id = 0;
   basis.positions.clear();
@@ -110,6 +102,7 @@ std::optional<ToolImpedance> ImpedanceEstimator::update(std::int64_t step, const
                                                         const std::array<const double*, 3>& positions,
                                                         const std::vector<float>& gas_direction, double gas_stiffness,
                                                         ImpedanceMemory& memory) {
+  // After a pause as long as an interval, or where time has gone back, nothing of the past holds.
   const bool consecutive = step - 1 == memory.last_step;
   if (step <= memory.last_step || step > memory.last_step + interval_)
     begin(step, gas_direction, gas_stiffness, memory);
@@ -149,6 +142,7 @@ void ImpedanceEstimator::renew(const ToolContactRows& touch, const std::array<co
     clear(memory.next);
     provide(memory);
   }
+  // The first touch asks for the moving mass, which needs rows; later ones for a stiffness of the wall as it is now.
   const bool has_mass = present_ != nullptr && !present_->mass.isZero();
   const bool lacks_mass = body_.mass_damping > 0 && !has_mass && !touch.rows.empty();
   if (!lacks_mass && !farFrom(memory.current.positions, positions)) return;
@@ -157,6 +151,7 @@ void ImpedanceEstimator::renew(const ToolContactRows& touch, const std::array<co
   for (std::size_t i = 0; i < next.positions.size(); ++i)
     next.positions[i] = static_cast<float>(positions[i % 3][i / 3]);
   setGas(gas_direction, gas_stiffness, next);
+  // The rows of now stand for those of the time at which the basis is used: at their nearest nodes.
   for (const ToolRow& row : touch.rows) {
     next.node.push_back(nearestNode(row));
     next.direction.push_back(row.direction);
@@ -174,6 +169,7 @@ void ImpedanceEstimator::provide(const ImpedanceMemory& memory) {
   if (basis.positions.empty()) {
     provideAtRest(basis);
   } else {
+    // Usually the next one, made in the background, takes over; after a jump in time it is made here.
     if (current_.id != basis.id && next_.id == basis.id) {
       finishNext();
       std::swap(current_, next_);
@@ -217,7 +213,7 @@ void ImpedanceEstimator::make(const ImpedanceBasis& basis, const std::vector<int
   ConstraintRows rows;
   Eigen::MatrixXd motion(static_cast<Eigen::Index>(basis.node.size()), kToolMotions);
   for (std::size_t r = 0; r < basis.node.size(); ++r) {
-    setRow(SurfacePoint::ofNode(basis.node[r]), basis.direction[r], kFirm, rows.equations.add());
+    setRow(SurfacePoint::ofNode(basis.node[r]), basis.direction[r], stepPolicy().haptic_firm, rows.equations.add());
     for (std::size_t m = 0; m < kToolMotions; ++m) motion(static_cast<Eigen::Index>(r), m) = basis.row_motion[r][m];
   }
   out.stiffness->setRows(rows);
@@ -228,11 +224,12 @@ void ImpedanceEstimator::make(const ImpedanceBasis& basis, const std::vector<int
 
 bool ImpedanceEstimator::farFrom(const std::vector<float>& linearization_point,
                                  const std::array<const double*, 3>& positions) const {
+  const double far = stepPolicy().haptic_far;
   for (int i = 0; i < body_.nodeCount(); ++i)
     for (int k = 0; k < 3; ++k) {
       const double from =
           linearization_point.empty() ? body_.rest[i][k] : static_cast<double>(linearization_point[3 * i + k]);
-      if (!(std::abs(positions[k][i] - from) <= kFar)) return true;
+      if (!(std::abs(positions[k][i] - from) <= far)) return true;
     }
   return false;
 }
@@ -253,6 +250,7 @@ void ImpedanceEstimator::setRows(const ToolContactRows& touch) {
 
 std::optional<ToolImpedance> ImpedanceEstimator::respond(const ToolContactRows& touch, bool consecutive,
                                                          ImpedanceMemory& memory) {
+  // Equation (21): K = P^T C^-1 P, made symmetric against rounding.
   present_->stiffness->setRows(rows_);
   factor_.compute(present_->stiffness->compliance());
   solved_ = motion_;
@@ -261,6 +259,7 @@ std::optional<ToolImpedance> ImpedanceEstimator::respond(const ToolContactRows& 
   Motions stiffness = 0.5 * (found + found.transpose());
   if (!factor_.succeeded() || !factor_.isPositive() || !stiffness.allFinite()) return std::nullopt;
 
+  // A slope may be taken between two steps that touch the same nodes and are not exceptional.
   listNodes(touch, nodes_);
   const bool comparable = touch.smooth && consecutive && nodes_ == memory.last_nodes;
   memory.has_last = memory.has_last && consecutive;
@@ -270,12 +269,13 @@ std::optional<ToolImpedance> ImpedanceEstimator::respond(const ToolContactRows& 
 
 // Particles that gain and lose contact can make the contact forces alternate from frame to frame, which a hand would
 // feel as a buzz. While they alternate, the output is the mean of two frames, with the earlier force extrapolated to
-// the present place by the stiffness.
+// the present position by the stiffness.
 Eigen::Matrix<double, kToolMotions, 1> ImpedanceEstimator::calmForce(
     const ToolContactRows& touch, const Eigen::Matrix3d& k_tip, const Eigen::Matrix3d& b_tip,
     const JointMatrix& k_joints, const JointMatrix& b_joints, ImpedanceMemory& memory) const {
   auto last_place = asVector(memory.last_place), last_speed = asVector(memory.last_speed);
   auto last_force = asVector(memory.last_force), last_jump = asVector(memory.last_jump);
+  // A jump is what the force has changed beyond the slope; two of opposite sign in a row are an alternation.
   MotionVector force = touch.force, jump = MotionVector::Zero();
   if (memory.has_last && touch.contacts) {
     const MotionVector moved = touch.place - last_place, faster = touch.speed - last_speed;
@@ -304,18 +304,22 @@ ToolImpedance ImpedanceEstimator::response(const ToolContactRows& touch, const M
   const Eigen::Matrix3d k_tip = stiffness.topLeftCorner<3, 3>(), b_tip = damping.topLeftCorner<3, 3>();
   const JointMatrix k_joints = stiffness.bottomRightCorner<kScopeJointCount, kScopeJointCount>();
   const JointMatrix b_joints = damping.bottomRightCorner<kScopeJointCount, kScopeJointCount>();
-  const bool tip_moved = (tip - slope.lastPlace()).norm() > kShortestStep;
-  const Joints turned = joints - joint_slope.lastPlace();
+  // Slopes are taken from moves that are long enough; of the joints, by how far they move any row.
+  const double least_step = stepPolicy().haptic_least_step;
+  const bool tip_moved = (tip - slope.lastPosition()).norm() > least_step;
+  const Joints turned = joints - joint_slope.lastPosition();
   double row_move = 0;
   for (Eigen::Index r = 0; r < motion_.rows(); ++r)
     row_move = std::max(row_move, std::abs(fixedDot(motion_.row(r).tail<kScopeJointCount>().transpose(), turned)));
-  const bool joints_moved = row_move > kShortestStep;
+  const bool joints_moved = row_move > least_step;
   slope.observe(k_tip, tip, touch.force.head<3>() + b_tip * v.head<3>(), comparable && tip_moved);
   joint_slope.observe(k_joints, joints, touch.force.tail<kScopeJointCount>() + b_joints * v.tail<kScopeJointCount>(),
                       comparable && joints_moved);
 
   const Eigen::Matrix<double, kToolMotions, 1> f =
       calmForce(touch, slope.corrected(k_tip), b_tip, joint_slope.corrected(k_joints), b_joints, memory);
+  // The tip's equilibrium is where its force vanishes along directions that have a stiffness, at a tip that stands
+  // still.
   ToolImpedance out;
   out.position = tip;
   out.velocity = v.head<3>();
@@ -323,6 +327,7 @@ ToolImpedance ImpedanceEstimator::response(const ToolContactRows& touch, const M
   out.stiffness = slope.corrected(k_tip);
   out.damping = body_.stiffness_damping * out.stiffness + drag.topLeftCorner<3, 3>();
   out.equilibrium = tip + solveWhereStiff(out.stiffness, Eigen::Vector3d(out.force + out.damping * out.velocity));
+  // Each joint is rendered by a motor of its own: what couples them is left out.
   const JointMatrix corrected = joint_slope.corrected(k_joints);
   for (int j = 0; j < kScopeJointCount; ++j) {
     JointResponse& joint = out.joints[j];
@@ -331,7 +336,8 @@ ToolImpedance ImpedanceEstimator::response(const ToolContactRows& touch, const M
     joint.effort = f[3 + j];
     joint.stiffness = std::max(0.0, corrected(j, j));
     joint.damping = body_.stiffness_damping * joint.stiffness + drag(3 + j, 3 + j);
-    const bool stiff = joint.stiffness > kMinEigenvalue * stiffness(3 + j, 3 + j) && joint.stiffness > 0;
+    const bool stiff =
+        joint.stiffness > stepPolicy().haptic_least_stiffness * stiffness(3 + j, 3 + j) && joint.stiffness > 0;
     joint.equilibrium = joint.position;
     if (stiff) joint.equilibrium += (joint.effort + joint.damping * joint.velocity) / joint.stiffness;
   }

@@ -11,6 +11,7 @@
 #include "haptics/static_stiffness.hpp"
 #include "threads/background_worker.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
+#include "vibe_core/solver/step_policy.hpp"
 #include "vibe_core/state/impedance_memory.hpp"
 
 namespace vibe {
@@ -28,20 +29,20 @@ class SlopeCorrection {
   /// @param memory  of the past frames; must outlive this
   explicit SlopeCorrection(SlopeMemory<N>& memory)
       : memory_(memory),
-        place_(memory.place.data()),
+        position_(memory.place.data()),
         force_(memory.force.data()),
         step_(memory.step.data()),
         change_(memory.change.data()) {}
 
   void forget() { memory_.known = memory_.has_pair = false; }
 
-  /// @param place   of the tool
-  /// @param force   elastic part, at `place`
-  /// @param usable  the step from the last place to this one is long enough, and the same nodes are touched
-  void observe(const Matrix& stiffness, const Vector& place, const Vector& force, bool usable) {
-    if (memory_.known && usable) keepPair(stiffness, place - place_, force_ - force);
+  /// @param position  of the tool
+  /// @param force   elastic part, at `position`
+  /// @param usable  the step from the last position to this one is long enough, and the same nodes are touched
+  void observe(const Matrix& stiffness, const Vector& position, const Vector& force, bool usable) {
+    if (memory_.known && usable) keepPair(stiffness, position - position_, force_ - force);
     memory_.known = true;
-    place_ = place;
+    position_ = position;
     force_ = force;
   }
 
@@ -53,32 +54,33 @@ class SlopeCorrection {
            change_ * change_.transpose() / fixedDot(step_, change_);
   }
 
-  Vector lastPlace() const { return place_; }
+  Vector lastPosition() const { return position_; }
 
  private:
-  static constexpr double kMin = 0.2, kMax = 2;  // times the expected slope; outside, it is not taken for a slope
-  static constexpr double kMaxAngle = 2;         // inverse cosine of the angle between step and change
-
   void keepPair(const Matrix& stiffness, const Vector& step, const Vector& change) {
     const Vector pulled = stiffness * step;
     const double expected = fixedDot(step, pulled), observed = fixedDot(step, change);
-    if (!(observed >= kMin * expected && observed <= kMax * expected && observed > 0)) return;
+    const StepPolicy& policy = stepPolicy();
+    if (!(observed >= policy.haptic_least_slope * expected && observed <= policy.haptic_most_slope * expected &&
+          observed > 0))
+      return;
     step_ = step;
     change_ = change;
     memory_.has_pair = true;
-    // the units of the components differ; the roots of the stiffnesses make them comparable
+    // The units of the components differ; the roots of the stiffnesses make them comparable.
     const Vector scale = stiffness.diagonal().cwiseMax(0).cwiseSqrt();
     double step2 = 0, change2 = 0;
     for (int i = 0; i < N; ++i) {
       step2 += scale[i] * scale[i] * step[i] * step[i];
       if (scale[i] > 0) change2 += change[i] * change[i] / (scale[i] * scale[i]);
     }
-    const bool skew = !(step2 * change2 <= kMaxAngle * kMaxAngle * observed * observed);
+    const double most_skew = policy.haptic_most_skew;
+    const bool skew = !(step2 * change2 <= most_skew * most_skew * observed * observed);
     if (skew || (scale.array() == 0).any()) change_ = pulled * (observed / expected);  // its size along the step only
   }
 
   SlopeMemory<N>& memory_;
-  Eigen::Map<Vector> place_, force_, step_, change_;
+  Eigen::Map<Vector> position_, force_, step_, change_;
 };
 
 /// Where the tool acts on the tissue in one direction.
@@ -87,7 +89,7 @@ struct ToolRow {
   double compliance = 0;                          ///< between the tool and the point [m/N]
   Eigen::Vector3d direction;                      ///< unit
   Eigen::Matrix<double, 1, kToolMotions> motion;  ///< how its target moves with each of the tool's motions
-  const AttachmentPoint* patch = nullptr;         ///< in the place of `surface`, during the step; null: none
+  const AttachmentPoint* patch = nullptr;         ///< instead of `surface`, during the step; null: none
 };
 
 /// The tool in the tissue in one step.
@@ -100,8 +102,15 @@ struct ToolContactRows {
   bool smooth = true;                            ///< false: an exceptional step, whose force is no use for slopes
 };
 
-/// Estimates a ToolImpedance from the rows of each step and a stiffness that is renewed in the background every quarter
-/// of a second, less often where a factor takes more than its share of operations (kFactorRate). Time is counted in
+/// Estimates a ToolImpedance, by equations (21) and (23) of docs/computation.md:
+///   C = J K^-1 J^T + diag(c),  K_tool = P^T C^-1 P,  F = F0 - K_tool (x - x0) - B (v - v0)
+///   J, c    rows of the wall that the tool acts on, and their compliances [m/N]
+///   K       static stiffness of the wall, without inertia; K_tool is corrected by SlopeCorrection (22)
+///   P       how the targets of the rows move with the tool: kToolMotions columns, translations and joints
+///   F, x, v force on the tool, its position and speed; B = c_K K_tool + c_M M_tool with the mass that moves along
+///           (Guyan 1965, "Reduction of stiffness and mass matrices")
+/// K is renewed in the background every haptic_interval, less often where a factor takes more than its share of
+/// operations (kFactorRate). Time is counted in
 /// steps and the past is in an ImpedanceMemory, so that the results depend neither on the speed of threads nor on what
 /// an estimator has done before: its members are caches of what the memory names.
 class ImpedanceEstimator {

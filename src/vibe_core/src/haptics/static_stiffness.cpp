@@ -3,16 +3,9 @@
 #include <algorithm>
 
 #include "sparse/factor_plan.hpp"
+#include "vibe_core/solver/step_policy.hpp"
 
 namespace vibe {
-
-namespace {
-
-// A free body has a singular stiffness, so each mass is on a weak spring: stiffness per mass [1/s^2]. The slowest modes
-// of organs are above 10 rad/s, so this is below a hundredth of any stiffness there.
-constexpr double kMinSpring = 1;
-
-}  // namespace
 
 RestStiffness::RestStiffness(const ElasticBody& body)
     : plan(makeFactorPlan(blockPattern(body.nodeCount(), body.elements->nodeGroups()))) {
@@ -31,7 +24,9 @@ bool StaticStiffness::Own::make(const ElasticBody& body, const std::vector<float
   matrix.setZero();
   body.elements->addStiffness(displacement.data(), matrix);
   for (int i = 0; i < body.nodeCount(); ++i) {
-    const double spring = kMinSpring * body.mass[i] + (body.foundation.empty() ? 0 : body.foundation[i]);
+    // A free body has a singular stiffness, so each mass is on a weak spring.
+    const double spring =
+        stepPolicy().haptic_mass_spring * body.mass[i] + (body.foundation.empty() ? 0 : body.foundation[i]);
     matrix.add(i, i, spring * Eigen::Matrix3d::Identity());
   }
   for (int i = 0; i < body.nodeCount(); ++i)

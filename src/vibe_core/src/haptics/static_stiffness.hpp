@@ -20,7 +20,8 @@ struct RestStiffness {
 /// The stiffness of a body at given positions, without inertia, and the compliance of a few rows.
 class StaticStiffness {
  public:
-  /// About rest, if that has a factor, until the first make(), which asks for the memory of another factor.
+  /// The stiffness is that about rest, if that has a factor, until the first make(), which asks for the memory of
+  /// another factor.
   StaticStiffness(const ElasticBody& body, const RestStiffness& rest);
 
   /// Factors the stiffness at positions (3 * nodes) [m]; empty: rest. Costs tens of step times.

@@ -14,30 +14,6 @@ namespace vibe {
 
 namespace {
 
-// Distance along the surface within which it counts as one wall, in thicknesses: about a half circle of diameter t.
-constexpr double kOneWallThicknesses = 1.6;
-constexpr double kSoftness = 0.1;       // modulus of the contact, relative to that of the wall
-constexpr double kStraightBelow = 0.2;  // fraction of the thickness below which the energy is extended linearly
-// Coulomb friction of mucosa on mucosa: the upper end of 0.007 to 0.054, measured with a sled on the lumen of small
-// bowel (Terry et al. 2013, Tribol Lett 51:377, doi 10.1007/s11249-013-0167-1) [1].
-constexpr double kFriction = 0.05;
-// Speed of sliding from which friction is that of Coulomb; below it is viscous, as of a film of mucus. Design choice: a
-// tenth of the usual speed of folds that are drawn together [m/s].
-constexpr double kSlidingSpeed = 5e-3;
-// Motion of a node until the next search around it, in thicknesses. Design choice: small enough that what is found is
-// little more than what is near, large enough that slow nodes need few searches.
-constexpr double kSlack = 0.3;
-constexpr double kFloor = 0.05;  // minimum distance of walls, in thicknesses
-// Thickness of two half walls whose mucosa is squeezed flat, over that of the wall. Design choice: far below what
-// usual pressures leave, far above the minimum distance [1].
-constexpr double kCore = 0.3;
-// Distance up to which places are looked for where these meet, in thicknesses. Design choice: above (1 + kContactOnset)
-// kCore, so that walls meet in the solution of a step before they reach the minimum distance [1].
-constexpr double kFound = 0.5;
-// Thickness of a bar within one wall over the distance of its ends at rest, at most. Design choice: a wall that is
-// squeezed along itself to 5/8 does not feel it, a sharp fold does [1].
-constexpr double kFolded = 0.5;
-
 void check(const SurfaceMesh& rest, const std::vector<double>& thickness, double young_modulus) {
   if (rest.vertices.empty() || thickness.size() != rest.vertices.size())
     throw Error("A wall that can meet itself has " + std::to_string(rest.vertices.size()) + " vertices but " +
@@ -72,14 +48,18 @@ Eigen::Vector3d nodeOf(const double* positions4, int node) {
 }  // namespace
 
 SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double young_modulus)
-    : rest_(std::move(rest)), thickness_(std::move(thickness)), stiffness_(kSoftness * young_modulus) {
+    : policy_(stepPolicy()),
+      rest_(std::move(rest)),
+      thickness_(std::move(thickness)),
+      stiffness_(policy_.wall_softness * young_modulus) {
   check(rest_, thickness_, young_modulus);
   area_ = vertexAreas(rest_);
   min_thickness_ = *std::min_element(thickness_.begin(), thickness_.end());
   max_thickness_ = *std::max_element(thickness_.begin(), thickness_.end());
-  close_distance_ = 0.5 * longestEdge(rest_) + kFound * max_thickness_;
-  memory_ = std::make_unique<SelfContactMemory>(rest_, kOneWallThicknesses * max_thickness_, kFacingCosine,
-                                                kFloor * min_thickness_, kSlack * max_thickness_);
+  close_distance_ = 0.5 * longestEdge(rest_) + policy_.wall_core_search * max_thickness_;
+  memory_ =
+      std::make_unique<SelfContactMemory>(rest_, policy_.wall_reach * max_thickness_, facingCosine(),
+                                          policy_.path_floor * min_thickness_, policy_.search_slack * max_thickness_);
 }
 
 SelfContact::~SelfContact() = default;
@@ -104,7 +84,7 @@ void SelfContact::detect(const NodeVectors& x, const NodeVectors& v, double reac
   addClosePairs(pool);
 }
 
-// The end of a step is usually the start of the next.
+// Whether the state is that of the last detect(), because the end of a step is usually the start of the next.
 bool SelfContact::isStart(const NodeVectors& x, const NodeVectors& v) const {
   if (reach_ < 0) return false;
   const std::size_t n = thickness_.size();
@@ -115,9 +95,10 @@ bool SelfContact::isStart(const NodeVectors& x, const NodeVectors& v) const {
   return true;
 }
 
-// To which vertices and triangles are listed. Where two edges cross, an end of one is within half its length.
+// Vertices and triangles are listed up to this distance. Where two edges cross, an end of one is within half its
+// length.
 double SelfContact::searchDistance() const {
-  return std::max((1 + kContactOnset) * max_thickness_ + reach_, close_distance_);
+  return std::max((1 + policy_.wall_onset) * max_thickness_ + reach_, close_distance_);
 }
 
 void SelfContact::addPairs() {
@@ -134,28 +115,33 @@ void SelfContact::addPairs() {
   }
 }
 
-void SelfContact::addPair(int vertex, int triangle, double facing) {
+// @param share  of the bar of the vertex that stands on this triangle
+void SelfContact::addPair(int vertex, int triangle, double share) {
   const auto& n = rest_.triangles[triangle];
   const TriangleFoot foot = triangleFoot(memory_->at(vertex), memory_->at(n[0]), memory_->at(n[1]), memory_->at(n[2]));
+  // Walls that are nearer than their thickness at rest touch at the distance that they have there.
   const auto& r = rest_.vertices;
   const double at_rest = triangleFoot(r[vertex], r[n[0]], r[n[1]], r[n[2]]).away.norm();
   Pair pair;
   pair.node = {vertex, n[0], n[1], n[2]};
   pair.weight = {1, -foot.weight[0], -foot.weight[1], -foot.weight[2]};
   pair.away = foot.away;
-  pair.thickness = std::min(meanThickness(vertex, triangle, foot.weight), at_rest / (1 + kContactOnset));
-  pair.straight_below = kStraightBelow;
-  pair.stiffness = 0.5 * facing * area_[vertex] * stiffness_ * pair.thickness;
+  pair.thickness = std::min(meanThickness(vertex, triangle, foot.weight), at_rest / (1 + policy_.wall_onset));
+  pair.straight_below = policy_.wall_straight_below;
+  pair.stiffness = 0.5 * share * area_[vertex] * stiffness_ * pair.thickness;
   finish(pair);
 }
 
 void SelfContact::addClosePairs(ThreadPool* pool) {
   SelfContactMemory& m = *memory_;
-  for (const ClosePoints& close : m.close.find(m.facing, m.start, kFound * max_thickness_, pool)) addClosePair(close);
+  for (const ClosePoints& close : m.close.find(m.facing, m.start, policy_.wall_core_search * max_thickness_, pool))
+    addClosePair(close);
 }
 
-// What is nearer than a triangle's foot on one side of a vertex may be elsewhere: edges that cross, further triangles.
+// Adds the bar of squeezed mucosa at a spot. The nearest points of two walls need not be at the foot of a vertex in a
+// triangle that faces it: edges cross, and there are further triangles.
 void SelfContact::addClosePair(const ClosePoints& close) {
+  // The weights sum to 1 and -1 on the two sides, so that half of their sizes make means over both walls.
   Eigen::Vector3d at_rest = Eigen::Vector3d::Zero();
   double thickness = 0, area = 0;
   for (std::size_t k = 0; k < 4; ++k) {
@@ -169,20 +155,23 @@ void SelfContact::addClosePair(const ClosePoints& close) {
   pair.node = close.node;
   pair.weight = close.weight;
   pair.away = close.away;
-  const double apart_at_rest = close.in_wall ? kFolded : 1 / (1 + kContactOnset);
-  pair.thickness = std::min(kCore * thickness, apart_at_rest * at_rest.norm());
-  pair.straight_below = kFloor / kCore;
-  pair.stiffness = 0.5 * close.share * area / kSoftness * stiffness_ * pair.thickness;
+  // A bar is no longer than the distance of its ends at rest allows, or it would act there.
+  const double apart_at_rest = close.in_wall ? policy_.wall_fold_core : 1 / (1 + policy_.wall_onset);
+  pair.thickness = std::min(policy_.wall_core * thickness, apart_at_rest * at_rest.norm());
+  // The energy stays logarithmic as far as the distance at which paths end.
+  pair.straight_below = policy_.path_floor / policy_.wall_core;
+  // Squeezed flat, mucosa is as stiff as the wall: the softness is taken out of stiffness_.
+  pair.stiffness = 0.5 * close.share * area / policy_.wall_softness * stiffness_ * pair.thickness;
   finish(pair);
 }
 
-// With what follows from the state: normal, energy and friction.
+// Completes a pair by what follows from the state, normal, energy and friction, and adds it.
 void SelfContact::finish(Pair& pair) {
   const double distance = pair.away.norm();
   if (!(pair.stiffness > 0 && distance > 0)) return;
   pair.normal = pair.away / distance;
-  const Squeeze squeezed = squeeze(distance / pair.thickness, pair.straight_below);
-  pair.friction = -kFriction * pair.stiffness / pair.thickness * squeezed.slope;
+  const Squeeze squeezed = squeeze(distance / pair.thickness, pair.straight_below, policy_.wall_onset);
+  pair.friction = -policy_.wall_friction * pair.stiffness / pair.thickness * squeezed.slope;
   Eigen::Vector3d speed = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < 4; ++k)
     if (pair.node[k] >= 0) speed += pair.weight[k] * memory_->speedOf(pair.node[k]);
@@ -193,11 +182,12 @@ void SelfContact::finish(Pair& pair) {
 
 double SelfContact::evaluate(const double* positions4, float* gradient4) const {
   double energy = 0;
-  const double smooth = kSlidingSpeed * lead_;
+  const double smooth = policy_.wall_sliding_speed * lead_, onset = policy_.wall_onset;
   for (const Pair& pair : pairs_) {
     const Eigen::Vector3d away = awayAt(pair, positions4);
-    const Squeeze squeezed = squeeze(pair.normal.dot(away) / pair.thickness, pair.straight_below);
+    const Squeeze squeezed = squeeze(pair.normal.dot(away) / pair.thickness, pair.straight_below, onset);
     if (squeezed.value == 0 && pair.friction == 0) continue;
+    // A pair that has come apart in the step still has the friction of its normal force at the start.
     const Eigen::Vector3d slid = slidSince(pair, away);
     const Sliding slide = sliding(slid.norm(), smooth);
     energy += pair.stiffness * squeezed.value + pair.friction * slide.way;
@@ -210,14 +200,16 @@ double SelfContact::evaluate(const double* positions4, float* gradient4) const {
   return energy;
 }
 
-// Friction with the slope of its force along the way that it is about to slide at its present speed.
+// The stiffness of friction is the slope of its force along the way that a pair is about to slide at its present speed.
 void SelfContact::addStiffness(const double* positions4, std::vector<StiffnessCoupling>& couplings) const {
+  const double smooth = policy_.wall_sliding_speed * lead_, onset = policy_.wall_onset;
   for (const Pair& pair : pairs_) {
     const double s = pair.normal.dot(awayAt(pair, positions4)) / pair.thickness;
     const double normal =
-        pair.stiffness / (pair.thickness * pair.thickness) * squeeze(s, pair.straight_below).curvature;
+        pair.stiffness / (pair.thickness * pair.thickness) * squeeze(s, pair.straight_below, onset).curvature;
     if (normal == 0 && pair.friction == 0) continue;
-    const double drag = pair.friction * sliding(pair.speed * lead_, kSlidingSpeed * lead_).per_way;
+    const double drag = pair.friction * sliding(pair.speed * lead_, smooth).per_way;
+    // The normal has the stiffness of the bar, both tangents that of friction: drag (I - n n^T) + normal n n^T.
     const Eigen::Vector3d& n = pair.normal;
     const Eigen::Matrix3d k = drag * Eigen::Matrix3d::Identity() + (normal - drag) * n * n.transpose();
     couplings.push_back({{pair.node[0], pair.node[1], pair.node[2], pair.node[3], -1, -1},
@@ -228,7 +220,7 @@ void SelfContact::addStiffness(const double* positions4, std::vector<StiffnessCo
   }
 }
 
-// The difference of its points, where they are now.
+// The difference of the two points of a pair, where they are now.
 Eigen::Vector3d SelfContact::awayAt(const Pair& pair, const double* positions4) {
   Eigen::Vector3d away = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < 4; ++k)

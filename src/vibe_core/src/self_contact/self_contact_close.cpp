@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
-#include <limits>
-#include <queue>
 #include <tuple>
 #include <utility>
 
@@ -16,75 +13,11 @@ namespace vibe {
 
 namespace {
 
-/// Dijkstra's shortest paths along edges from a vertex, as far as a reach.
-class NearVertices {
- public:
-  NearVertices(const SurfaceMesh& mesh, double reach)
-      : mesh_(mesh),
-        reach_(reach),
-        neighbours_(vertexNeighbours(mesh)),
-        length_(mesh.vertices.size(), std::numeric_limits<double>::infinity()) {}
-
-  /// Also those within two edges, ascending.
-  const std::vector<int>& of(int vertex) {
-    search(vertex);
-    for (const int v : found_) length_[v] = std::numeric_limits<double>::infinity();
-    for (const int v : neighbours_[vertex]) {
-      found_.push_back(v);
-      found_.insert(found_.end(), neighbours_[v].begin(), neighbours_[v].end());
-    }
-    std::sort(found_.begin(), found_.end());
-    found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
-    return found_;
-  }
-
- private:
-  using Entry = std::pair<double, int>;
-
-  void search(int vertex) {
-    length_[vertex] = 0;
-    queue_.push({0, vertex});
-    found_.assign(1, vertex);
-    while (!queue_.empty()) {
-      const auto [far, v] = queue_.top();
-      queue_.pop();
-      if (far > length_[v]) continue;
-      for (const int w : neighbours_[v]) {
-        const double there = far + (mesh_.vertices[v] - mesh_.vertices[w]).norm();
-        if (there > reach_ || there >= length_[w]) continue;
-        if (length_[w] == std::numeric_limits<double>::infinity()) found_.push_back(w);
-        length_[w] = there;
-        queue_.push({there, w});
-      }
-    }
-  }
-
-  const SurfaceMesh& mesh_;
-  double reach_;
-  std::vector<std::vector<int>> neighbours_;
-  std::vector<double> length_;
-  std::vector<int> found_;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue_;
-};
-
-}  // namespace
-
-SurfaceWalls::SurfaceWalls(const SurfaceMesh& rest, double reach) : start_(1, 0) {
-  NearVertices near(rest, reach);
-  for (int i = 0; i < static_cast<int>(rest.vertices.size()); ++i) {
-    const std::vector<int>& vertices = near.of(i);
-    wall_.insert(wall_.end(), vertices.begin(), vertices.end());
-    start_.push_back(static_cast<int>(wall_.size()));
-  }
-}
-
-namespace {
-
-constexpr int kNone = -1;            // node that has no part in a place
-constexpr int kPiece = 256;          // triangles that one thread looks at in a row
+constexpr int kNone = -1;            // node that has no part in a spot
+constexpr int kPiece = 256;          // triangles that one thread looks at in a row: sizes of lists depend on it
 constexpr double kEqual = 1 - 1e-9;  // ratio of two squared distances that are the same but for rounding
 
-// The same place has other roundings as the foot in another triangle.
+// A spot that is found from several triangles has other roundings in each: the first in this order stays.
 bool isBefore(const ClosePoints& a, const ClosePoints& b) {
   return std::tie(a.split, a.node, a.weight) < std::tie(b.split, b.node, b.weight);
 }
@@ -93,7 +26,7 @@ bool isSame(const ClosePoints& a, const ClosePoints& b) {
   return a.split == b.split && a.node == b.node;
 }
 
-// From counts per owner to where the entries of each begin.
+// Turns counts per owner into where the entries of each begin.
 void accumulate(std::vector<int>& counts) {
   int sum = 0;
   for (int& count : counts) sum += std::exchange(count, sum);
@@ -157,15 +90,15 @@ const std::vector<ClosePoints>& SelfContactClose::find(const std::vector<Facing>
                                                        ThreadPool* pool) {
   at_ = &at;
   distance_ = distance;
-  places_.clear();
-  if (facing.empty()) return places_;
+  spots_.clear();
+  if (facing.empty()) return spots_;
   listFacing(facing);
   collect(pool);
-  std::sort(places_.begin(), places_.end(), isBefore);
-  places_.erase(std::unique(places_.begin(), places_.end(), isSame), places_.end());
-  places_.erase(std::remove_if(places_.begin(), places_.end(), [this](const ClosePoints& p) { return !isNearest(p); }),
-                places_.end());
-  return places_;
+  std::sort(spots_.begin(), spots_.end(), isBefore);
+  spots_.erase(std::unique(spots_.begin(), spots_.end(), isSame), spots_.end());
+  spots_.erase(std::remove_if(spots_.begin(), spots_.end(), [this](const ClosePoints& p) { return !isNearest(p); }),
+               spots_.end());
+  return spots_;
 }
 
 void SelfContactClose::listFacing(const std::vector<Facing>& facing) {
@@ -177,36 +110,38 @@ void SelfContactClose::listFacing(const std::vector<Facing>& facing) {
     facing_triangle_.push_back(one.triangle);
   }
   accumulate(of_vertex_), accumulate(of_triangle_);
+  // Filling moves each start to that of the next triangle; rotating moves them back.
   for (const Facing& one : facing) facing_vertex_[of_triangle_[one.triangle]++] = one.vertex;
   std::rotate(of_triangle_.begin(), of_triangle_.end() - 1, of_triangle_.end());
   of_triangle_[0] = 0;
 }
 
-// The pieces' places in the order of one thread.
+// The spots of the pieces are joined in the order in which one thread would find them.
 void SelfContactClose::collect(ThreadPool* pool) {
   const int count = static_cast<int>(triangles_.size());
-  if (pool == nullptr || pool->threads() == 1) return findAmong(0, count, places_);
+  if (pool == nullptr || pool->threads() == 1) return findAmong(0, count, spots_);
   pool->parallelFor(count, kPiece, [this](int first, int last) {
-    std::vector<ClosePoints>& places = found_[static_cast<std::size_t>(first / kPiece)];
-    places.clear();
-    findAmong(first, last, places);
+    std::vector<ClosePoints>& spots = found_[static_cast<std::size_t>(first / kPiece)];
+    spots.clear();
+    findAmong(first, last, spots);
   });
-  for (const std::vector<ClosePoints>& places : found_) places_.insert(places_.end(), places.begin(), places.end());
+  for (const std::vector<ClosePoints>& spots : found_) spots_.insert(spots_.end(), spots.begin(), spots.end());
 }
 
-void SelfContactClose::findAmong(int first, int last, std::vector<ClosePoints>& places) const {
+void SelfContactClose::findAmong(int first, int last, std::vector<ClosePoints>& spots) const {
   const LendingPool<Marks>::Loan marks;
   marks->begin(triangles_.size(), rings_.vertexCount(), edges_.size());
-  Scan scan{*marks.operator->(), places, {}, {}};
+  Scan scan{*marks.operator->(), spots, {}, {}};
   for (int t = first; t < last; ++t) findAt(t, scan);
 }
 
-// With all triangles around what faces it, and all that its own nodes face.
+// Compares a triangle with all triangles around the vertices that face it, and with all that its own vertices face.
 void SelfContactClose::findAt(int triangle, Scan& scan) const {
   const auto& n = triangles_[triangle];
   const bool faces = std::any_of(n.begin(), n.end(), [&](int v) { return of_vertex_[v] < of_vertex_[v + 1]; });
   if (!faces && of_triangle_[triangle] == of_triangle_[triangle + 1]) return;
   const Eigen::Vector3d a = at(n[0]), b = at(n[1]), c = at(n[2]);
+  // Most others are outside of the box around the triangle, grown by the distance.
   scan.low = a.cwiseMin(b).cwiseMin(c).array() - distance_;
   scan.high = a.cwiseMax(b).cwiseMax(c).array() + distance_;
   scan.marks.nextTriangle();
@@ -222,7 +157,7 @@ void SelfContactClose::meet(int triangle, int other, Scan& scan) const {
   addEdges(triangle, other, scan);
 }
 
-// By the boxes around them and the triangle that is looked at.
+// Whether the box around nodes is outside of that around the triangle that is looked at.
 template <std::size_t Count>
 bool SelfContactClose::isFar(const std::array<int, Count>& nodes, const Scan& scan) const {
   for (Eigen::Index k = 0; k < 3; ++k) {
@@ -235,6 +170,7 @@ bool SelfContactClose::isFar(const std::array<int, Count>& nodes, const Scan& sc
 }
 
 void SelfContactClose::addVertices(int triangle, int other, Scan& scan) const {
+  // In ascending order of its nodes a spot on a common edge is the same from both sides.
   std::array<int, 3> n = triangles_[triangle];
   std::sort(n.begin(), n.end());
   for (const int v : triangles_[other]) {
@@ -248,11 +184,11 @@ void SelfContactClose::addVertices(int triangle, int other, Scan& scan) const {
       if (weight > 0) close.node[next] = n[k], close.weight[next++] = -weight;
     }
     close.in_wall = isInWall(close);
-    scan.places.push_back(close);
+    scan.spots.push_back(close);
   }
 }
 
-// The first of two edges is that of the triangle; where it is the second, the other triangle finds them.
+// The first of two edges is one of the triangle; where it is the second, the other triangle finds them.
 void SelfContactClose::addEdges(int triangle, int other, Scan& scan) const {
   for (const int q : edge_of_[other]) {
     if (!scan.marks.meetsEdge(q) || isFar(edges_[q], scan)) continue;
@@ -264,7 +200,7 @@ void SelfContactClose::addEdges(int triangle, int other, Scan& scan) const {
   }
 }
 
-// Where the nearest points are inside both edges: otherwise a vertex is nearer.
+// Adds the spot where the nearest points are inside both edges: otherwise a vertex is nearer.
 void SelfContactClose::addEdgePair(const Edge& one, const Edge& other, Scan& scan) const {
   const Eigen::Vector3d from = at(one[0]), to = at(other[0]);
   const Eigen::Vector3d u = at(one[1]) - from, v = at(other[1]) - to, r = from - to;
@@ -274,27 +210,27 @@ void SelfContactClose::addEdgePair(const Edge& one, const Edge& other, Scan& sca
   if (!(s > 0 && s < 1 && t > 0 && t < 1)) return;
   const Eigen::Vector3d away = r + s * u - t * v;
   if (!(away.squaredNorm() < distance_ * distance_)) return;
-  scan.places.push_back(
+  scan.spots.push_back(
       {{one[0], one[1], other[0], other[1]}, 2, {1 - s, s, t - 1, -t}, away, across / (uu * vv), false});
-  scan.places.back().in_wall = isInWall(scan.places.back());
+  scan.spots.back().in_wall = isInWall(scan.spots.back());
 }
 
-bool SelfContactClose::isInWall(const ClosePoints& place) const {
-  for (int i = 0; i < place.split; ++i)
-    for (std::size_t j = place.split; j < 4; ++j)
-      if (place.node[j] >= 0 && walls_.oneWall(place.node[i], place.node[j])) return true;
+bool SelfContactClose::isInWall(const ClosePoints& spot) const {
+  for (int i = 0; i < spot.split; ++i)
+    for (std::size_t j = spot.split; j < 4; ++j)
+      if (spot.node[j] >= 0 && walls_.oneWall(spot.node[i], spot.node[j])) return true;
   return false;
 }
 
 // Whether no triangle around the point opposite to a vertex is nearer.
-bool SelfContactClose::isNearest(const ClosePoints& place) const {
-  if (place.split == 2 || place.node[3] != kNone) return true;
-  const Eigen::Vector3d vertex = at(place.node[0]);
-  const double least = kEqual * place.away.squaredNorm();
+bool SelfContactClose::isNearest(const ClosePoints& spot) const {
+  if (spot.split == 2 || spot.node[3] != kNone) return true;
+  const Eigen::Vector3d vertex = at(spot.node[0]);
+  const double least = kEqual * spot.away.squaredNorm();
   bool nearest = true;
-  rings_.visit(place.node[1], [&](int t) {
+  rings_.visit(spot.node[1], [&](int t) {
     const auto& n = triangles_[t];
-    if (!nearest || (place.node[2] != kNone && !hasVertex(n, place.node[2]))) return;
+    if (!nearest || (spot.node[2] != kNone && !hasVertex(n, spot.node[2]))) return;
     nearest = triangleFoot(vertex, at(n[0]), at(n[1]), at(n[2])).away.squaredNorm() >= least;
   });
   return nearest;

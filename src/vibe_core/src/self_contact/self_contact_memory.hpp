@@ -11,27 +11,30 @@
 #include "self_contact/self_contact_close.hpp"
 #include "self_contact/self_contact_paths.hpp"
 #include "self_contact/self_contact_search.hpp"
+#include "vibe_core/solver/step_policy.hpp"
 
 namespace vibe {
 
-constexpr double kContactOnset = 0.25;  ///< strain over which contact of walls sets in [1]
-/// Cosine between normals of walls in contact, at most: the next wall along a line faces this one [1].
-constexpr float kFacingCosine = 0.3F;
+/// Cosine between normals of walls in contact, at most; in single precision, as the cones of normals have it.
+inline double facingCosine() {
+  return static_cast<float>(stepPolicy().wall_facing_cosine);
+}
 
-/// Of a wall that is squeezed to s of its thickness, per A E' t / 2.
+/// Energy of a wall that is squeezed to s of its thickness, and its derivatives with respect to s, per A E' t / 2.
 struct Squeeze {
-  double value, slope, curvature;  // energy and its derivatives with respect to s [1]
+  double value, slope, curvature;
 };
 
-/// Hencky's bar (see SelfContact); it sets in smoothly over kContactOnset on both sides of s = 1.
-/// @param straight_below  extended linearly there
-inline Squeeze squeeze(double s, double straight_below) {
-  if (s >= 1 + kContactOnset) return {0, 0, 0};
+/// Hencky's bar, equation (18) of docs/computation.md: e = ln(1 - h)^2 / 2, where h grows smoothly from 0 to the strain
+/// 1 - s over `onset` on both sides of s = 1.
+/// @param straight_below  the energy continues there on its tangent
+inline Squeeze squeeze(double s, double straight_below, double onset) {
+  if (s >= 1 + onset) return {0, 0, 0};
   const double kept = std::max(s, straight_below), strain = 1 - kept;
-  const double ramp = strain + kContactOnset;
-  const bool full = strain > kContactOnset;
-  const double h = full ? strain : ramp * ramp / (4 * kContactOnset);
-  const double h_slope = full ? 1 : ramp / (2 * kContactOnset), h_curvature = full ? 0 : 1 / (2 * kContactOnset);
+  const double ramp = strain + onset;
+  const bool full = strain > onset;
+  const double h = full ? strain : ramp * ramp / (4 * onset);
+  const double h_slope = full ? 1 : ramp / (2 * onset), h_curvature = full ? 0 : 1 / (2 * onset);
   const double hencky = math::log1p(-h), stress = hencky / (1 - h);
   const double slope = stress * h_slope;
   const double curvature = (1 - hencky) / ((1 - h) * (1 - h)) * h_slope * h_slope - stress * h_curvature;
@@ -39,7 +42,8 @@ inline Squeeze squeeze(double s, double straight_below) {
 }
 
 /// Smoothed Coulomb friction: potential per friction force and its derivative over the way slid, both as functions of
-/// that way (Li et al. 2020, "Incremental Potential Contact", section 5.2, f_0 and f_1 / |u|).
+/// that way, equation (19) of docs/computation.md (Li et al. 2020, "Incremental Potential Contact", section 5.2, f_0
+/// and f_1 / |u|).
 struct Sliding {
   double way, per_way;  // [m], [1/m]
 };
@@ -54,8 +58,8 @@ struct WallApproach {
   Eigen::Vector3d away;    ///< from the triangle to the vertex at detect() [m]
   double distance;         ///< [m]
   Eigen::Vector3d weight;  ///< barycentric, of the nearest point
-  double faces;            ///< 1: the triangle faces the vertex, 0: it does not [1]
-  double share;            ///< of the contact of the vertex in that direction, before it is divided by the sum [1]
+  double faces;            ///< 1: the triangle faces the vertex, 0: it does not
+  double share;            ///< of the contact of the vertex in that direction, before it is divided by the sum
 };
 
 /// Working memory of a SelfContact between the calls of a step.
@@ -95,7 +99,7 @@ class SelfContactMemory {
   std::vector<SelfContactClose::Facing> facing;   // what may be close
   std::vector<Eigen::Vector3d> position, move;    // of a step [m]
   std::vector<Eigen::Vector3d> whole;             // moves before they were shortened [m]
-  std::vector<double> part, length;               // of the whole moves [1], [m]
+  std::vector<double> part, length;               // of the whole moves: what is left of each, its length [m]
 };
 
 }  // namespace vibe

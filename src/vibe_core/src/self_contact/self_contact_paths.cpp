@@ -9,23 +9,16 @@ namespace vibe {
 
 namespace {
 
-constexpr int kRounds = 5;               // of shortening, before nodes that still collide are stopped in place
-constexpr int kStopRounds = 200;         // rounds of stopping, before all nodes are stopped
-constexpr int kCollisionSteps = 30;      // steps towards a collision
-constexpr double kEnough = 1e-3;         // part of a path below which an advance is the last
-constexpr double kKeptShare = 0.9;       // remaining fraction of a distance below the floor
-constexpr double kLeastDistance = 1e-6;  // distance that never gets smaller: far above rounding [m]
-// Distance of parts of one wall. Design choice: so small that a part without overhang does not come so near to itself
-// unless its triangles degenerate, and need not be searched [m].
-constexpr double kLeastDistanceInWall = 1e-5;
-constexpr double kTouching = 1e-10;  // nearer parts touch from the start, and are let go [m]
+constexpr double kTouching = 1e-10;  // rounding: nearer parts touch from the start, and are let go [m]
 
 using Points = std::array<Eigen::Vector3d, 4>;
 
+// Shortest connection of a vertex and a triangle (split 1), or of two edges (split 2).
 Eigen::Vector3d connection(const Points& p, int split) {
   return split == 1 ? triangleFoot(p[0], p[1], p[2], p[3]).away : segmentConnection(p[0], p[1], p[2], p[3]);
 }
 
+// Six times the signed volume of a tetrahedron: on which side of a plane or line a point lies.
 double volume6(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, const Eigen::Vector3d& d) {
   return (b - a).cross(c - a).dot(d - a);
 }
@@ -41,7 +34,7 @@ bool piercesTriangle(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const E
 
 SelfContactPaths::SelfContactPaths(const std::vector<std::array<int, 3>>& triangles, const SurfaceWalls& walls,
                                    double floor)
-    : triangles_(triangles), walls_(walls), floor_(floor) {}
+    : policy_(stepPolicy()), triangles_(triangles), walls_(walls), floor_(floor) {}
 
 bool SelfContactPaths::shorten(const std::vector<Eigen::Vector3d>& start, const std::vector<Pair>& pairs, bool stop,
                                std::vector<Eigen::Vector3d>& move) {
@@ -49,30 +42,35 @@ bool SelfContactPaths::shorten(const std::vector<Eigen::Vector3d>& start, const 
   move_ = &move;
   collect(pairs);
   if (pairs_.empty()) return false;
-  news_.assign(start.size(), 1);
-  next_news_.assign(start.size(), 0);
+  shortened_.assign(start.size(), 1);
+  next_shortened_.assign(start.size(), 0);
   bool any = false;
-  for (int round = 0; round < kRounds + kStopRounds; ++round) {
+  for (int round = 0; round < policy_.path_rounds + policy_.path_stop_rounds; ++round) {
+    // Shortening by parts may go on for ever where nodes are stuck between walls; stopping in place does not.
+    const bool in_place = stop || round >= policy_.path_rounds;
     bool shortened = false;
     for (const auto& [one, other] : pairs_)
-      if ((isNews(one) || isNews(other)) && !keepsApart(one, other))
-        shortened = shortenPair(one, other, stop || round >= kRounds) || shortened;
+      if ((isShortened(one) || isShortened(other)) && !keepsSeparate(one, other))
+        shortened = shortenPair(one, other, in_place) || shortened;
     if (!shortened) return any;
-    if (!any) pairs_ = pairs;  // shorter moves may bring others together
+    // The first collisions are looked for among pairs whose whole paths meet; shorter moves may bring others together.
+    if (!any) pairs_ = pairs;
     if (!any) dropTangled();
     any = true;
-    news_.swap(next_news_);  // unchanged moves are still free of collisions
-    std::fill(next_news_.begin(), next_news_.end(), char{0});
+    // Pairs whose moves have not changed are still free of collisions.
+    shortened_.swap(next_shortened_);
+    std::fill(next_shortened_.begin(), next_shortened_.end(), char{0});
   }
   std::fill(move.begin(), move.end(), Eigen::Vector3d::Zero());
   return any;
 }
 
+// Keeps the pairs that may meet, but for those of triangles that cross already.
 void SelfContactPaths::collect(const std::vector<Pair>& pairs) {
   pairs_.clear();
   tangled_.assign(start_->size(), 0);
   for (const Pair& pair : pairs)
-    if (!keepsApart(pair[0], pair[1])) pairs_.push_back(pair);
+    if (!keepsSeparate(pair[0], pair[1])) pairs_.push_back(pair);
   for (const auto& [one, other] : pairs_) {
     if (!crosses(one, other)) continue;
     for (const int v : triangles_[one]) tangled_[v] = 1;
@@ -81,6 +79,7 @@ void SelfContactPaths::collect(const std::vector<Pair>& pairs) {
   dropTangled();
 }
 
+// Where triangles cross at the start, they and their neighbours may pass each other, so that they can come apart.
 void SelfContactPaths::dropTangled() {
   const auto tangled = [this](int t) {
     return tangled_[triangles_[t][0]] != 0 || tangled_[triangles_[t][1]] != 0 || tangled_[triangles_[t][2]] != 0;
@@ -92,7 +91,7 @@ void SelfContactPaths::dropTangled() {
 
 // Two triangles that are separated at the start and at the end of their straight paths by a plane with the same normal
 // stay apart: the distance along the normal is a concave function of time.
-bool SelfContactPaths::keepsApart(int one, int other) const {
+bool SelfContactPaths::keepsSeparate(int one, int other) const {
   const std::array<int, 3>&a = triangles_[one], &b = triangles_[other];
   const std::vector<Eigen::Vector3d>& at = *start_;
   const Eigen::Vector3d between = (at[a[0]] + at[a[1]] + at[a[2]]) - (at[b[0]] + at[b[1]] + at[b[2]]);
@@ -105,8 +104,10 @@ Eigen::Vector3d SelfContactPaths::normal(int triangle) const {
   return ((*start_)[t[1]] - a).cross((*start_)[t[2]] - a);
 }
 
+// Whether two triangles have a gap along a direction, above the floor, at the start and at the end of their paths.
 bool SelfContactPaths::separates(const Eigen::Vector3d& direction, int one, int other) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  // Extents of both triangles [side] along the direction, at the start and at the end [moment].
   double low[2][2] = {{kInfinity, kInfinity}, {kInfinity, kInfinity}};
   double high[2][2] = {{-kInfinity, -kInfinity}, {-kInfinity, -kInfinity}};
   for (int side = 0; side < 2; ++side)
@@ -117,11 +118,13 @@ bool SelfContactPaths::separates(const Eigen::Vector3d& direction, int one, int 
       low[side][1] = std::min(low[side][1], to);
       high[side][1] = std::max(high[side][1], to);
     }
+  // The direction is not unit: that spares a root per pair that is far apart.
   const double gap = floor_ * direction.norm();
   return (low[0][0] - high[1][0] > gap && low[0][1] - high[1][1] > gap) ||
          (low[1][0] - high[0][0] > gap && low[1][1] - high[0][1] > gap);
 }
 
+// Two triangles cross where an edge of one pierces the other.
 bool SelfContactPaths::crosses(int one, int other) const {
   const std::vector<Eigen::Vector3d>& at = *start_;
   const auto anyEdge = [&](const std::array<int, 3>& edges, const std::array<int, 3>& face) {
@@ -137,11 +140,12 @@ bool SelfContactPaths::crosses(int one, int other) const {
   return anyEdge(a, b) || anyEdge(b, a);
 }
 
-bool SelfContactPaths::isNews(int triangle) const {
+bool SelfContactPaths::isShortened(int triangle) const {
   const std::array<int, 3>& n = triangles_[triangle];
-  return news_[n[0]] != 0 || news_[n[1]] != 0 || news_[n[2]] != 0;
+  return shortened_[n[0]] != 0 || shortened_[n[1]] != 0 || shortened_[n[2]] != 0;
 }
 
+// Triangles touch first at a vertex of one of them or between two edges; those that they share do not count.
 bool SelfContactPaths::shortenPair(int one, int other, bool stop) {
   const std::array<int, 3>&a = triangles_[one], &b = triangles_[other];
   bool any = false;
@@ -162,7 +166,7 @@ bool SelfContactPaths::shortenPrimitive(const Primitive& primitive, bool stop) {
   if (part >= 1) return false;
   for (const int v : primitive.node) {
     (*move_)[v] *= stop ? 0 : part;
-    next_news_[v] = 1;
+    next_shortened_[v] = 1;
   }
   return true;
 }
@@ -174,16 +178,20 @@ bool SelfContactPaths::isOneWall(const Primitive& primitive) const {
   return false;
 }
 
+// The part of the ways up to which a primitive keeps its floor, by conservative advancement, equation in the header.
 double SelfContactPaths::freePart(const Primitive& primitive) const {
   Points at;
   for (std::size_t k = 0; k < 4; ++k) at[k] = (*start_)[primitive.node[k]];
   Eigen::Vector3d away = connection(at, primitive.split);
   double distance = away.norm();
   if (distance < kTouching) return 1;
-  const double least = isOneWall(primitive) ? kLeastDistanceInWall : std::max(kLeastDistance, floor_);
-  const double floor = std::min(distance, std::max(kLeastDistance, std::min(least, kKeptShare * distance)));
+  // What is nearer than the floor already keeps a share of its distance, and so never meets.
+  const double smallest = policy_.path_least_distance;
+  const double least = isOneWall(primitive) ? policy_.path_floor_in_wall : std::max(smallest, floor_);
+  const double floor = std::min(distance, std::max(smallest, std::min(least, policy_.path_kept_share * distance)));
   double part = 0;
-  for (int advance = 0; advance < kCollisionSteps; ++advance) {
+  for (int advance = 0; advance < policy_.path_advances; ++advance) {
+    // The distance falls no faster than that of any two nodes along the present connection; 2 is beyond the whole way.
     double next = 2;
     for (int i = 0; i < primitive.split; ++i)
       for (int j = primitive.split; j < 4; ++j) {
@@ -192,7 +200,7 @@ double SelfContactPaths::freePart(const Primitive& primitive) const {
         if (closing > 0) next = std::min(next, std::max(0.0, (away.dot(at[p] - at[q]) - floor * distance) / closing));
       }
     if (part + next >= 1) return 1;
-    if (next < kEnough) return part;
+    if (next < policy_.path_least_advance) return part;
     part += next;
     for (std::size_t k = 0; k < 4; ++k) at[k] = (*start_)[primitive.node[k]] + part * (*move_)[primitive.node[k]];
     away = connection(at, primitive.split);

@@ -10,20 +10,20 @@ namespace vibe {
 
 namespace {
 
-// Distance for which near vertices are listed, over the one that is asked for, and how much shorter the latter may get.
-// Design choice: the distance changes with the speed of the walls, and a new list costs much.
-constexpr double kListedOverAsked = 1.05, kTooFar = 0.3;
-// Entries of a list for which there is memory from the start. Design choice: those of a surface with a few folds.
+// Entries of a list for which there is memory from the start: those of a surface with a few folds. A list that is
+// longer grows once.
 constexpr std::size_t kPerTriangle = 4;
 constexpr float kRoundedDown = 1 - 1e-6F, kRoundedUp = 1 + 1e-6F;  // of a distance in single precision
 
 /// Distance between the parts of two triangles at one vertex that do not contain it [m].
 double fanDistance(std::array<int, 3> a, std::array<int, 3> b, const std::vector<Eigen::Vector3d>& at) {
+  // The common vertex comes first in both.
   for (std::array<int, 3>* t : {&a, &b}) {
     const std::array<int, 3>& other = t == &a ? b : a;
     while (std::find(other.begin(), other.end(), (*t)[0]) == other.end())
       std::rotate(t->begin(), t->begin() + 1, t->end());
   }
+  // What is nearest is a vertex and the other triangle, or the two edges opposite to the common vertex and any others.
   const auto connect = [&](int p, const std::array<int, 3>& t) {
     return triangleFoot(at[p], at[t[0]], at[t[1]], at[t[2]]).away.squaredNorm();
   };
@@ -54,22 +54,25 @@ SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const Settings& se
 }
 
 bool SelfContactSearch::adapt(const NodeVectors& start, const NodeVectors& end, double distance) {
-  const bool all = distance > distance_ || distance < kTooFar * distance_;
+  // The distance changes with the speed of the walls; the lists are made anew only where they are too short or far too
+  // long.
+  const bool all = distance > distance_ || distance < stepPolicy().search_too_far * distance_;
   if (all) bounds_.reset();
   if (!bounds_.adapt(start, end)) {
     distance_ = -1;
     return false;
   }
   if (bounds_.moved().empty() && bounds_.turned().empty()) return true;
-  if (all) distance_ = kListedOverAsked * distance;
+  if (all) distance_ = stepPolicy().search_spare * distance;
   ++count_;
   tree_.adapt(bounds_, all);
-  tree_.visitChanges([this](int t) { bounds_.setCoarse(t, tree_.isRough(t)); });
+  tree_.visitChanges([this](int t) { bounds_.setLoose(t, tree_.isRough(t)); });
   renewNear();
   renewMeetings();
   return true;
 }
 
+// Entries of parts that have not changed stay; the tree visits all others again.
 void SelfContactSearch::renewNear() {
   old_near_.clear();
   for (const Near& near : near_)
@@ -79,6 +82,7 @@ void SelfContactSearch::renewNear() {
                     [this](int vertex, int triangle) { addNear(vertex, triangle); });
   std::sort(new_near_.begin(), new_near_.end());
   near_.resize(old_near_.size() + new_near_.size());
+  // Both are ascending. A pair may be in both, because the tree visits more than what has changed.
   const auto end =
       std::set_union(old_near_.begin(), old_near_.end(), new_near_.begin(), new_near_.end(), near_.begin());
   near_.erase(end, near_.end());
@@ -94,6 +98,7 @@ void SelfContactSearch::addNear(int v, int triangle) {
     new_near_.push_back({v, triangle, kRoundedDown * static_cast<float>(foot.away.norm())});
 }
 
+// How far positions are from the centres of the balls, for which the distances in the list were taken.
 void SelfContactSearch::measure(const NodeVectors& at) {
   if (near_.empty()) return;
   for (std::size_t i = 0; i < vertex_off_.size(); ++i)
@@ -130,11 +135,14 @@ bool SelfContactSearch::mayMeet(int one, int other) const {
   int shared = 0;
   for (const int v : triangles_[one])
     for (const int w : triangles_[other]) shared += v == w ? 1 : 0;
+  // Triangles with a common edge cannot cross without turning over; with a common vertex they touch there, and the rest
+  // of them counts.
   if (shared == 0) return !apart(one, other, distance);
   return shared == 1 && fanDistance(triangles_[one], triangles_[other], bounds_.centre()) < distance;
 }
 
-// By a plane parallel to one of the triangles or between their centres.
+// Whether a plane parallel to one of the triangles, or across the line between their centres, separates them by more
+// than a distance.
 bool SelfContactSearch::apart(int one, int other, double distance) const {
   const std::array<int, 3>&a = triangles_[one], &b = triangles_[other];
   const std::vector<Eigen::Vector3d>& at = bounds_.centre();

@@ -25,7 +25,7 @@ class SelfContactSearch {
       return vertex < other.vertex || (vertex == other.vertex && triangle < other.triangle);
     }
   };
-  /// Distances [m], cosine of an angle between normals [1].
+  /// Distances [m], cosine of an angle between normals.
   struct Settings {
     const SurfaceWalls& walls;  ///< outlives the search
     double cosine;              ///< of walls that face each other, at most

@@ -1,4 +1,4 @@
-// What stops walls on their paths at the end of a step.
+// How walls are stopped on their paths at the end of a step.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,22 +8,13 @@
 
 namespace vibe {
 
-namespace {
-
-// Stretch of an edge in a step because one of its nodes stops earlier than the other on its path. Design choice: a
-// tenth, which a step can resolve [1].
-constexpr double kStretchByStop = 0.1;
-constexpr double kFewer = 1e-3;  // part of it that is not worth another change
-constexpr int kSweeps = 100;     // over the triangles, while stops spread
-// Searches of fast paths until all moves are given up, and those before nodes that still collide are stopped in place.
-constexpr int kSearches = 20, kPatience = 4;
-
-}  // namespace
+constexpr double kSquaredRounding = 1e-12;  // of a speed in single precision: the ratio below stays finite
 
 const std::vector<int>& SelfContact::resolvePenetrations(const MotionView& motion, double step) {
   stopped_.clear();
   SelfContactMemory& m = *memory_;
   if (!startPaths(motion) || !shortenPaths()) return stopped_;
+  // Only nodes whose path was shortened lose speed; all others keep every bit of their motion.
   for (std::size_t i = 0; i < m.position.size(); ++i) {
     if (m.move[i] == m.whole[i]) continue;
     stop(motion, static_cast<int>(i), m.position[i] + m.move[i], step);
@@ -51,35 +42,40 @@ bool SelfContact::startPaths(const MotionView& motion) {
 // @returns whether any was shortened
 bool SelfContact::shortenPaths() {
   SelfContactMemory& m = *memory_;
-  for (int search = 0; search < kSearches; ++search) {
-    if (!m.paths.shorten(m.position, m.search.meetings(), search >= kPatience, m.move)) return search > 0;
+  for (int search = 0; search < policy_.path_searches; ++search) {
+    const bool stop = search >= policy_.path_patience;
+    if (!m.paths.shorten(m.position, m.search.meetings(), stop, m.move)) return search > 0;
     spreadStops();
     for (std::size_t i = 0; i < m.move.size(); ++i)
       for (std::size_t k = 0; k < 3; ++k) m.end[k][i] = m.position[i][k] + m.move[i][k];
     m.search.adapt(SelfContactMemory::view(m.start), SelfContactMemory::view(m.end), searchDistance());
   }
+  // At the start of the step nothing crosses, so that staying there is always possible.
   std::fill(m.move.begin(), m.move.end(), Eigen::Vector3d::Zero());
   return true;
 }
 
-// Nodes around one that stops slow down, so that its triangles are not torn apart.
+// Nodes around one that stops slow down, so that its triangles are not torn apart: along each edge the faster node may
+// run ahead of the slower one by stop_stretch of the length of the edge.
 void SelfContact::spreadStops() {
   SelfContactMemory& m = *memory_;
+  // What is left of each way is kept as a part of it, because the direction stays.
   for (std::size_t i = 0; i < m.move.size(); ++i) {
     const double whole2 = m.whole[i].squaredNorm();
     m.part[i] = whole2 > 0 ? m.move[i].dot(m.whole[i]) / whole2 : 1;
     m.length[i] = std::sqrt(whole2);
   }
+  // Slowing one node down may ask the same of its neighbours; sweeps end where nothing changes.
   bool changed = true;
-  for (int sweep = 0; sweep < kSweeps && changed; ++sweep) {
+  for (int sweep = 0; sweep < policy_.stop_sweeps && changed; ++sweep) {
     changed = false;
     for (const auto& n : rest_.triangles)
       for (int k = 0; k < 3; ++k) {
         int slow = n[k], fast = n[(k + 1) % 3];
         if (m.part[slow] > m.part[fast]) std::swap(slow, fast);
         const double late = m.length[fast] * (m.part[fast] - m.part[slow]);
-        const double allowed = kStretchByStop * (m.position[fast] - m.position[slow]).norm();
-        if (late <= allowed * (1 + kFewer)) continue;
+        const double allowed = policy_.stop_stretch * (m.position[fast] - m.position[slow]).norm();
+        if (late <= allowed * (1 + policy_.stop_fewer)) continue;
         m.part[fast] = m.part[slow] + allowed / m.length[fast];
         m.move[fast] = m.part[fast] * m.whole[fast];
         changed = true;
@@ -87,15 +83,16 @@ void SelfContact::spreadStops() {
   }
 }
 
+// Ends the motion of a node at a point before its end, with the speed of that path but no more than it had.
 void SelfContact::stop(const MotionView& motion, int node, const Eigen::Vector3d& end, double step) const {
   double before2 = 0;
   const Eigen::Vector3d speed = (end - memory_->at(node)) / step;
   for (int k = 0; k < 3; ++k) before2 += motion.v[k][node] * motion.v[k][node];
-  const double part = std::min(1.0, std::sqrt(before2 / std::max(speed.squaredNorm(), before2 * 1e-12)));
+  const double part = std::min(1.0, std::sqrt(before2 / std::max(speed.squaredNorm(), before2 * kSquaredRounding)));
   for (int k = 0; k < 3; ++k) {
     motion.x[k][node] = end[k];
     motion.v[k][node] = before2 > 0 ? part * speed[k] : 0;
-    motion.a[k][node] = 0;
+    motion.a[k][node] = 0;  // the impulse of the stop is in no force
   }
 }
 

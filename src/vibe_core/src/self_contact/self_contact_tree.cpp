@@ -1,34 +1,18 @@
+// How the tree is built.
 #include "self_contact/self_contact_tree.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
 #include <numeric>
+
+#include "vibe_core/solver/step_policy.hpp"
 
 namespace vibe {
 
-namespace {
-
-constexpr int kLeaf = 4;           // triangles of a leaf. Design choice: boxes of so few are cheap to compare
-constexpr int kLargestGraph = 64;  // triangles of a part that may count as free of overhangs. Design choice: about as
-                                   // wide as the part of the surface that counts as one wall
-constexpr float kLeastHeight = 0.1F;  // smallest cosine between normals and the direction without overhangs
-
-constexpr int kPartTriangles = 64;  // triangles of a part that is renewed together. Design choice: about 10 mm wide
-constexpr float kPositionRounding = 2.4e-7F;  // of a position in single precision, twice over [1]
-
-using TreeBox = SelfContactTree::Box;
-
-TreeBox joinBoxes(const TreeBox& a, const TreeBox& b) {
-  return {a.low.min(b.low), a.minus_high.min(b.minus_high)};
-}
-
-}  // namespace
-
 SelfContactTree::SelfContactTree(const SurfaceMesh& rest, const VertexTriangles& rings)
-    : triangles_(rest.triangles), rings_(rings) {
+    : rough_cosine_(static_cast<float>(stepPolicy().tree_rough_cosine)),
+      least_height_(static_cast<float>(stepPolicy().tree_least_height)),
+      triangles_(rest.triangles),
+      rings_(rings) {
   order_.resize(triangles_.size());
   std::iota(order_.begin(), order_.end(), 0);
   std::vector<Eigen::Vector3d> centre;
@@ -36,12 +20,14 @@ SelfContactTree::SelfContactTree(const SurfaceMesh& rest, const VertexTriangles&
     centre.push_back((rest.vertices[t[0]] + rest.vertices[t[1]] + rest.vertices[t[2]]) / 3);
   leaf_of_.resize(triangles_.size());
   if (!triangles_.empty()) build(0, static_cast<int>(order_.size()), centre);
+  // Nodes are in the order in which they were built: the left child follows its parent.
   parent_.assign(nodes_.size(), -1);
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const int index = static_cast<int>(n), right = limits_[n].right;
     if (right != 0) parent_[n + 1] = parent_[right] = index;
     for (int i = 0; right == 0 && i < nodes_[n].count; ++i) leaf_of_[order_[nodes_[n].first + i]] = index;
   }
+  // All memory is taken here, so that a step allocates none.
   box_.resize(triangles_.size());
   own_.resize(triangles_.size());
   around_.resize(triangles_.size());
@@ -53,13 +39,14 @@ SelfContactTree::SelfContactTree(const SurfaceMesh& rest, const VertexTriangles&
   stack_.reserve(nodes_.size());
 }
 
-// Halves at the median along the longest extent.
+// Halves the triangles at the median along the longest extent of their centres.
 int SelfContactTree::build(int first, int count, const std::vector<Eigen::Vector3d>& centre) {
   const int index = static_cast<int>(nodes_.size());
   limits_.emplace_back();
+  // Two lists of equal length: what a traversal reads of each node is kept apart from the rest.
   nodes_.push_back({{}, {}, {}, {}, first, count, 0, 0, 0, 0, 0, 0});
   listVertices(nodes_[index]);
-  if (count <= kLeaf) {
+  if (count <= stepPolicy().tree_leaf) {
     listOwned(nodes_[index]);
     return index;
   }
@@ -70,6 +57,7 @@ int SelfContactTree::build(int first, int count, const std::vector<Eigen::Vector
   }
   Eigen::Index axis = 0;
   (high - low).maxCoeff(&axis);
+  // Equal centres are ordered by number: the tree is the same everywhere.
   std::sort(order_.begin() + first, order_.begin() + first + count, [&](int a, int b) {
     return centre[a][axis] < centre[b][axis] || (centre[a][axis] == centre[b][axis] && a < b);
   });
@@ -79,9 +67,10 @@ int SelfContactTree::build(int first, int count, const std::vector<Eigen::Vector
   return index;
 }
 
+// Only small connected parts may count as free of overhangs, and only their vertices are asked for.
 void SelfContactTree::listVertices(Node& node) {
   node.first_vertex = static_cast<int>(vertex_.size());
-  if (node.count > kLargestGraph || !isConnected(node)) return;
+  if (node.count > stepPolicy().tree_largest_graph || !isConnected(node)) return;
   for (int i = node.first; i < node.first + node.count; ++i)
     vertex_.insert(vertex_.end(), triangles_[order_[i]].begin(), triangles_[order_[i]].end());
   std::sort(vertex_.begin() + node.first_vertex, vertex_.end());
@@ -89,6 +78,7 @@ void SelfContactTree::listVertices(Node& node) {
   node.vertices = static_cast<int>(vertex_.size()) - node.first_vertex;
 }
 
+// Each vertex belongs to the leaf of its first triangle, so that a search meets it once.
 void SelfContactTree::listOwned(Node& leaf) {
   leaf.first_owned = static_cast<int>(owned_.size());
   for (int i = leaf.first; i < leaf.first + leaf.count; ++i)
@@ -98,6 +88,7 @@ void SelfContactTree::listOwned(Node& leaf) {
 }
 
 bool SelfContactTree::isConnected(const Node& node) const {
+  // The search goes from one triangle over common vertices; parts are so small that all triangles may be compared.
   std::vector<char> reached(node.count, 0);
   std::vector<int> next(1, 0);
   reached[0] = 1;
@@ -132,7 +123,7 @@ void SelfContactTree::listSameWall(int index, const SurfaceWalls& walls) {
   node.same = static_cast<int>(same_wall_.size()) - node.first_same;
 }
 
-// Within two edges.
+// Leaves behind this one with a triangle within two edges.
 std::vector<int> SelfContactTree::laterLeavesAround(int leaf) const {
   std::vector<int> later;
   const auto add = [&](int t) {
@@ -164,183 +155,18 @@ bool SelfContactTree::meetsOneWall(const Node& a, const Node& b, const SurfaceWa
 }
 
 std::vector<int> SelfContactTree::parts() const {
+  // The largest nodes that have no more than so many triangles.
+  const int most = stepPolicy().tree_part;
   std::vector<int> part(ring_.size(), 0);
   int count = 0;
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     const Node& node = nodes_[n];
-    if (node.count > kPartTriangles || (n > 0 && nodes_[parent_[n]].count <= kPartTriangles)) continue;
+    if (node.count > most || (n > 0 && nodes_[parent_[n]].count <= most)) continue;
     for (int i = node.first; i < node.first + node.count; ++i)
       for (const int v : triangles_[order_[i]]) part[v] = count;
     ++count;
   }
   return part;
-}
-
-void SelfContactTree::adapt(const SelfContactBounds& bounds, bool all) {
-  forgetChanges();
-  markChanges(bounds, all);
-  for (const int t : renewed_) encloseTriangle(t, bounds);
-  spread(bounds, all);
-  for (const int t : renewed_)
-    for (int n = leaf_of_[t]; n >= 0 && (limits_[n].changed | changed_[t]) != limits_[n].changed; n = parent_[n]) {
-      if (limits_[n].changed == 0) renewed_nodes_.push_back(n);
-      limits_[n].changed |= changed_[t];
-    }
-  std::sort(renewed_nodes_.begin(), renewed_nodes_.end(), std::greater<int>());
-  joinChildren();
-}
-
-void SelfContactTree::forgetChanges() {
-  for (const int t : renewed_) changed_[t] = 0;
-  for (const int n : renewed_nodes_) {
-    if ((limits_[n].changed & kOwn) != 0) nodes_[n].before = nodes_[n].own;
-    if ((limits_[n].changed & kAround) != 0) nodes_[n].around_before = nodes_[n].around;
-    limits_[n].changed = 0;
-  }
-  renewed_.clear();
-  renewed_nodes_.clear();
-}
-
-void SelfContactTree::markChanges(const SelfContactBounds& bounds, bool all) {
-  if (all) {
-    for (std::size_t v = 0; v < ball_.size(); ++v) encloseVertex(static_cast<int>(v), bounds);
-    for (std::size_t t = 0; t < triangles_.size(); ++t) mark(static_cast<int>(t), kEverything);
-  } else {
-    for (const int v : bounds.moved()) {
-      encloseVertex(v, bounds);
-      rings_.visit(v, [this](int t) { mark(t, kBox); });
-    }
-    for (const int t : bounds.turned()) mark(t, kOwn);
-  }
-}
-
-void SelfContactTree::mark(int triangle, char change) {
-  if (changed_[triangle] == 0) renewed_.push_back(triangle);
-  changed_[triangle] = static_cast<char>(changed_[triangle] | change);
-}
-
-void SelfContactTree::encloseVertex(int vertex, const SelfContactBounds& bounds) {
-  ball_[vertex].head<3>() = bounds.centre()[vertex].cast<float>().array();
-  ball_[vertex][3] = static_cast<float>(bounds.radius(vertex));
-}
-
-void SelfContactTree::encloseTriangle(int triangle, const SelfContactBounds& bounds) {
-  if ((changed_[triangle] & kBox) != 0) {
-    TreeBox& box = box_[triangle];
-    for (std::size_t k = 0; k < 3; ++k) {
-      Eigen::Array4f centre = ball_[triangles_[triangle][k]], radius = Eigen::Array4f::Zero();
-      radius.head<3>() = kPositionRounding * centre.head<3>().abs() + centre[3];
-      centre[3] = 0;
-      const TreeBox ball{centre - radius, -centre - radius};
-      box = k == 0 ? ball : joinBoxes(box, ball);
-    }
-  }
-  if ((changed_[triangle] & kOwn) == 0) return;
-  const auto& [normal, turn] = bounds.cone(triangle);
-  Cone& own = own_[triangle];
-  own = Cone();
-  if (turn > 1) return;
-  own.axis.head<3>() = normal;
-  own.cosine = 1 - 0.5F * turn * turn;
-  own.sine = turn * std::sqrt(1 - 0.25F * turn * turn);
-}
-
-// Normals of the triangles at the corners of those that have turned.
-void SelfContactTree::spread(const SelfContactBounds& bounds, bool all) {
-  const auto spreadOver = [this](int v) {
-    Cone& ring = ring_[v];
-    ring = {Eigen::Vector4f::Zero(), 1, 0};
-    rings_.visit(v, [&](int t) { ring.axis += own_[t].axis; });
-    ring.axis.normalize();
-    rings_.visit(v, [&](int t) {
-      widen(own_[t], ring);
-      mark(t, kAround);
-    });
-  };
-  if (all) {
-    for (std::size_t v = 0; v < ring_.size(); ++v) spreadOver(static_cast<int>(v));
-  } else {
-    for (const int t : bounds.turned())
-      for (const int v : triangles_[t]) spreadOver(v);
-  }
-  for (const int t : renewed_) {
-    if ((changed_[t] & kAround) == 0) continue;
-    const auto& n = triangles_[t];
-    around_[t] = {(ring_[n[0]].axis + ring_[n[1]].axis + ring_[n[2]].axis).normalized(), 1, 0};
-    for (const int v : n) widen(ring_[v], around_[t]);
-  }
-}
-
-// About the same axis.
-void SelfContactTree::widen(const Cone& part, Cone& cone) {
-  const float chord2 = (part.axis - cone.axis).squaredNorm();
-  const float cosine = 1 - 0.5F * chord2, sine = std::sqrt(chord2 * std::max(0.0F, 1 - 0.25F * chord2));
-  const float side = cosine * part.cosine - sine * part.sine;
-  if (!(cosine > 0 && part.cosine > 0 && side > 0)) {
-    cone.cosine = -1;
-  } else if (side < cone.cosine) {
-    cone.cosine = side;
-    cone.sine = sine * part.cosine + cosine * part.sine;
-  }
-}
-
-SelfContactTree::Cone SelfContactTree::join(const Cone& a, const Cone& b) {
-  Cone all{(a.axis + b.axis).normalized(), 1, 0};
-  widen(a, all);
-  widen(b, all);
-  return all;
-}
-
-// Of the nodes that have changed.
-void SelfContactTree::joinChildren() {
-  for (const int n : renewed_nodes_) {
-    Limits& limits = limits_[n];
-    if (limits.right == 0) {
-      joinTriangles(nodes_[n], limits, nodes_[n].own, nodes_[n].around);
-      continue;
-    }
-    const Limits &a = limits_[n + 1], &b = limits_[limits.right];
-    if ((limits.changed & kBox) != 0) limits.box = joinBoxes(a.box, b.box);
-    const Node &one = nodes_[n + 1], &other = nodes_[limits.right];
-    if ((limits.changed & kOwn) != 0) nodes_[n].own = join(one.own, other.own);
-    if ((limits.changed & kAround) != 0) nodes_[n].around = join(one.around, other.around);
-  }
-}
-
-void SelfContactTree::joinTriangles(const Node& leaf, Limits& limits, Cone& own, Cone& around) const {
-  const int* const first = &order_[leaf.first];
-  const int* const last = first + leaf.count;
-  if ((limits.changed & kBox) != 0) {
-    limits.box = box_[*first];
-    for (const int* t = first + 1; t != last; ++t) limits.box = joinBoxes(limits.box, box_[*t]);
-  }
-  const auto unite = [&](const std::vector<Cone>& cones, Cone& all) {
-    all = {Eigen::Vector4f::Zero(), 1, 0};
-    for (const int* t = first; t != last; ++t) all.axis += cones[*t].axis;
-    all.axis.normalize();
-    for (const int* t = first; t != last; ++t) widen(cones[*t], all);
-  };
-  if ((limits.changed & kOwn) != 0) unite(own_, own);
-  if ((limits.changed & kAround) != 0) unite(around_, around);
-}
-
-// Whether the normals of two parts have a common direction without overhangs.
-bool SelfContactTree::isGraph(const Cone& a, const Cone& b) {
-  return a.cosine > kLeastHeight && b.cosine > kLeastHeight && join(a, b).cosine > kLeastHeight;
-}
-
-bool SelfContactTree::adjacent(const Node& a, const Node& b) const {
-  const int *p = &vertex_[a.first_vertex], *q = &vertex_[b.first_vertex];
-  const int *p_end = p + a.vertices, *q_end = q + b.vertices;
-  while (p != p_end && q != q_end) {
-    if (*p == *q) return true;
-    if (*p < *q) {
-      ++p;
-    } else {
-      ++q;
-    }
-  }
-  return false;
 }
 
 }  // namespace vibe

@@ -24,11 +24,11 @@ class SelfContactTree {
   /// Says which vertices belong to one wall, which does not face itself.
   void setWalls(const SurfaceWalls& walls);
 
-  /// Fourth components are 0.
+  /// A box along the axes; fourth components are 0.
   struct Box {
     Eigen::Array4f low = Eigen::Array4f::Zero(), minus_high = Eigen::Array4f::Zero();
   };
-  /// Around unit normals.
+  /// A cone around unit normals.
   struct Cone {
     Eigen::Vector4f axis = Eigen::Vector4f::Zero();  ///< unit, fourth component 0
     float cosine = -1, sine = 0;  ///< of the angle from the axis to the side; cosine <= 0: any normals
@@ -67,7 +67,7 @@ class SelfContactTree {
     };
     traverse(kBox | kOwn, distance, graph, [&](int a, int b, bool all) { visitTriangles(a, b, all, distance, visit); });
   }
-  /// Whether the last adapt() may have changed the place of a vertex, that of a triangle, or that or the cone of its
+  /// Whether the last adapt() may have changed the position of a vertex, that of a triangle, or that or the cone of its
   /// normals.
   bool hasNewBall(int vertex) const { return hasNewBox(rings_.first(vertex)); }
   bool hasNewBox(int triangle) const { return (changed_[triangle] & kBox) != 0; }
@@ -78,12 +78,11 @@ class SelfContactTree {
     for (const int t : renewed_) visit(t);
   }
   /// Whether the normals of a triangle and those around it differ so much that they tell nothing about what it faces.
-  bool isRough(int triangle) const { return around_[triangle].cosine < kRough; }
+  bool isRough(int triangle) const { return around_[triangle].cosine < rough_cosine_; }
 
  private:
   static constexpr float kPointRounding = 1e-6F;  // above that of positions within metres in single precision [m]
-  static constexpr float kRough = 0.82F;        // half of the largest angle between normals that do not face each other
-  static constexpr float kCosineSpare = 1e-4F;  // far above rounding in the cones of parts and of their parts [1]
+  static constexpr float kCosineSpare = 1e-4F;    // far above rounding in the cones of parts and of their parts
   enum Change : char { kBox = 1, kOwn = 2, kAround = 4, kEverything = 7 };
   enum class Part { Skip, Changes, All };
   struct Limits {
@@ -104,6 +103,8 @@ class SelfContactTree {
   }
   /// Whether the cosine between normals of one cone and of the other is never below `cosine` > 0.
   static bool keepsCosine(const Cone& a, const Cone& b, float cosine) {
+    // The cosine of the sum of both half angles, and the chord between the axes: the normals' angle is at most the sum
+    // of all three, and its cosine is compared without an inverse function.
     const float both = a.cosine * b.cosine - a.sine * b.sine, between2 = (a.axis - b.axis).squaredNorm();
     if (a.cosine <= 0 || b.cosine <= 0 || both <= 0 || between2 >= 2) return false;
     const float sine = a.sine * b.cosine + a.cosine * b.sine, spare = (1 - 0.5F * between2) * both - cosine;
@@ -111,7 +112,7 @@ class SelfContactTree {
   }
   static void widen(const Cone& part, Cone& cone);
   static Cone join(const Cone& a, const Cone& b);
-  static bool isGraph(const Cone& a, const Cone& b);
+  bool isGraph(const Cone& a, const Cone& b) const;
   bool adjacent(const Node& a, const Node& b) const;
   /// Whether no vertex of one and triangle of the other belong to different walls; false also where that is not known.
   bool isOneWall(const Node& a, const Node& b) const {
@@ -137,6 +138,7 @@ class SelfContactTree {
 
   template <class Judge, class Visit>
   void traverse(char changes, float distance, const Judge& judge, const Visit& visitLeaves) const {
+    // Pairs of nodes with a mark: everything below counts, changed or not. A node is paired with itself first.
     stack_.assign(1, {0, 0, 0});
     while (!stack_.empty()) {
       auto [a, b, all] = stack_.back();
@@ -144,6 +146,7 @@ class SelfContactTree {
       const Limits &one = limits_[a], &other = limits_[b];
       if (all == 0 && ((one.changed | other.changed) & changes) == 0) continue;
       if (a != b && apart(one.box, other.box, distance)) continue;
+      // Whole pairs of parts are skipped where nothing below can matter, before boxes are opened.
       const Part part = judge(nodes_[a], nodes_[b]);
       if (part == Part::Skip) continue;
       if (part == Part::All) all = 1;
@@ -153,6 +156,7 @@ class SelfContactTree {
         stack_.push_back({a + 1, one.right, all});
         stack_.push_back({one.right, one.right, all});
         stack_.push_back({a + 1, a + 1, all});
+        // The larger of two different nodes is opened.
       } else if (other.right == 0 || (one.right != 0 && nodes_[a].count >= nodes_[b].count)) {
         stack_.push_back({one.right, b, all});
         stack_.push_back({a + 1, b, all});
@@ -169,7 +173,7 @@ class SelfContactTree {
     const float most = distance + ball[3] + kPointRounding;
     return (off * off).sum() > most * most;
   }
-  /// Vertices of one leaf and triangles of another.
+  /// Visits vertices of one leaf with triangles of another.
   template <class Visit>
   void visitVertices(int a, int b, bool all, float distance, const Visit& visit) const {
     const Node &one = nodes_[a], &other = nodes_[b];
@@ -195,6 +199,7 @@ class SelfContactTree {
     }
   }
 
+  float rough_cosine_, least_height_;  // the policy's, in single precision
   std::vector<std::array<int, 3>> triangles_;
   const VertexTriangles& rings_;
   std::vector<Limits> limits_;  // of the nodes, parents before children

@@ -41,7 +41,7 @@ HandModel::Joints HandModel::withinEffort(const Joints& start, const Joints& end
 
 HandModel::Joints HandModel::slowedByForce(const Joints& start, const Joints& end,
                                            const std::array<double, kScopeJointCount>& effort, double force) {
-  const double slows = stepPolicy().hand_slows, stops = stepPolicy().hand_stops;
+  const double slows = stepPolicy().hand_slows_force, stops = stepPolicy().hand_stops_force;
   const double part = std::clamp((stops - force) / (stops - slows), 0.0, 1.0);
   Joints result = end;
   for (int j = 0; j < kScopeJointCount; ++j)
@@ -60,7 +60,7 @@ HandModel::Joints HandModel::heldBack(const Joints& start, const Joints& end,
 void HandModel::countStall(const std::array<int, kJointCount>& stopped, std::array<int, kJointCount>& stall) {
   for (int j = 0; j < kJointCount; ++j) {
     stall[j] -= stall[j] > 0 ? 1 : stall[j] < 0 ? -1 : 0;
-    if (stopped[j] != 0) stall[j] = stopped[j] * stepPolicy().stall_steps;
+    if (stopped[j] != 0) stall[j] = stopped[j] * stepPolicy().hand_stall_steps;
   }
 }
 

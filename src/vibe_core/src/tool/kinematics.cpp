@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include "arithmetic/elementary.hpp"
+#include "vibe_core/solver/step_policy.hpp"
 
 namespace vibe {
 
 namespace {
 
-// In the frame of the link that carries arm and needle, all in the plane across the axis.
+// The bars of the needle arm, in the frame of the link that carries arm and needle, all in the plane across the axis.
 struct Bars {
   Eigen::Vector3d axis;       // unit
   Eigen::Vector3d hinge;      // [m]
@@ -66,14 +67,8 @@ std::optional<LinkageTurns> needleLinkage(const ToolModel& tool, double driver) 
 
 namespace {
 
-constexpr double kDirectionWeight = 0.02;  // [m/rad]
-constexpr double kGoodCost = 1e-6;         // (1 mm)^2
-constexpr int kMaxIterations = 100;
-constexpr double kPlaced = 1e-26;     // (0.1 pm)^2
-constexpr double kMostDamping = 1e9;  // [1]
-// Decrease that a step promises over the cost, below which the descent ends. Design choice: far below what can be seen,
-// far above rounding. A target out of reach has no other end [1].
-constexpr double kWorthAStep = 1e-10;
+constexpr double kPlaced = 1e-26;        // (0.1 pm)^2: rounding, nothing is left to gain
+constexpr double kLeastDamping = 1e-12;  // rounding of the normal matrix
 
 // shortest rotation that turns one unit vector into another, as a vector [rad]
 Eigen::Vector3d rotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
@@ -92,7 +87,7 @@ InverseKinematics::Residual InverseKinematics::residual(const Inputs& inputs) {
   const Eigen::Isometry3d& tip = chain_.place(inputs);
   Residual r;
   r.head<3>() = target_position_ - tip.translation();
-  r.tail<3>() = kDirectionWeight * rotationBetween(tip.linear().col(0), target_direction_);
+  r.tail<3>() = stepPolicy().ik_direction_weight * rotationBetween(tip.linear().col(0), target_direction_);
   return r;
 }
 
@@ -113,7 +108,7 @@ InverseKinematics::Jacobian InverseKinematics::jacobian() const {
       continue;
     }
     j.col(joint.input).head<3>() += axis.cross(position - child.translation());
-    j.col(joint.input).tail<3>() += kDirectionWeight * (axis - direction * direction.dot(axis));
+    j.col(joint.input).tail<3>() += stepPolicy().ik_direction_weight * (axis - direction * direction.dot(axis));
   }
   return j;
 }
@@ -142,21 +137,23 @@ void InverseKinematics::holdAtLimits(const Inputs& inputs, const Step& gradient,
 // A step from where the chain is.
 // @returns false where none leads on
 bool InverseKinematics::improve(Descent& at) {
+  const StepPolicy& policy = stepPolicy();
   const Jacobian j = jacobian();
   const Eigen::Matrix<double, kFree, kFree> normal = j.transpose() * j;
   const Step gradient = j.transpose() * at.residual;
-  for (; at.damping < kMostDamping; at.damping *= 4) {
+  // Levenberg and Marquardt: the damping grows until a step makes the error smaller.
+  for (; at.damping < policy.ik_most_damping; at.damping *= policy.ik_damping_growth) {
     Eigen::Matrix<double, kFree, kFree> matrix = normal;
     // the constant keeps inputs without effect still, such as the rotation of a straight scope
-    matrix.diagonal() += at.damping * (normal.diagonal() + Step::Constant(1e-7));
+    matrix.diagonal() += at.damping * (normal.diagonal() + Step::Constant(policy.ik_idle_damping));
     Step right = gradient;
     holdAtLimits(at.inputs, gradient, matrix, right);
     const Step step = matrix.ldlt().solve(right);
     const Inputs trial = moved(at.inputs, step);
-    if (!(right.dot(step) > kWorthAStep * at.cost) || trial == at.inputs) return false;
+    if (!(right.dot(step) > policy.ik_worth_a_step * at.cost) || trial == at.inputs) return false;
     const Residual there = residual(trial);
     if (!(there.squaredNorm() < at.cost)) continue;
-    at = {trial, there, there.squaredNorm(), std::max(at.damping / 5, 1e-12)};
+    at = {trial, there, there.squaredNorm(), std::max(at.damping / policy.ik_damping_fall, kLeastDamping)};
     return true;
   }
   return false;
@@ -165,8 +162,8 @@ bool InverseKinematics::improve(Descent& at) {
 InverseKinematics::Inputs InverseKinematics::descend(const Inputs& start, double& cost) {
   const Inputs inputs = moved(start, Step::Zero());
   const Residual r = residual(inputs);
-  Descent at{inputs, r, r.squaredNorm(), 1e-3};
-  for (int iteration = 0; iteration < kMaxIterations && at.cost > kPlaced && improve(at);) ++iteration;
+  Descent at{inputs, r, r.squaredNorm(), stepPolicy().ik_first_damping};
+  for (int iteration = 0; iteration < stepPolicy().ik_max_iterations && at.cost > kPlaced && improve(at);) ++iteration;
   cost = at.cost;
   return at.inputs;
 }
@@ -186,17 +183,19 @@ InverseKinematics::Inputs InverseKinematics::solve(const Eigen::Isometry3d& targ
   aim(target);
   double best_cost = 0;
   Inputs best = descend(start, best_cost);
+  const StepPolicy& policy = stepPolicy();
   constexpr double kQuarter = 1.5707963267948966;
+  // A bent tip has several solutions, as an elbow: other turns and bends begin beside the others.
   for (const double turn : {0.0, kQuarter, -kQuarter, 2 * kQuarter}) {
-    for (const double bend : {0.2, 0.6}) {
-      if (best_cost <= kGoodCost) return best;
+    for (const double bend : {policy.ik_small_bend, policy.ik_large_bend}) {
+      if (best_cost <= policy.ik_good_cost) return best;
       Inputs trial = start;
       trial[Rotation] = std::remainder(start[Rotation] + turn, 4 * kQuarter);
       trial[TipUpDown] = bend * tool_.limits()[TipUpDown].upper;
       trial[TipLeftRight] = 0;
       double cost = 0;
       trial = descend(trial, cost);
-      if (cost >= best_cost / 4) continue;
+      if (cost >= best_cost / policy.ik_better_cost) continue;
       best = trial;
       best_cost = cost;
     }

@@ -21,7 +21,7 @@ struct LinkageTurns {
   double hook = 0;  ///< about needle_hook_turn, 0 with the arm open [rad]
 };
 
-/// The turns with which needle_arm_pin and needle_hook_pin are at the same place while needle_driver slides: two
+/// The turns with which needle_arm_pin and needle_hook_pin are at the same point while needle_driver slides: two
 /// circles meet there, on the side on which they meet with the arm open. Where they do not meet, the bars point at each
 /// other.
 /// @param driver  position of needle_driver [m]
@@ -55,7 +55,7 @@ class InverseKinematics {
   struct Descent {
     Inputs inputs;
     Residual residual;
-    double cost, damping;  // square of the residual [m^2], [1]
+    double cost, damping;  // square of the residual [m^2]; ratio
   };
 
   void aim(const Eigen::Isometry3d& target);

@@ -3,17 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vibe_core/solver/step_policy.hpp"
+
 namespace vibe {
-
-namespace {
-
-// Free lengths below this do not bend. Design choice: a hundredth of the tube's radius [m].
-constexpr double kShortest = 6e-5;
-// Speed of the tip with which a loaded scope springs back at most. Design choice: twice what the hand moves at, which
-// keeps the way of a step below a wall's thickness or two [m/s].
-constexpr double kSpringBack = 0.3;
-
-}  // namespace
 
 ScopeSprings::ScopeSprings(const ToolModel& tool, const ScopeComplianceScene& scene) : tool_(&tool), scene_(scene) {}
 
@@ -23,7 +15,7 @@ YieldVector ScopeSprings::stiffness(double insertion) const {
   k[Rotation] = scene_.torsional_rigidity / (scene_.outer_length + std::max(insertion, 0.0));
   k[TipUpDown] = k[TipLeftRight] = scene_.bending_stiffness;
   const double length = tool_->freeLength(insertion);
-  if (tool_->shaftStations().empty() || length < kShortest) return k;
+  if (tool_->shaftStations().empty() || length < stepPolicy().shaft_shortest_bend) return k;
   for (int direction = 0; direction < 2; ++direction) {
     const int dof = kShaftDof + 2 * direction;
     k[dof] = scene_.shaft_rigidity * length;
@@ -50,8 +42,8 @@ double ScopeSprings::configurationalForce(const std::array<double, kJointCount>&
   return force;
 }
 
-// With the deflections of a straight scope: that of the shaft's end, its slope times the length of the bending section,
-// and half that length times the bend.
+// The way of the tip follows from the deflections of a straight scope: that of the shaft's end, its slope times the
+// length of the bending section, and half that length times the bend.
 double ScopeSprings::relaxationTime(const std::array<double, kJointCount>& joints,
                                     const ToolDisplacement& displacement) const {
   const double length = std::max(tool_->freeLength(joints[Insertion] + displacement[Insertion]), 0.0);
@@ -62,7 +54,7 @@ double ScopeSprings::relaxationTime(const std::array<double, kJointCount>& joint
     tip[1 + direction] = mean * length * (length / 2 + reach) - change * length * length / 6 +
                          displacement[TipUpDown + direction] * reach / 2;
   }
-  return std::max(scene_.relaxation_time, tip.norm() / kSpringBack);
+  return std::max(scene_.relaxation_time, tip.norm() / stepPolicy().shaft_spring_back);
 }
 
 std::array<double, kJointCount> ScopeSprings::handMotion(const std::array<double, kJointCount>& start,

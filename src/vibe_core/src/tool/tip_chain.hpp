@@ -23,9 +23,9 @@ class TipChain {
   const Eigen::Isometry3d& place(const Inputs& inputs);
 
   int count() const { return static_cast<int>(joints_.size()); }
-  /// Of the link nearest to the root, 0, to scope_tip, count() - 1.
+  /// Joint that carries a link: 0 is nearest to the root, count() - 1 is that of scope_tip.
   const ToolJoint& joint(int link) const { return *joints_[link]; }
-  /// Of these in the root frame, where place() has put them.
+  /// Pose of such a link in the root frame, where place() has put it.
   const Eigen::Isometry3d& pose(int link) const { return poses_[link]; }
   const Eigen::Isometry3d& tip() const { return poses_.back(); }
 

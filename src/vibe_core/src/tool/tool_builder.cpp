@@ -94,6 +94,7 @@ void ToolBuilder::addJoint(const urdf::Joint& joint, int parent, int child) {
   }
   if (joint.type != urdf::Joint::REVOLUTE && joint.type != urdf::Joint::PRISMATIC)
     fail("joint", joint.name, "is of a type that the tool cannot have; use fixed, revolute or prismatic");
+  // A shaft joint is driven by the bend of the shaft, all others by an input, some through a mimic element.
   result.type = joint.type == urdf::Joint::REVOLUTE ? ToolJoint::Type::Revolute : ToolJoint::Type::Prismatic;
   const Eigen::Vector3d axis(joint.axis.x, joint.axis.y, joint.axis.z);
   if (!(axis.norm() > 1e-9) || !std::isfinite(axis.norm()))
@@ -142,8 +143,8 @@ void ToolBuilder::addInput(const urdf::Joint& joint, int input) {
   found_[input] = true;
 }
 
-// Where the joints of the shaft are, with all inputs at 0: the last one along the root's x axis is the end of the
-// shaft.
+// Measures where the joints of the shaft are, with all inputs at 0: the last one along the root's x axis is the end of
+// the shaft.
 void ToolBuilder::placeShaft() {
   std::vector<Eigen::Isometry3d> pose(link_names.size(), Eigen::Isometry3d::Identity());
   std::vector<double> along;
@@ -153,6 +154,7 @@ void ToolBuilder::placeShaft() {
   }
   if (along.empty()) return;
   shaft_end = *std::max_element(along.begin(), along.end());
+  // Joints at one station bend in two directions; roundings of the URDF do not make two stations of it.
   for (double x : along) shaft_stations.push_back(shaft_end - x);
   std::sort(shaft_stations.begin(), shaft_stations.end());
   const auto same = [](double a, double b) { return b - a < kSameStation; };
@@ -160,6 +162,7 @@ void ToolBuilder::placeShaft() {
   if (shaft_stations.size() > static_cast<std::size_t>(kMaxShaftStations))
     throw Error(place_ + ": the shaft has joints at more than " + std::to_string(kMaxShaftStations) +
                 " places; give it fewer.");
+  // Each joint finds its station among those that were kept.
   for (ToolJoint& joint : joints) {
     if (joint.station < 0) continue;
     const double behind = shaft_end - pose[joint.child_link].translation().x() - kSameStation;

@@ -5,6 +5,8 @@
 
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 
+#include "vibe_core/solver/step_policy.hpp"
+
 namespace vibe {
 
 std::array<double, kJointCount> ToolMotion::inputs(double fraction) const {

@@ -10,7 +10,7 @@
 
 namespace vibe {
 
-/// Path of the tool during one step: every input, and the displacement of a tool that gives way, moves at constant
+/// Path of the tool during one step: every input, and the displacement of a compliant tool, moves at constant
 /// speed from its start to its end value.
 class ToolMotion {
  public:

@@ -4,21 +4,19 @@
 #include <cmath>
 #include <limits>
 
+#include "vibe_core/solver/step_policy.hpp"
+
 namespace vibe {
 
 namespace {
 
-constexpr std::size_t kBallGroup = 16;  // balls of a group. Design choice: a patch about as wide as a shape [1]
 constexpr double kBallRounding = 1e-9;  // far above that of a position in double precision [m]
-// Distance up to which pairs are listed, beyond what the step itself needs. Design choice: a press in steps of a
-// millisecond needs another list after some 30 searches [m].
-constexpr double kSpare = 4e-3;
 // Centre and radius together: |a + b + c| / 3 + |2 a - b - c| / 3 for three moves of length 1 is at most the root of 3,
-// where a and (b + c) / 2 are 120 degrees apart [1].
+// where a and (b + c) / 2 are 120 degrees apart.
 constexpr double kEdgeMove = 1.7320509;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// @returns the largest distance between two places of a vertex; infinite if one is not finite
+// @returns the longest way of a vertex [m]; infinite if a position is not finite
 double longestWay(const std::array<const double*, 3>& from, const std::array<const double*, 3>& to,
                   std::size_t vertices) {
   constexpr Eigen::Index kBlock = 128;
@@ -55,13 +53,14 @@ NearTriangles::NearTriangles(const SurfaceMesh& surface, const std::vector<char>
   for (std::vector<double>& component : wall_) component.assign(surface.vertices.size(), 0);
   balls_.reserve(triangles_.size());
   candidates_.reserve(triangles_.size());
-  groups_.reserve(triangles_.size() / kBallGroup + 1);
+  groups_.reserve(triangles_.size() / static_cast<std::size_t>(stepPolicy().near_group) + 1);
 }
 
 void NearTriangles::find(const SweptTool& tool, const SurfacePath& path, double reach, std::vector<Pair>& found) {
   found.clear();
   ++calls_;
   if (!holds(tool, path, reach)) list(tool, path, reach);
+  // What the list holds for now is less than what it was made for: a distance when listed tells which pairs that are.
   Eigen::AlignedBox3d all = tool.box();
   all.min().array() -= reach, all.max().array() += reach;
   for (const Candidate& candidate : candidates_) {
@@ -81,7 +80,7 @@ bool NearTriangles::holds(const SweptTool& tool, const SurfacePath& path, double
                       longestWay(path.from, path.to, vertices);
   bool all = true;
   for (int s = 0; s < tool.count(); ++s) {
-    const Place& before = tool_[s];
+    const ShapePosition& before = tool_[s];
     double moved = 0;
     if (tool.hasSegment(s)) {
       const auto [a, b] = tool.segment(s, 0);
@@ -101,10 +100,12 @@ void NearTriangles::list(const SweptTool& tool, const SurfacePath& path, double 
   for (std::size_t k = 0; k < 3; ++k) std::copy_n(path.from[k], wall_[k].size(), wall_[k].begin());
   tool_.resize(tool.count()), needed_.resize(tool.count());
   for (int s = 0; s < tool.count(); ++s) tool_[s] = {tool.segment(s, 0), tool.box(s)};
+  // holds() says what each shape needs now, whatever was listed.
   listed_ = kInfinity;
   holds(tool, path, reach);
-  listed_ = kSpare;
-  for (const double needed : needed_) listed_ = std::max(listed_, needed + kSpare);
+  const double spare = stepPolicy().near_spare;
+  listed_ = spare;
+  for (const double needed : needed_) listed_ = std::max(listed_, needed + spare);
   listBalls(tool, path);
   candidates_.clear();
   for (int s = 0; s < tool.count(); ++s) listCandidates(tool, s);
@@ -122,8 +123,9 @@ void NearTriangles::listBalls(const SweptTool& tool, const SurfacePath& path) {
     balls_.push_back(ball);
   }
   groups_.clear();  // triangles that follow each other are mostly neighbours
-  for (std::size_t first = 0; first < balls_.size(); first += kBallGroup) {
-    Group group{first, std::min(first + kBallGroup, balls_.size()), {}};
+  const auto most = static_cast<std::size_t>(stepPolicy().near_group);
+  for (std::size_t first = 0; first < balls_.size(); first += most) {
+    Group group{first, std::min(first + most, balls_.size()), {}};
     for (std::size_t i = group.first; i < group.last; ++i) {
       const Eigen::Vector3d near = Eigen::Vector3d::Constant(balls_[i].radius + kBallRounding);
       group.box.extend(balls_[i].centre - near);
@@ -140,6 +142,7 @@ void NearTriangles::listCandidates(const SweptTool& tool, int shape) {
   const Eigen::Vector3d middle = (a + b) / 2;
   const double around = (b - a).norm() / 2 + tool.radius(shape) + listed_ + kBallRounding;
   for (const Group& group : groups_) {
+    // The cheaper test comes first; most groups end there.
     if (gapAlongAxis(group.box, box) > listed_) continue;
     if (round && group.box.squaredExteriorDistance(box) > listed_ * listed_) continue;
     for (std::size_t i = group.first; i < group.last; ++i) {
@@ -160,6 +163,7 @@ double NearTriangles::apart(const SweptTool& tool, int shape, const Ball& ball) 
 // @param box  what the tool may reach
 void NearTriangles::measure(const Eigen::AlignedBox3d& box, const SurfacePath& path, Ball& ball) const {
   const auto& n = triangles_[ball.triangle];
+  // One ball serves all shapes of a call.
   ball.measured = calls_;
   ball.centre = (path.start(n[0]) + path.start(n[1]) + path.start(n[2])) / 3;
   ball.radius = ball.move = 0;
@@ -180,6 +184,7 @@ bool NearTriangles::isNear(const SweptTool& tool, int shape, const Ball& ball, d
   const Eigen::Vector3d low = tool.box(shape).min(), high = tool.box(shape).max();
   const double near = ball.radius + ball.move + reach;
   if (((ball.centre - high).array() > near).any() || ((low - ball.centre).array() > near).any()) return false;
+  // Boxes are nearly empty around long oblique shapes: the segment decides.
   if (!tool.hasSegment(shape)) return true;
   const auto [a, b] = tool.segment(shape, 0);
   const double grown = tool.radius(shape) + tool.travel(shape) + reach;

@@ -22,7 +22,7 @@ class NearTriangles {
   /// @param passable  per vertex: the tool passes through the triangles there
   NearTriangles(const SurfaceMesh& surface, const std::vector<char>& passable);
 
-  /// Those that the tool cannot pass.
+  /// The triangles that the tool cannot pass.
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
 
   /// All pairs of shapes and triangles() that may come nearer than `reach`, by shape, then triangle. A triangle with a
@@ -32,7 +32,7 @@ class NearTriangles {
   int listings() const { return listings_; }  ///< how often all pairs were looked at
 
  private:
-  /// Around a triangle at the start of the step.
+  /// A ball around a triangle at the start of the step.
   struct Ball {
     int triangle;
     Eigen::Vector3d centre;
@@ -50,7 +50,7 @@ class NearTriangles {
     std::size_t first, last;
     Eigen::AlignedBox3d box;
   };
-  struct Place {
+  struct ShapePosition {
     std::array<Eigen::Vector3d, 2> segment;
     Eigen::AlignedBox3d box;
   };
@@ -67,7 +67,7 @@ class NearTriangles {
   std::vector<Group> groups_;
   std::vector<Candidate> candidates_;
   std::array<std::vector<double>, 3> wall_;  // where it was when the list was made [m]
-  std::vector<Place> tool_;                  // per shape, likewise
+  std::vector<ShapePosition> tool_;          // per shape, likewise
   double listed_ = -1;                       // pairs that were nearer are listed [m]
   std::vector<double> needed_;               // per shape: pairs that were farther apart are not near now [m]
   int calls_ = 0, listings_ = 0;

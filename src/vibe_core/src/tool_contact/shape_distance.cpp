@@ -23,14 +23,14 @@
 namespace vibe {
 
 /// Diagonal to which a shape is scaled for Bullet's GJK, whose margins and tolerances are absolute: a tool shape of 1
-/// cm had an error of 4 mm; scaled it does not [Bullet's units].
+/// cm had an error of 4 mm; scaled it does not [Bullet's units]. A unit of another library, which steers no step.
 constexpr double kGjkSize = 100;
 
 inline Eigen::Vector3d toEigen(const btVector3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-/// @param scale  factor on all coordinates [1]
+/// @param scale  factor on all coordinates
 inline btVector3 toBullet(const Eigen::Vector3d& p, double scale) {
   return {static_cast<btScalar>(scale * p.x()), static_cast<btScalar>(scale * p.y()),
           static_cast<btScalar>(scale * p.z())};
@@ -43,6 +43,7 @@ constexpr double kNoDirection = 1e-15;  // a shorter vector is rounding error an
 }  // namespace
 
 PointDistance::PointDistance(const btConvexShape& shape) : shape_(&shape) {
+  // Bullet's own distance goes through GJK, with an error of a part of the shape's size: closed forms have none.
   switch (shape.getShapeType()) {
     case SPHERE_SHAPE_PROXYTYPE:
       kind_ = Kind::Sphere;
@@ -255,6 +256,7 @@ TriangleGap segmentTriangleGap(const Eigen::Vector3d& a, const Eigen::Vector3d& 
 TriangleGap convexTriangleGap(const btConvexShape& shape, const Triangle& triangle) {
   btVector3 lower, upper;
   shape.getAabb(btTransform::getIdentity(), lower, upper);
+  // As in byGjk(), the shape is scaled to what Bullet's tolerances are meant for.
   const double scale = kGjkSize / static_cast<double>((upper - lower).length());
   const btUniformScalingShape enlarged(const_cast<btConvexShape*>(&shape), static_cast<btScalar>(scale));
   const btTriangleShape wall(toBullet(triangle[0], scale), toBullet(triangle[1], scale), toBullet(triangle[2], scale));
@@ -266,6 +268,8 @@ TriangleGap convexTriangleGap(const btConvexShape& shape, const Triangle& triang
   input.m_transformB.setIdentity();
   btPointCollector found;
   detector.getClosestPoints(input, found, nullptr);
+  // Bullet gives the point on the triangle; its weights say which vertices bear the contact. Where the two cross there
+  // is neither distance nor normal.
   TriangleGap gap;
   const Eigen::Vector3d at = toEigen(found.m_pointInWorld) / scale;
   const double distance = static_cast<double>(found.m_distance) / scale;

@@ -8,10 +8,11 @@
 #include "tool_contact/tool_approach.hpp"
 #include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/solver/body_loads.hpp"
+#include "vibe_core/solver/step_policy.hpp"
 
 namespace vibe {
 
-/// Of a vertex that the helix holds, see SurfaceContacts::find().
+/// Mark of a vertex that the helix holds, see SurfaceContacts::find().
 constexpr char kHeld = 2;
 
 /// Per vertex: the tool passes through the triangles there. The ends are open where the organ goes on: the scope passes
@@ -36,7 +37,16 @@ struct SurfaceContact {
 /// the shape between them, because it is thin or the triangles are large, points that divide edges and triangles
 /// evenly. A shape wider than the triangles therefore has one contact per vertex within reach. The nearest points of a
 /// triangle and a shape would be fewer, but they move with the tilt of the triangle, and a force that follows that from
-/// step to step does not come to rest. Where two shapes touch one place from one side, the deeper contact counts.
+/// step to step does not come to rest. Where two shapes touch one point from one side, the deeper contact counts.
+///
+/// A contact asks of its point p, with the shape's point q, the normal n and the clearance c,
+///   n . (p - q) >= c,  n along (1 - w) d0 n0 + w d1 n1
+///   c       half the thickness of the wall, in the middle of a stretched edge a share of it [m]
+///   d, n    distance of p from the core of the shape, and the direction out of it, at the start (0) and the end (1)
+///   w       the moment at which the forces of the step act, as a part of it (Gonzalez 1996; docs/computation.md, (10))
+/// Points of a spacing s that keep R + h from the core of a shape keep the wall between them, with h = half the wall,
+///   sqrt((R + h)^2 - s^2 / 3) >= R + touch_kept_between h
+/// from it, because the square of the distance from a convex set grows no faster than that from a point.
 class SurfaceContacts {
  public:
   /// @param thickness  of the wall per vertex [m]
@@ -55,7 +65,7 @@ class SurfaceContacts {
                                           const std::vector<Eigen::Isometry3d>& end, const SurfacePath& path,
                                           double margin, const std::vector<char>& excluded, double when = 1);
 
-  /// Those that the tool cannot pass.
+  /// The triangles that the tool cannot pass.
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
 
  private:
@@ -81,6 +91,7 @@ class SurfaceContacts {
   bool isBuried(const SurfaceContact& contact) const;
   void removeDuplicates();
 
+  const StepPolicy& policy_;
   SweptTool tool_;
   std::vector<char> on_tip_;  // per shape
   NearTriangles near_triangles_;

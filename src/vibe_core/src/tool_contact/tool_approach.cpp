@@ -7,15 +7,9 @@
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 
 #include "arithmetic/turn.hpp"
+#include "vibe_core/solver/step_policy.hpp"
 
 namespace vibe {
-
-namespace {
-
-// The box of a turning shape is larger than that of its ends. Design choice: covers turns of two radians [1].
-constexpr double kTurnMargin = 0.25;
-
-}  // namespace
 
 SweptTool::SweptTool(const ToolModel& model) {
   for (const ToolShape& shape : model.shapes()) shapes_.push_back(shapeOf(shape));
@@ -27,6 +21,7 @@ SweptTool::Shape SweptTool::shapeOf(const ToolShape& tool_shape) {
   shape.link = tool_shape.link;
   shape.origin = tool_shape.origin;
   shape.corner.fill(Eigen::Vector3d::Zero());
+  // The core of a sphere is a point, that of a capsule a segment: two ends describe both.
   const int kind = shape.shape->getShapeType();
   shape.round = kind == SPHERE_SHAPE_PROXYTYPE || kind == CAPSULE_SHAPE_PROXYTYPE;
   if (kind == SPHERE_SHAPE_PROXYTYPE) shape.radius = static_cast<const btSphereShape&>(*shape.shape).getRadius();
@@ -37,6 +32,7 @@ SweptTool::Shape SweptTool::shapeOf(const ToolShape& tool_shape) {
     shape.corner[1][capsule.getUpAxis()] = capsule.getHalfHeight();
   }
   shape.corners = shape.round ? 2 : 8;
+  // Others have no core: eight corners of the box around them bound their way.
   if (shape.round) return shape;
   btVector3 lower, upper;
   shape.shape->getAabb(btTransform::getIdentity(), lower, upper);
@@ -72,7 +68,8 @@ void SweptTool::placeShape(Shape& shape) {
     shape.box.extend(from);
     shape.box.extend(to);
   }
-  const double grown = shape.radius + (shape.round ? 0 : kTurnMargin * shape.travel);
+  // A shape that turns leaves the box around its ends; a core with a radius moves along straight lines.
+  const double grown = shape.radius + (shape.round ? 0 : stepPolicy().sweep_turn_margin * shape.travel);
   shape.box.min().array() -= grown;
   shape.box.max().array() += grown;
 }
@@ -135,12 +132,6 @@ Eigen::Vector3d SweptTool::directionAtEnd(int shape, double fraction, const Eige
 
 namespace {
 
-constexpr int kApproachSteps = 40;      // steps towards a contact; each takes nine tenths of what is free
-constexpr double kApproachShare = 0.9;  // of the distance above the floor per step [1]
-constexpr double kKeptAtEnd = 0.1;      // of that distance at the start, at which an approach ends [1]
-constexpr double kAim = 0.5;            // of that, at which steps along straight lines aim [1]
-// Steps that are certain to be enough: each goes as far as the distance is above the aim, over the whole way.
-constexpr double kCertainSteps = 0.5 * kApproachSteps;
 constexpr double kRounding = 1e-9;  // far above that of a position in double precision [m]
 
 using Triangle = std::array<Eigen::Vector3d, 3>;
@@ -149,7 +140,7 @@ Triangle triangleAt(const SurfacePath& path, const std::array<int, 3>& n, double
   return {path.at(n[0], fraction), path.at(n[1], fraction), path.at(n[2], fraction)};
 }
 
-// A bound of the relative motion of the two; what they have in common does not count.
+// A bound of the relative motion of a shape and a triangle [m]; what they have in common does not count.
 double closingDistance(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle) {
   const std::array<Eigen::Vector3d, 2> moves = tool.moves(shape);
   const Eigen::Vector3d common = 0.5 * (moves[0] + moves[1]);
@@ -159,17 +150,20 @@ double closingDistance(const SweptTool& tool, int shape, const SurfacePath& path
   return wall + (tool.radius(shape) > 0 ? turn : tool.travel(shape) + common.norm());
 }
 
-// Up to where the two are sure to stay apart. Ends of the core and vertices move along straight lines, and so do their
-// distances along the direction in which they are apart now: where all of these stay above a floor, so does the
-// distance.
+// The part of the step up to which the two are sure to stay apart. Ends of the core and vertices move along straight
+// lines, and so do their distances along the direction in which they are apart now: where all of these stay above a
+// floor, so does the distance.
 double freeUntil(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle,
                  const ToolApproach& now, double floor, double aim) {
   const double left = 1 - now.fraction;
+  // A shape without a segment turns: only a bound of its speed is known.
   if (!tool.hasSegment(shape)) {
     const double free = now.gap.distance - floor, speed = closingDistance(tool, shape, path, triangle);
-    return free >= left * speed ? 1 : std::min(1.0, now.fraction + kApproachShare * free / speed);
+    return free >= left * speed ? 1 : std::min(1.0, now.fraction + stepPolicy().sweep_share * free / speed);
   }
   const auto from = tool.segment(shape, now.fraction), to = tool.segment(shape, 1);
+  // Distances of both ends of the core from the three vertices along the present normal are linear in time; the first
+  // that comes down to the aim ends the advance.
   double part = 1;
   bool meets = false;
   for (const int v : triangle) {
@@ -196,11 +190,13 @@ ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path,
   result.fraction = 0;
   result.gap = result.start = start;
   result.nearest = result.gap.distance;
-  const double kept = kKeptAtEnd * (result.gap.distance - floor);
-  for (int advance = 0; advance < kApproachSteps && result.fraction < 1; ++advance) {
+  const StepPolicy& policy = stepPolicy();
+  const double kept = policy.sweep_kept * (result.gap.distance - floor);
+  for (int advance = 0; advance < policy.sweep_advances && result.fraction < 1; ++advance) {
     const double free = result.gap.distance - floor;
+    // It ends before the two touch, where the normal is still that of the side on which the shape is.
     if (free <= 0 || (advance > 0 && free < kept)) break;
-    const double next = freeUntil(tool, shape, path, triangle, result, floor, floor + kAim * kept);
+    const double next = freeUntil(tool, shape, path, triangle, result, floor, floor + policy.sweep_aim * kept);
     if (next == result.fraction) break;
     result.gap = tool.gap(shape, next, triangleAt(path, triangle, next));
     result.fraction = next;
@@ -214,20 +210,25 @@ bool staysApart(const SweptTool& tool, int shape, const SurfacePath& path, const
   if (!tool.hasSegment(shape)) return false;
   const auto from = tool.segment(shape, 0), to = tool.segment(shape, 1);
   const Triangle start = triangleAt(path, triangle, 0);
+  // The direction in which the triangle's centre lies from the core at the start is tried, and no other.
   const Eigen::Vector3d centre = (start[0] + start[1] + start[2]) / 3;
   const Eigen::Vector3d away = centre - nearestOnSegment(from[0], from[1], centre);
   const double most = away.norm();  // of the distance at the start
   const Eigen::Vector3d direction = away / most;
   const double core_from = std::max(direction.dot(from[0]), direction.dot(from[1])),
                core_to = std::max(direction.dot(to[0]), direction.dot(to[1]));
+  // Along it the distance at either end bounds that in between, because all points move along straight lines.
   double apart = most, way2 = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const Eigen::Vector3d end = path.at(triangle[k], 1);
     apart = std::min(apart, std::min(direction.dot(start[k]) - core_from, direction.dot(end) - core_to));
     way2 = std::max(way2, (end - start[k]).squaredNorm());
   }
-  const double kept = kKeptAtEnd * (most - floor), way = std::sqrt(way2) + tool.travel(shape);
-  return apart > least && apart > floor + kept + kRounding && (apart - floor - kAim * kept) * kCertainSteps > way;
+  // approach() is certain to reach the end where half of its advances, each of the distance above its aim, are the way.
+  const StepPolicy& policy = stepPolicy();
+  const double certain = 0.5 * policy.sweep_advances, kept = policy.sweep_kept * (most - floor),
+               way = std::sqrt(way2) + tool.travel(shape);
+  return apart > least && apart > floor + kept + kRounding && (apart - floor - policy.sweep_aim * kept) * certain > way;
 }
 
 std::vector<char> shapesOnTip(const ToolModel& tool) {

@@ -29,15 +29,14 @@ class SweptTool {
   /// Longest way of a point of the shape, and of all shapes [m].
   double travel(int shape) const { return shapes_[shape].travel; }
   double travel() const { return travel_; }
-  /// Around all of the way of a shape and of the whole tool.
+  /// Box around all of the way of a shape, and of the whole tool.
   const Eigen::AlignedBox3d& box(int shape) const { return shapes_[shape].box; }
   const Eigen::AlignedBox3d& box() const { return box_; }
   /// Displacements of the ends of the core.
   std::array<Eigen::Vector3d, 2> moves(int shape) const;
 
-  /// Nearest points of the core and a triangle at a fraction of the step, in world.
+  /// Nearest points of the core and a triangle, or a point, at a fraction of the step, in world.
   TriangleGap gap(int shape, double fraction, const std::array<Eigen::Vector3d, 3>& triangle) const;
-  /// The same for a point.
   TriangleGap gap(int shape, double fraction, const Eigen::Vector3d& point) const;
   /// Where a point or a direction of the shape is at the end of the step.
   Eigen::Vector3d pointAtEnd(int shape, double fraction, const Eigen::Vector3d& point) const;
@@ -89,7 +88,7 @@ struct ToolApproach {
 };
 
 /// Follows a shape and a triangle through the step, by steps that their distance permits (conservative advancement,
-/// Mirtich 1996), until a tenth of what the distance from the core is above `floor` at the start is left.
+/// Mirtich 1996), until sweep_kept of what the distance from the core is above `floor` at the start is left.
 /// @param floor  [m]; a pair that is nearer at the start stays there: fraction 0
 ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle,
                       double floor);

@@ -7,38 +7,28 @@ namespace vibe {
 
 namespace {
 
-// Share of the wall's thickness that stays between a shape and the mid-surface. Design choice: far below what
-// contacts keep, far above rounding and what a joint's path differs from a straight one [1].
-constexpr double kKeptThickness = 0.05;
-// What is nearer already may come nearer by a tenth in a step, and never meets [1].
-constexpr double kNearer = 0.9;
-// Where less than this share of the thickness is left, only rounding may bring the two nearer: a distance that shrinks
-// by a part of itself in every step would become too small to get free from [1].
-constexpr double kLeastThickness = 1e-3, kHardlyNearer = 1 - 1e-6;
-// Attempts to stop the tool on its way before it stays where it was. Design choice: each costs a search.
-constexpr int kStopAttempts = 4;
-// Share of the free part of the way that the tool takes. Design choice: leaves a distance from which the next step can
-// go on [1].
-constexpr double kTakenShare = 0.9;
-// Parts of what is left of its way that a joint tries. Design choice: each costs a search [1].
-constexpr std::array<double, 2> kJointParts{1, 0.25};
+// Rounding alone: a distance that is hardly there shrinks by so little.
+constexpr double kHardlyNearer = 1 - 1e-6;
 
 }  // namespace
 
 ToolGuard::ToolGuard(const ToolModel& tool, const SurfaceMesh& surface, const std::vector<double>& thickness,
                      const std::vector<char>& passable)
-    : thickness_(thickness), on_tip_(shapesOnTip(tool)), tool_(tool), near_(surface, passable) {}
+    : policy_(stepPolicy()), thickness_(thickness), on_tip_(shapesOnTip(tool)), tool_(tool), near_(surface, passable) {}
 
-double ToolGuard::keepApart(ToolPoses& poses, ToolMotion& motion, const SurfacePath& path,
-                            const std::vector<int>& held) {
+double ToolGuard::separate(ToolPoses& poses, ToolMotion& motion, const SurfacePath& path,
+                           const std::vector<int>& held) {
   held_ = held;
   double free = freePart(poses, motion, path);
   if (free == 1) return 1;
   const ToolMotion wanted = motion;
-  for (int stop = 1; free < 1 && stop <= kStopAttempts; ++stop) {
-    motion.stop(stop < kStopAttempts ? kTakenShare * free : 0);
+  // A tool that goes less far may meet other triangles, because it turns on its way: it is looked at anew, and in the
+  // end stays where it was. What is not free even then is the wall's own motion.
+  for (int stop = 1; free < 1 && stop <= policy_.guard_attempts; ++stop) {
+    motion.stop(stop < policy_.guard_attempts ? policy_.guard_taken * free : 0);
     free = freePart(poses, motion, path);
   }
+  // Joints are tried against what the wall goes, not against all of its way, which none of them could bear.
   SurfacePath rest = path;
   rest.part *= free;
   moveJoints(poses, wanted, rest, motion);
@@ -52,7 +42,7 @@ bool ToolGuard::stop(ToolPoses& poses, ToolMotion& motion, const SurfacePath& pa
   if (free == 1) return false;
   blocking_vertex_ = worst_;
   const ToolMotion wanted = motion;
-  motion.stop(kTakenShare * free);
+  motion.stop(policy_.guard_taken * free);
   SurfacePath there = path;
   there.part *= free;
   moveJoints(poses, wanted, there, motion);
@@ -73,10 +63,11 @@ const std::vector<int>& ToolGuard::meets(ToolPoses& poses, const ToolMotion& mot
   return met_;
 }
 
+// Each joint in turn goes on where its own motion is free: the tool slides along the wall, or comes off it.
 void ToolGuard::moveJoints(ToolPoses& poses, const ToolMotion& wanted, const SurfacePath& path, ToolMotion& motion) {
   const auto target = wanted.inputs(1);
   for (int j = 0; j < kJointCount; ++j)
-    for (const double part : kJointParts) {
+    for (const double part : {1.0, policy_.guard_joint_part}) {
       const double from = motion.inputs(1)[j], to = from + part * (target[j] - from);
       if (to == from) continue;
       ToolMotion tried = motion;
@@ -90,7 +81,7 @@ void ToolGuard::moveJoints(ToolPoses& poses, const ToolMotion& wanted, const Sur
 void ToolGuard::findPairs(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path) {
   motion.linkPoses(1, poses.end);
   tool_.place(poses.start, poses.end);
-  near_.find(tool_, path, kKeptThickness * *std::max_element(thickness_.begin(), thickness_.end()), pairs_);
+  near_.find(tool_, path, policy_.guard_kept * *std::max_element(thickness_.begin(), thickness_.end()), pairs_);
 }
 
 bool ToolGuard::isFree(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path) {
@@ -110,6 +101,7 @@ double ToolGuard::freePart(ToolPoses& poses, const ToolMotion& motion, const Sur
   return part;
 }
 
+// The helix draws what it holds into the device, so that this is no obstacle for what sits on the tip.
 bool ToolGuard::isDrawnIn(const NearTriangles::Pair& pair) const {
   if (held_.empty() || on_tip_[pair.shape] == 0) return false;
   const std::array<int, 3>& n = near_.triangles()[pair.triangle];
@@ -117,17 +109,20 @@ bool ToolGuard::isDrawnIn(const NearTriangles::Pair& pair) const {
                      [this](int vertex) { return std::find(held_.begin(), held_.end(), vertex) != held_.end(); });
 }
 
+// The part of the step up to which one shape and one triangle keep the floor of the equation in the header.
 double ToolGuard::freePart(const NearTriangles::Pair& pair, const SurfacePath& path) const {
   const std::array<int, 3>& n = near_.triangles()[pair.triangle];
   const double radius = tool_.radius(pair.shape);
   const double thinnest = std::min({thickness_[n[0]], thickness_[n[1]], thickness_[n[2]]});
-  const double highest_floor = radius + kKeptThickness * thinnest;
+  const double highest_floor = radius + policy_.guard_kept * thinnest;
+  // Most pairs never come near the floor, whatever their distance at the start.
   if (staysApart(tool_, pair.shape, path, n, highest_floor, highest_floor)) return 1;
   const TriangleGap gap = tool_.gap(pair.shape, 0, {path.start(n[0]), path.start(n[1]), path.start(n[2])});
   if (gap.distance == 0) return 1;  // they crossed before
-  const double outside = gap.distance - radius, nearer = outside > kLeastThickness * thinnest ? kNearer : kHardlyNearer;
-  const double floor =
-      outside > 0 ? radius + std::min(kKeptThickness * thinnest, nearer * outside) : kNearer * gap.distance;
+  // Inside the radius, which a shape is grown by, the core still counts.
+  const double outside = gap.distance - radius, kept = policy_.guard_kept * thinnest;
+  const double nearer = outside > policy_.guard_least * thinnest ? policy_.guard_nearer : kHardlyNearer;
+  const double floor = outside > 0 ? radius + std::min(kept, nearer * outside) : policy_.guard_nearer * gap.distance;
   return approach(tool_, pair.shape, path, n, floor, gap).fraction;
 }
 

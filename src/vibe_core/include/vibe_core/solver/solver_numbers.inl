@@ -130,14 +130,6 @@ VIBE_REAL(aim_solved, 1.6, "", "the same over how far it came in the first solve
 VIBE_REAL(stopped_part, 0.1, "", "share of its way below which a joint counts as stopped",
           "a joint that makes a tenth of its way pushes on")
 
-VIBE_POLICY_SECTION("The hand")
-VIBE_REAL(hand_slows, 10, "N", "force on the tool at which the hand slows down",
-          "forces in endoscopic suturing reach 8 N (Trejos 2011); a force across the shaft, which the entry bears, reaches "
-          "no joint of the hand")
-VIBE_REAL(hand_stops, 20, "N", "force on the tool at which it stops", "twice that")
-VIBE_COUNT(stall_steps, 6, "steps until a joint that tissue has stopped tries to go on",
-           "the tissue has a few steps to make room for a tool that stands still, and the hand tries often enough")
-
 VIBE_POLICY_SECTION("Rest, loss and recovery")
 VIBE_REAL(rest_speed, 2e-6, "m/s", "speed below which tissue counts as at rest",
           "a micrometre in half a second, far below what a camera or a hand resolves")
