@@ -1,6 +1,7 @@
 # The examples build against the workspace as packages of their own, their tests pass, and CONTRIBUTING.md shows them.
 # kind: computing
 # cost: 300
+# packages: docs examples CONTRIBUTING.md vibe_core vibe_hardware vibe_python vibe_rviz_plugins
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 examples=$root/examples

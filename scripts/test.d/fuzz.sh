@@ -6,6 +6,7 @@
 # units: 4
 # cost: 400
 # timeout: 3600
+# packages: vibe_core vibe_firmware vibe_hardware vibe_sim vibe_vision vibe_web
 #
 # A program consists of its file, the sources of vibe_firmware that need no board, and what the file names itself:
 #   // sources: src/driver/report_reader.cpp ...   relative to its package, patterns allowed

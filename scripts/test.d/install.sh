@@ -1,6 +1,7 @@
 # The workspace works from its install space (catkin_make install), and packages of others build against that alone.
 # kind: computing
 # cost: 250
+# packages: examples vibe_bringup vibe_benchmarks vibe_python vibe_rviz_plugins vibe_testing
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if [ -n "${VIBE_VARIANT:-}" ] || [ ! -d "$root/build/vibe_core" ]; then

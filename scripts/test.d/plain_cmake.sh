@@ -5,6 +5,7 @@
 # kind: computing
 # cost: 300
 # timeout: 3600
+# packages: README.md vibe_core vibe_python
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 catkin_build=$root/build${VIBE_VARIANT:-}

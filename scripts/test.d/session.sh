@@ -1,6 +1,7 @@
 # scripts/run as a user meets it: it ends well, says why when it does not, and leaves nothing behind.
 # kind: computing
 # cost: 100
+# packages: vibe_bringup
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if [ -n "${VIBE_VARIANT:-}" ]; then

@@ -2,6 +2,7 @@
 # sessions, because pictures of the documentation would not notice a change.
 # kind: computing
 # cost: 200
+# packages: vibe_bringup vibe_system_tests
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/vibe_endoscope/endoscope_camera" ]; then
