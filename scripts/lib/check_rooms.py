@@ -17,6 +17,7 @@ import sys
 ROW = re.compile(r'^\| *\d+ *\| *`(\w+)` *\|')
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 SUFFIXES = {'.hpp', '.cpp', '.h', '.inl'}
+looked = []  # files
 
 
 def read_order(table):
@@ -57,33 +58,29 @@ def problems_of_file(core, file, room, public, order):
             yield f'{number}: {wrong}'
 
 
-def files_of(core):
-    """Each file with the folder that has the rooms."""
-    return [(folder, file) for folder in (core / 'include' / 'vibe_core', core / 'src')
-            for file in sorted(folder.rglob('*')) if file.suffix in SUFFIXES]
-
-
-def problems(root, files):
+def problems(root):
     core = root / 'src' / 'vibe_core'
     order = read_order(root / 'docs' / 'architecture.md')
-    for folder, file in files:
-        room = file.relative_to(folder).parts[0]
-        name = file.relative_to(root)
-        if room not in order:
-            yield f'{name}:1: lies in no room of the table of docs/architecture.md'
-            continue
-        for problem in problems_of_file(core, file, room, folder.name == 'vibe_core', order):
-            yield f'{name}:{problem}'
+    for folder in (core / 'include' / 'vibe_core', core / 'src'):
+        for file in sorted(folder.rglob('*')):
+            if file.suffix not in SUFFIXES:
+                continue
+            looked.append(file)
+            room = file.relative_to(folder).parts[0]
+            name = file.relative_to(root)
+            if room not in order:
+                yield f'{name}:1: lies in no room of the table of docs/architecture.md'
+                continue
+            for problem in problems_of_file(core, file, room, folder.name == 'vibe_core', order):
+                yield f'{name}:{problem}'
 
 
 def main():
     if len(sys.argv) != 2 or not (pathlib.Path(sys.argv[1]) / 'src' / 'vibe_core').is_dir():
         print('usage: check_rooms.py ROOT  (the folder that has src/vibe_core and docs)', file=sys.stderr)
         return 2
-    root = pathlib.Path(sys.argv[1])
-    files = files_of(root / 'src' / 'vibe_core')
-    found = list(problems(root, files))
-    print('\n'.join([*found, f'{len(files)} files']))
+    found = list(problems(pathlib.Path(sys.argv[1])))
+    print('\n'.join([*found, f'{len(looked)} files']))
     return 1 if found else 0
 
 
