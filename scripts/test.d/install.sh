@@ -106,6 +106,15 @@ for name in law constraint lab; do
   check "examples/$name builds and passes its tests on the install space alone" build "$name"
 done
 
+# The shipped programs know the law once its library is loaded, and only then.
+programKnowsTheLaw() {
+  local words=(rosrun vibe_core vibe_headless --quiet --duration 0.1 --scene "$scratch/polynomial.yaml")
+  printf 'geometry: {kind: sphere, particles: 200}\ntissue: {law: polynomial}\n' >"$scratch/polynomial.yaml"
+  inSpace env VIBE_PLUGINS="$scratch/law/devel/lib/libvibe_example_law.so" "${words[@]}" || return 1
+  refuses 2 "polynomial.yaml:2: tissue.law: 'polynomial' is not known here" inSpace "${words[@]}"
+}
+check 'vibe_headless runs a scene with the law of the example' programKnowsTheLaw
+
 # Control: what is not installed is not found.
 noticesWhatIsMissing() {
   mv "$space/include/vibe_core/tissue/material_registry.hpp" "$scratch/"
