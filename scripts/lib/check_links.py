@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Checks the links of the Markdown pages: files and folders that do not exist, and headings that a page does not have.
-Addresses of the web are not asked. Prints FILE: PROBLEM, and at the end how many pages there are; exit status: 0 nothing found, 1 something found, 2 wrong call."""
+Addresses of the web are not asked. Prints FILE: PROBLEM, and at the end how many pages there are. Exit status: 0 nothing
+found, 1 something found, 2 wrong call."""
 
 import pathlib
 import re

@@ -3,7 +3,8 @@
 namespace: a name that stands in two of them may be defined twice, and a name that also stands in a header hides that of
 the header in all of them, without a word of the compiler.
 
-Prints FILE:LINE: PROBLEM, and at the end how many files it has looked at. Exit status: 0 nothing found, 1 something found, 2 wrong call.
+Prints FILE:LINE: PROBLEM, and at the end how many files it has looked at. Exit status: 0 nothing found, 1 something found,
+2 wrong call.
 """
 
 import pathlib

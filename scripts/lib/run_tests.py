@@ -93,8 +93,11 @@ class Suite:
         """Prints the summary; returns the exit status."""
         results = {name: self.result_of(name) for name in self.seconds}
         failures = ["{}: {}".format(name, case) for name, result in results.items() for case in result.failures]
-        if not (self.options.filter or self.options.areas) and not any(r.passed for name, r in results.items() if not self.tests[name].is_script):
+        of_packages = [result for name, result in results.items() if not self.tests[name].is_script]
+        if not (self.options.filter or self.options.areas) and not any(result.passed for result in of_packages):
             failures.append("no test of any package ran")
+        if len(results) != len(self.tests):
+            failures.append("only {} of {} tests ran".format(len(results), len(self.tests)))
         if len(self.unstable) > MOST_UNSTABLE:
             failures.append("{} tests are unstable, more than {}: make them independent of the load of the machine".format(
                 len(self.unstable), MOST_UNSTABLE))

@@ -151,11 +151,13 @@ def quoted(value):
 
 
 def write(tests, folder, scratch, environment):
-    """Writes the list of tests that ctest reads in a folder."""
+    """Writes the list of tests that ctest reads in a folder, and an empty log for each."""
     variables = ["{}={}".format(*pair) for pair in environment.items()]
     with open(os.path.join(folder, "CTestTestfile.cmake"), "w", encoding="utf-8") as file:
         for test in tests:
             test.log = os.path.join(folder, test.name.replace("/", "_") + ".log")
+            with open(test.log, "w", encoding="utf-8"):
+                pass
             words = [sys.executable, "-BS", RUNNER, scratch, test.log, test.result_file]
             properties = dict(test.properties, LABELS=test.kind)
             properties["ENVIRONMENT"] = properties.get("ENVIRONMENT", []) + variables
