@@ -50,7 +50,7 @@ build() {
   mkdir -p "$space/src"
   ln -s /usr/share/catkin/cmake/toplevel.cmake "$space/src/CMakeLists.txt"
   ln -s "$examples/$1" "$space/src/$1"
-  cmake -S "$space/src" -B "$space/build" -DCATKIN_DEVEL_PREFIX="$space/devel" -DCMAKE_BUILD_TYPE=Release \
+  cmake -S "$space/src" -B "$space/build" -DCATKIN_DEVEL_PREFIX="$space/devel" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE='-O1 -DNDEBUG' \
     -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 || return 1
   cmake --build "$space/build" -j1 || return 1
   ! grep -q '^tests:' <(cmake --build "$space/build" --target help | sed -E 's/^\.\.\. ([a-z]+).*/\1:/') ||

@@ -97,7 +97,7 @@ build() {
   mkdir -p "$mine/src"
   ln -s /usr/share/catkin/cmake/toplevel.cmake "$mine/src/CMakeLists.txt"
   cp -r "$root/examples/$1" "$mine/src/$1"
-  inSpace cmake -S "$mine/src" -B "$mine/build" -DCATKIN_DEVEL_PREFIX="$mine/devel" -DCMAKE_BUILD_TYPE=Release \
+  inSpace cmake -S "$mine/src" -B "$mine/build" -DCATKIN_DEVEL_PREFIX="$mine/devel" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE='-O1 -DNDEBUG' \
     -DCMAKE_INSTALL_PREFIX="$mine/install" -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 &&
     inSpace cmake --build "$mine/build" -j1 && inSpace cmake --build "$mine/build" -j1 --target tests &&
     inSpace env --chdir="$mine/build" ctest --output-on-failure --no-tests=error --timeout 600
