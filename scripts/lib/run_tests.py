@@ -134,7 +134,8 @@ def run_all(options, scratch):
         tests = test_list.select(tests, options.filter)
     suite = Suite(options, tests)
     fresh_folder(suite.folder)
-    test_list.write(tests, suite.folder, scratch, {"VIBE_VARIANT": options.variant})
+    test_list.write(tests, suite.folder, scratch)
+    os.environ["VIBE_VARIANT"] = options.variant
     say("{} tests on {} cores; the output of each is kept in {}".format(len(tests), options.cores, suite.folder))
     suite.phase("-LE", UNITS_OF_A_CORE * options.cores)
     suite.phase("-L", 1)

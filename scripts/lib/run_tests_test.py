@@ -195,6 +195,11 @@ class RunnerTest(unittest.TestCase):
         self.assertEqual(len(set(self.order())), 2)
         self.assertFalse([folder for folder in self.order() if os.path.exists(folder)])
 
+    def test_environments(self):
+        self.test("one", '[ "$A$B" = "c d" ]', ENVIRONMENT="A=c;B= d")
+        self.script("two", "# kind: waiting\n[ $VIBE_VARIANT = -x ] && echo 'ok two'")
+        self.closes(self.run_it("--variant=-x"), "3 passed, 0 failed")
+
     # --- a second run
 
     def fails_first(self, name):

@@ -150,9 +150,8 @@ def quoted(value):
     return "[===[{}]===]".format(";".join(value) if isinstance(value, list) else value)
 
 
-def write(tests, folder, scratch, environment):
+def write(tests, folder, scratch):
     """Writes the list of tests that ctest reads in a folder, and an empty log for each."""
-    variables = ["{}={}".format(*pair) for pair in environment.items()]
     with open(os.path.join(folder, "CTestTestfile.cmake"), "w", encoding="utf-8") as file:
         for test in tests:
             test.log = os.path.join(folder, test.name.replace("/", "_") + ".log")
@@ -160,7 +159,7 @@ def write(tests, folder, scratch, environment):
                 pass
             words = [sys.executable, "-BS", RUNNER, scratch, test.log, test.result_file]
             properties = dict(test.properties, LABELS=test.kind)
-            properties["ENVIRONMENT"] = properties.get("ENVIRONMENT", []) + variables
-            print("add_test({} {})".format(quoted(test.name), " ".join(map(quoted, words + test.command))), file=file)
+            command = ["env", *properties.pop("ENVIRONMENT", []), *test.command]  # it is not for run_test.py
+            print("add_test({} {})".format(quoted(test.name), " ".join(map(quoted, words + command))), file=file)
             print("set_tests_properties({} PROPERTIES {})".format(quoted(test.name), " ".join(
                 "{} {}".format(key, quoted(value)) for key, value in properties.items())), file=file)
