@@ -1,5 +1,6 @@
 """Tests of run_tests.py with made-up tests; called by scripts/test.d/test_runner.sh."""
 
+import json
 import os
 import re
 import signal
@@ -151,27 +152,26 @@ class RunnerTest(unittest.TestCase):
 
     # --- when tests run
 
+    def test_what_tests_declare_is_what_ctest_knows(self):
+        self.test("_ctest_locked", "true", RESOURCE_LOCK="a;b", COST=7, TIMEOUT=9)
+        self.test("pack_rostest_x", "true")
+        self.script("wide", "# kind: timed\n# units: 4\n# alone-with: a\n# cost: 40\n# timeout: 50\necho 'ok one'\n")
+        self.closes(self.run_it(), "4 passed, 0 failed")
+        listing = subprocess.run(["ctest", "--show-only=json-v1"], cwd=self.path("build", "test_logs"), check=True,
+                                 stdout=subprocess.PIPE).stdout
+        found = {test["name"]: {each["name"]: each["value"] for each in test["properties"]}
+                 for test in json.loads(listing)["tests"]}
+        wanted = {"locked": dict(LABELS=["computing"], PROCESSORS=2, RESOURCE_LOCK=["a", "b"], COST=7, TIMEOUT=9),
+                  "pack_rostest_x": dict(LABELS=["waiting"], TIMEOUT=1200),
+                  "wide": dict(LABELS=["timed"], PROCESSORS=4, RESOURCE_LOCK=["a"], COST=40, TIMEOUT=50)}
+        for name, properties in wanted.items():
+            self.assertEqual({key: found[name].get(key) for key in properties}, properties, name)
+
     def test_computing_tests_take_a_core_each(self):
         for k in range(3):
             self.test("narrow{}".format(k), NARROW)
         self.closes(self.run_it(VIBE_TEST_RETRY="0"), "4 passed, 0 failed")
         self.assertIn("FAILED", self.run_it("--cores", "2", status=1, VIBE_TEST_RETRY="0"))  # control
-
-    def test_waiting_tests_share_a_core(self):
-        meet = "touch {0}; for k in $(seq 100); do [ ! -e {1} ] || exit 0; sleep 0.05; done; exit 1"
-        self.test("romeo", meet.format("romeo", "juliet"), LABELS="waiting")
-        self.test("rostest_juliet", meet.format("juliet", "romeo"))
-        self.closes(self.run_it("--filter", "romeo|juliet", VIBE_TEST_RETRY="0"), "2 passed, 0 failed")
-
-    def test_a_lock_keeps_tests_apart(self):
-        self.test("one", NARROW, LABELS="waiting", RESOURCE_LOCK="other;narrow")
-        head = "# kind: waiting\n# alone-with: narrow\n"
-        self.script("two", head + "cd {}; {} && echo 'ok two'".format(self.folder, NARROW))
-        self.closes(self.run_it(VIBE_TEST_RETRY="0"), "3 passed, 0 failed")
-
-    def test_more_units_than_there_are_take_all(self):
-        self.script("wide", "# kind: computing\n# units: 8\necho 'ok one'\n")
-        self.closes(self.run_it(), "2 passed, 0 failed")
 
     def test_timed_tests_run_alone_at_the_end_after_what_is_repeated(self):
         note = "echo {} >>order; "
@@ -181,12 +181,6 @@ class RunnerTest(unittest.TestCase):
         self.test("bad", note.format("bad") + "exit 1", LABELS="waiting")
         self.run_it("--cores", "4", status=1)
         self.assertEqual(self.order(), ["bad", "slow", "bad", "timed1", "timed2"])
-
-    def test_the_longest_is_first(self):
-        for name, cost in ("brief", 1), ("long", 9), ("middle", 5):
-            self.test(name, "echo {} >>order".format(name), COST=cost)
-        self.run_it("--filter", "brief|long|middle")
-        self.assertEqual(self.order(), ["long", "middle", "brief"])
 
     def test_each_has_folders_of_its_own(self):
         for name in "one", "two":
