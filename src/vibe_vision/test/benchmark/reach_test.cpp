@@ -46,8 +46,8 @@ const Limit kLimits[] = {
     {"scale", "sleeve", 0.015, 0.95, 0.3},
 };
 
-/// All methods look at the same frames of a scene, which cost more than all that they do. Seeds and frames are not those of
-/// the tables in the documentation.
+/// All methods look at the same frames of a scene, which cost more than all that they do. Seeds and frames are not
+/// those of the tables in the documentation.
 const CellResult& measured(const std::string& scene, int frames) {
   static std::map<std::pair<std::string, int>, CellResult> known;
   const auto at = known.find({scene, frames});
