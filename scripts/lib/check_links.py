@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Checks the links of the Markdown pages: files and folders that do not exist, and headings that a page does not have.
-Addresses of the web are not asked. Prints FILE: PROBLEM; exit status: 0 nothing found, 1 something found, 2 wrong call."""
+Addresses of the web are not asked. Prints FILE: PROBLEM, and at the end how many pages there are. Exit status: 0 nothing
+found, 1 something found, 2 wrong call."""
 
 import pathlib
 import re
@@ -30,8 +31,7 @@ def anchors_of(text):
     return anchors
 
 
-def problems(root):
-    pages = sorted({page.resolve() for pattern in PAGES for page in root.glob(pattern)})
+def problems(root, pages):
     texts = {page: page.read_text(encoding="utf-8") for page in pages}
     anchors = {page: anchors_of(text) for page, text in texts.items()}
     for page, text in texts.items():
@@ -52,8 +52,10 @@ def main():
     if len(sys.argv) != 2 or not (pathlib.Path(sys.argv[1]) / "docs").is_dir():
         print("usage: check_links.py ROOT  (the folder that has docs)", file=sys.stderr)
         return 2
-    found = list(problems(pathlib.Path(sys.argv[1]).resolve()))
-    print("\n".join(found), end="\n" if found else "")
+    root = pathlib.Path(sys.argv[1]).resolve()
+    pages = sorted({page.resolve() for pattern in PAGES for page in root.glob(pattern)})
+    found = list(problems(root, pages))
+    print("\n".join([*found, "{} files".format(len(pages))]))
     return 1 if found else 0
 
 

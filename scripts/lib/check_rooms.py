@@ -7,7 +7,7 @@ The order of the rooms is the numbered table in docs/architecture.md, lowest fir
 - include of a header that does not exist in its room,
 - internal header included by its bare name,
 - internal header included by a public one.
-Exit status: 0 nothing found, 1 something found, 2 wrong call.
+The last line says how many files it has looked at. Exit status: 0 nothing found, 1 something found, 2 wrong call.
 """
 
 import pathlib
@@ -17,6 +17,7 @@ import sys
 ROW = re.compile(r'^\| *\d+ *\| *`(\w+)` *\|')
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 SUFFIXES = {'.hpp', '.cpp', '.h', '.inl'}
+looked = []  # files
 
 
 def read_order(table):
@@ -64,6 +65,7 @@ def problems(root):
         for file in sorted(folder.rglob('*')):
             if file.suffix not in SUFFIXES:
                 continue
+            looked.append(file)
             room = file.relative_to(folder).parts[0]
             name = file.relative_to(root)
             if room not in order:
@@ -78,7 +80,7 @@ def main():
         print('usage: check_rooms.py ROOT  (the folder that has src/vibe_core and docs)', file=sys.stderr)
         return 2
     found = list(problems(pathlib.Path(sys.argv[1])))
-    print('\n'.join(found), end='\n' if found else '')
+    print('\n'.join([*found, f'{len(looked)} files']))
     return 1 if found else 0
 
 

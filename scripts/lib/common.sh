@@ -78,3 +78,13 @@ installMissing() {
   missing=$("$vibe_root/scripts/setup" --missing "${flags[@]}") || exit 1
   [ -z "$missing" ] || "$vibe_root/scripts/setup" "${flags[@]}" || exit 1
 }
+
+# changedFiles REV: what the commits since REV and the working tree have changed, as paths below the workspace. Without
+# a REV: since this branch left main.
+changedFiles() {
+  local since=$1
+  [ -n "$since" ] || since=$(git -C "$vibe_root" merge-base main HEAD 2>/dev/null) ||
+    { usageError "--changed: there is no branch 'main' to compare with; name a revision"; }
+  git -C "$vibe_root" rev-parse --quiet --verify "$since^{commit}" >/dev/null || usageError "--changed: there is no revision '$since'"
+  { git -C "$vibe_root" diff --name-only "$since" && git -C "$vibe_root" ls-files --others --exclude-standard; } | sort -u
+}

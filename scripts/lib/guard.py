@@ -64,6 +64,10 @@ class Keeper:
         prctl(PR_SET_CHILD_SUBREAPER, 1)
         for number in FORWARDED + (signal.SIGPIPE,):
             signal.signal(number, signal.SIG_IGN)
+        self.ended, wake = os.pipe()  # one can be read when a child has ended
+        os.set_blocking(wake, False)
+        signal.set_wakeup_fd(wake, warn_on_full_buffer=False)
+        signal.signal(signal.SIGCHLD, lambda number, frame: None)
         self.command = os.fork()
         if self.command == 0:
             self.become(command)
@@ -98,7 +102,7 @@ class Keeper:
         """Until the command has ended; forwards signals; asks it to end when the other process is gone."""
         deadline = None
         while self.status is None:
-            if deadline is None and select.select([self.life], [], [], POLL)[0]:
+            if deadline is None and self.life in select.select([self.life, self.ended], [], [], POLL)[0]:
                 numbers = os.read(self.life, 64)
                 for number in numbers:
                     send(self.command, number)
@@ -138,16 +142,15 @@ def keep(life, answer, command):
     os.write(answer, bytes([255 if keeper.status is None else keeper.status]))
 
 
-def main():
-    if len(sys.argv) < 2:
-        sys.exit("guard: no command given")
+def run(command):
+    """Runs a command and ends what it leaves behind; returns its exit status."""
     life_read, life_write = os.pipe()
     answer_read, answer_write = os.pipe()
     if os.fork() == 0:
         os.close(life_write)
         os.close(answer_read)
         try:
-            keep(life_read, answer_write, sys.argv[1:])
+            keep(life_read, answer_write, command)
         finally:
             os._exit(0)
     os.close(life_read)
@@ -155,7 +158,13 @@ def main():
     for number in FORWARDED:
         signal.signal(number, lambda received, frame: os.write(life_write, bytes([received])))
     answer = os.read(answer_read, 1)
-    sys.exit(answer[0] if answer else 1)
+    return answer[0] if answer else 1
+
+
+def main():
+    if len(sys.argv) < 2:
+        sys.exit("guard: no command given")
+    sys.exit(run(sys.argv[1:]))
 
 
 if __name__ == "__main__":

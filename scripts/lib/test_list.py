@@ -1,7 +1,9 @@
-"""The tests of a workspace: those that ctest knows in a build folder, and the scripts of a folder like scripts/test.d.
+"""The tests of a workspace: those that ctest knows in a build folder, and the scripts of a folder like scripts/test.d; and
+a folder in which ctest runs all of them.
 
 A test of a package says what it is by properties of ctest: LABELS (its kind), COST, RESOURCE_LOCK, TIMEOUT. A script
-says it in its first lines: `# kind: computing`, `# cost: 40`, `# units: 4`, `# alone-with: NAME`, `# timeout: 3600`.
+says it in its first lines: `# kind: computing`, `# cost: 40`, `# units: 4`, `# alone-with: NAME`, `# timeout: 3600`,
+`# packages: NAME...` (packages, or other folders and files of the workspace, whose changes it notices; none: of any).
 """
 
 import concurrent.futures
@@ -9,6 +11,7 @@ import json
 import os
 import re
 import subprocess
+import sys
 
 KINDS = ("computing", "waiting", "timed")
 UNITS = {"computing": 2, "waiting": 1, "timed": 2}  # of the two that each core has
@@ -16,7 +19,9 @@ TIMEOUT = 1200.0  # of a test that names none [s]
 LISTING_TIMEOUT = 60.0  # for a program to list its cases [s]
 HEADER_LINES = 15
 OUTPUT_OPTION = "--gtest_output=xml:"
-HEADER = re.compile(r"# (kind|cost|units|alone-with|timeout): *(.+)")
+HEADER = re.compile(r"# (kind|cost|units|alone-with|timeout|packages): *(.+)")
+NOT_BUILT = ["sh", "-c", "echo 'The program of this test is not built; run scripts/build --tests.'; exit 127"]
+RUNNER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "run_test.py")
 
 
 class DeclarationError(Exception):
@@ -26,57 +31,29 @@ class DeclarationError(Exception):
 class Test:
     """What is run, and what it needs."""
 
-    def __init__(self, name, command, group, **given):
-        self.name, self.command, self.group = name, command, group
-        self.folder = given.get("folder")
-        self.kind = given.get("kind", "computing")
-        self.timeout = float(given.get("timeout", TIMEOUT))
-        self.cost = float(given.get("cost", 0))
-        self.units = int(given.get("units", UNITS[self.kind]))
-        self.locks = frozenset(given.get("locks", ()))
-        self.environment = given.get("environment", {})
-        self.result_file = given.get("result_file")
-        self.is_script = given.get("is_script", False)
+    def __init__(self, name, command, kind, properties, packages, is_script=False):
+        self.name, self.command, self.kind, self.packages, self.is_script = name, command, kind, packages, is_script
+        self.properties = dict({"TIMEOUT": TIMEOUT, "PROCESSORS": UNITS[kind]}, **properties)
+        self.timeout = float(self.properties["TIMEOUT"])
+        self.result_file = "lines" if is_script else next((path for path in map(path_in, command) if path), "")
+        self.log = None
 
-    def is_gtest(self):
-        return any(OUTPUT_OPTION in word for word in self.command)
-
-    def with_option(self, option):
-        """The command with one more option of its gtest program, which catkin's wrapper takes as one shell line."""
-        words = []
-        for word in self.command:
-            if word.startswith(OUTPUT_OPTION):
-                words += [option, word]
-            else:
-                words.append(word.replace(OUTPUT_OPTION, "'{}' {}".format(option, OUTPUT_OPTION), 1))
-        return words
+    def concerns(self, areas):
+        """Whether the test is one of these packages or, a script, names one of these areas or is one."""
+        own = {self.name, "scripts"} if self.is_script else set()
+        return not areas or bool((self.packages | own) & set(areas))
 
 
-def result_file(command):
-    """The file into which a command writes its cases; None if it writes none."""
-    for word in command:
-        path = word[len(OUTPUT_OPTION) :] if word.startswith(OUTPUT_OPTION) else word
-        if path.endswith(".xml") and (path is not word or "/test_results/" in path) and " " not in path:
-            return path
-    return None
+def path_in(word):
+    """The file into which a command with this word writes its cases: gtest's, or that of catkin's rostest."""
+    if word.startswith(OUTPUT_OPTION):
+        return word[len(OUTPUT_OPTION) :]
+    return word if "/test_results/" in word and word.endswith(".xml") and " " not in word else None
 
 
-def kind_of(name, command, labels):
+def kind_of(name, labels):
     """A rostest starts nodes and waits for them; other tests compute, unless a label says what they do."""
-    for kind in KINDS:
-        if kind in labels:
-            return kind
-    return "waiting" if any("rostest" in word for word in [name] + command) else "computing"
-
-
-def package_of(test, graph, build):
-    """The folder of the CMakeLists.txt in which the test is declared, however deep the call of add_test() is."""
-    node = test.get("backtrace")
-    while node is not None and "parent" in graph["nodes"][node]:
-        node = graph["nodes"][node]["parent"]
-    file = build if node is None else graph["files"][graph["nodes"][node]["file"]]
-    inside = re.search(r"/src/([^/]+)/", file)
-    return inside.group(1) if inside else os.path.basename(os.path.dirname(file)) or "packages"
+    return next((kind for kind in KINDS if kind in labels), "waiting" if "rostest" in name else "computing")
 
 
 def package_tests(build):
@@ -84,19 +61,14 @@ def package_tests(build):
     if not os.path.isdir(build):
         raise DeclarationError("there is no build folder {}; run scripts/build --tests".format(build))
     said = subprocess.run(["ctest", "--show-only=json-v1"], cwd=build, check=True, stdout=subprocess.PIPE).stdout
-    listing = json.loads(said)
-    tests = []
-    for test in listing["tests"]:
+    for test in json.loads(said)["tests"]:
+        name = re.sub("^_ctest_", "", test["name"])
         properties = {item["name"]: item["value"] for item in test.get("properties", [])}
-        command = test.get("command", [])  # ctest names none for a program that is not built
-        tests.append(Test(
-            re.sub("^_ctest_", "", test["name"]), command, package_of(test, listing["backtraceGraph"], build),
-            folder=properties.get("WORKING_DIRECTORY", build),
-            kind=kind_of(test["name"], command, properties.get("LABELS", [])),
-            timeout=properties.get("TIMEOUT") or TIMEOUT, cost=properties.get("COST", 0),
-            locks=properties.get("RESOURCE_LOCK", []), result_file=result_file(command),
-            environment=dict(item.split("=", 1) for item in properties.get("ENVIRONMENT", []))))
-    return tests
+        labels = properties.pop("LABELS", [])
+        kept = {key: value for key, value in properties.items()
+                if key in ("COST", "ENVIRONMENT", "RESOURCE_LOCK", "TIMEOUT", "WORKING_DIRECTORY")}
+        package = re.split("/|_rostest_", name)[0]
+        yield Test(name, test.get("command", NOT_BUILT), kind_of(name, labels), kept, {package})
 
 
 def check_declaration(path, single):
@@ -111,38 +83,47 @@ def check_declaration(path, single):
                 path, key, single[key]))
 
 
-def script_test(path, environment):
+def script_test(path):
     """The test of one script, as its first lines declare it."""
     with open(path, encoding="utf-8") as lines:
         head = [line.rstrip("\n") for _, line in zip(range(HEADER_LINES), lines)]
-    said = [found.groups() for found in map(HEADER.fullmatch, head) if found]
-    single = dict(said)
-    check_declaration(path, single)
-    numbers = {key: single[key] for key in ("cost", "units", "timeout") if key in single}
-    return Test(os.path.basename(path)[: -len(".sh")], ["bash", path], "scripts", kind=single["kind"], is_script=True,
-                locks=[value for key, value in said if key == "alone-with"], environment=environment, **numbers)
+    said = dict(found.groups() for found in map(HEADER.fullmatch, head) if found)
+    check_declaration(path, said)
+    words = {"cost": "COST", "units": "PROCESSORS", "alone-with": "RESOURCE_LOCK", "timeout": "TIMEOUT"}
+    properties = {word: said[key] for key, word in words.items() if key in said}
+    name = os.path.basename(path)[: -len(".sh")]
+    return Test(name, ["bash", path], said["kind"], properties, set(said.get("packages", "any").split()), is_script=True)
 
 
-def script_tests(folder, environment):
-    """Every script of a folder."""
-    names = sorted(name for name in os.listdir(folder) if name.endswith(".sh"))
-    return [script_test(os.path.join(folder, name), environment) for name in names]
-
-
-def all_tests(build, scripts, environment):
+def all_tests(build, scripts, areas):
     """Tests of packages and scripts. Their names are those of their logs, too, so no two may be the same."""
-    tests = package_tests(build) + script_tests(scripts, environment)
-    names = [test.name for test in tests]
-    for name in names:
-        if names.count(name) > 1:
-            raise DeclarationError("two tests are called {}; rename one of them".format(name))
-    return tests
+    names = sorted(name for name in os.listdir(scripts) if name.endswith(".sh"))
+    tests = [*package_tests(build), *(script_test(os.path.join(scripts, name)) for name in names)]
+    seen = set()
+    for test in tests:
+        if test.name in seen:
+            raise DeclarationError("two tests are called {}; rename one of them".format(test.name))
+        seen.add(test.name)
+    return [test for test in tests if test.concerns(areas)]
 
 
-def listed_cases(text):
-    """The names Suite.Case in what a program says to --gtest_list_tests."""
+def with_option(command, option):
+    """The command with one more option of its gtest program."""
+    return [word for known in command for word in ([option, known] if known.startswith(OUTPUT_OPTION) else [known])]
+
+
+def cases_of(test):
+    """The names Suite.Case of a gtest program; none if it cannot be asked."""
+    command = with_option(test.command, "--gtest_list_tests")
+    if len(command) == len(test.command):
+        return []
+    try:
+        said = subprocess.run(command, cwd=test.properties.get("WORKING_DIRECTORY"), stdin=subprocess.DEVNULL, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=LISTING_TIMEOUT).stdout
+    except (OSError, subprocess.TimeoutExpired):
+        return []
     suite, cases = "", []
-    for line in text.splitlines():
+    for line in said.splitlines():
         name = line.split("#")[0].rstrip()
         if not line.startswith("  "):
             suite = name if re.fullmatch(r"\S+\.", name) else ""
@@ -151,31 +132,34 @@ def listed_cases(text):
     return cases
 
 
-def cases_of(test):
-    """The cases of a gtest program; none if it cannot be asked."""
-    try:
-        listing = subprocess.run(
-            test.with_option("--gtest_list_tests"), cwd=test.folder, env=dict(os.environ, **test.environment),
-            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=LISTING_TIMEOUT)
-    except (OSError, subprocess.TimeoutExpired):
-        return []
-    return listed_cases(listing.stdout.decode(errors="replace"))
-
-
-def select_cases(tests, pattern):
-    """The gtest programs that have cases which match, each with these cases alone."""
-    programs = [test for test in tests if test.is_gtest()]
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as threads:
-        found = list(threads.map(cases_of, programs))
-    selected = []
-    for test, cases in zip(programs, found):
-        matching = [case for case in cases if re.search(pattern, case)]
-        if matching:
-            test.command = test.with_option("--gtest_filter=" + ":".join(matching))
-            selected.append(test)
+def select(tests, pattern):
+    """The tests whose name matches or, if there is none, the gtest programs with those cases that match."""
+    selected = [test for test in tests if re.search(pattern, test.name)]
+    if not selected:
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as threads:
+            for test, cases in zip(tests, threads.map(cases_of, tests)):
+                matching = [case for case in cases if re.search(pattern, case)]
+                if matching:
+                    test.command = with_option(test.command, "--gtest_filter=" + ":".join(matching))
+                    selected.append(test)
     return selected
 
 
-def select(tests, pattern):
-    """The tests whose name matches or, if there is none, the cases whose name does."""
-    return [test for test in tests if re.search(pattern, test.name)] or select_cases(tests, pattern)
+def quoted(value):
+    """A value for CMake, whatever it contains; a list has its parts joined by semicolons."""
+    return "[===[{}]===]".format(";".join(value) if isinstance(value, list) else value)
+
+
+def write(tests, folder, scratch):
+    """Writes the list of tests that ctest reads in a folder, and an empty log for each."""
+    with open(os.path.join(folder, "CTestTestfile.cmake"), "w", encoding="utf-8") as file:
+        for test in tests:
+            test.log = os.path.join(folder, test.name.replace("/", "_") + ".log")
+            with open(test.log, "w", encoding="utf-8"):
+                pass
+            words = [sys.executable, "-BS", RUNNER, scratch, test.log, test.result_file]
+            properties = dict(test.properties, LABELS=test.kind)
+            command = ["env", *properties.pop("ENVIRONMENT", []), *test.command]  # it is not for run_test.py
+            print("add_test({} {})".format(quoted(test.name), " ".join(map(quoted, words + command))), file=file)
+            print("set_tests_properties({} PROPERTIES {})".format(quoted(test.name), " ".join(
+                "{} {}".format(key, quoted(value)) for key, value in properties.items())), file=file)

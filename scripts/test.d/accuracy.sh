@@ -1,6 +1,7 @@
 # The tables of docs/accuracy.md and README: each is what docs/measured holds, and the quick results repeat.
 # kind: computing
 # cost: 20
+# packages: docs vibe_benchmarks vibe_sessions
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 devel=$root/devel${VIBE_VARIANT:-}

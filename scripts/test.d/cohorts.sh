@@ -1,6 +1,7 @@
 # scripts/cohort with the real simulator and a protocol of a tenth of a second: locally, through Dask, with a bad scene.
 # kind: computing
 # cost: 60
+# packages: vibe_sessions
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 devel=$root/devel${VIBE_VARIANT:-}

@@ -2,6 +2,7 @@
 # src/vibe_endoscope/test/dataset, with a recording of which everything is known.
 # kind: computing
 # cost: 60
+# packages: vibe_bringup vibe_system_tests
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/vibe_endoscope/vibe_dataset" ]; then

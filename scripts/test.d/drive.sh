@@ -2,6 +2,7 @@
 # kind: computing
 # cost: 120
 # alone-with: fake-camera
+# packages: vibe_bringup vibe_system_tests
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 unset DISPLAY

@@ -3,6 +3,7 @@
 # cost: 200
 # timeout: 2400
 # alone-with: fake-camera
+# packages: vibe_system_tests
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 for program in vibe_sim/sim_node vibe_hardware/hardware_node vibe_vision/vision_node; do

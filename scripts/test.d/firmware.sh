@@ -3,6 +3,7 @@
 # kind: computing
 # cost: 120
 # alone-with: build-firmware
+# packages: docs vibe_firmware
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 for tool in arm-none-eabi-g++ qemu-system-arm; do

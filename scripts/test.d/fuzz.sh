@@ -1,11 +1,12 @@
 # Fuzzes what reads bytes from outside: every src/PACKAGE/fuzz/NAME_fuzz.cpp becomes a libFuzzer program with the address
-# and undefined-behaviour sanitizers and runs for VIBE_FUZZ_SECONDS, two at once: 15 s by default, 60 s with
+# and undefined-behaviour sanitizers and runs for VIBE_FUZZ_SECONDS, two at once: 10 s by default, 60 s with
 # VIBE_SLOW_TESTS. It starts from the files in src/PACKAGE/fuzz/corpus/NAME/, if there are any: examples, and what it
 # once found.
 # kind: computing
 # units: 4
-# cost: 400
+# cost: 300
 # timeout: 3600
+# packages: vibe_core vibe_firmware vibe_hardware vibe_sim vibe_vision vibe_web
 #
 # A program consists of its file, the sources of vibe_firmware that need no board, and what the file names itself:
 #   // sources: src/driver/report_reader.cpp ...   relative to its package, patterns allowed
@@ -13,7 +14,7 @@
 #   // packages: yaml-cpp ...                      of pkg-config
 #   // units: 100                                  that it must execute at least, if not 1000
 # Every file may include public headers of all packages, and those of the src, node and fuzz folders of its own. A source that
-# several programs name is compiled once.
+# several programs name is compiled once, and with those of its folder that the same programs name.
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if [ -n "${VIBE_VARIANT:-}" ]; then
@@ -27,7 +28,7 @@ if ! clang++ -fsanitize=fuzzer,address,undefined "$scratch/empty.cpp" -o "$scrat
   exit 0
 fi
 
-seconds=${VIBE_FUZZ_SECONDS:-$([ -n "${VIBE_SLOW_TESTS:-}" ] && echo 60 || echo 15)}
+seconds=${VIBE_FUZZ_SECONDS:-$([ -n "${VIBE_SLOW_TESTS:-}" ] && echo 60 || echo 10)}
 flags=(-std=c++17 -gline-tables-only -O1 -fno-sanitize-recover=all
   -fsanitize=fuzzer,address,undefined,float-cast-overflow)
 fuzz_files=("$root"/src/*/fuzz/*_fuzz.cpp)
@@ -44,34 +45,43 @@ twoAtOnce() {
 # sourcesOf FILE: the files that its program consists of
 sourcesOf() {
   local package=${1%/fuzz/*} pattern
-  realpath -- "$1" "$root"/src/vibe_firmware/src/{core,protocol}/*.cpp
+  realpath -e -- "$1" "$root"/src/vibe_firmware/src/{core,protocol}/*.cpp
   # shellcheck disable=SC2046,SC2086
-  for pattern in $(named "$1" sources); do realpath -- $package/$pattern; done
+  for pattern in $(named "$1" sources); do realpath -e -- $package/$pattern; done
 }
 
-# objectOf FILE
-objectOf() {
-  local name=${1#"$root/src/"}
-  echo "$scratch/${name//\//.}.o"
+# unit_of[SOURCE]: the file that includes it with the sources of its folder that belong to the same programs
+declare -A programs_of=() unit_of=() unit_named=()
+makeUnits() {
+  local file source key
+  for file in "${fuzz_files[@]}"; do
+    for source in $(sourcesOf "$file"); do programs_of[$source]+=" $file"; done
+  done
+  for source in "${!programs_of[@]}"; do
+    key="${source%/*}${programs_of[$source]}"
+    [ -n "${unit_named[$key]:-}" ] || unit_named[$key]=$scratch/unit${#unit_named[@]}.cpp
+    unit_of[$source]=${unit_named[$key]}
+    printf '#include "%s"\n' "$source" >>"${unit_named[$key]}"
+  done
 }
 
-# compiles FILE: its object, or what the compiler says beside it
+# compiles UNIT: its object, or what the compiler says beside it
 compiles() {
-  local folder own includes=() object
-  own=$(sed -E "s|^($root/src/[^/]+)/.*|\1|" <<<"$1")
+  local folder first own includes=()
+  first=$(sed -nE '1s|^#include "(.*)"$|\1|p' "$1")
+  own=$(sed -E "s|^($root/src/[^/]+)/.*|\1|" <<<"$first")
   for folder in "$root"/src/*/include "$root/src/vibe_firmware/src" "$own/src" "$own/node" "$own/fuzz"; do includes+=("-I$folder"); done
-  for folder in $(named "$1" includes); do includes+=("-I$own/$folder"); done
-  object=$(objectOf "$1")
+  for folder in $(named "$first" includes); do includes+=("-I$own/$folder"); done
   # shellcheck disable=SC2086
-  clang++ "${flags[@]}" "${includes[@]}" $package_flags -c "$1" -o "$object" >"$object.log" 2>&1
+  clang++ "${flags[@]}" "${includes[@]}" $package_flags -c "$1" -o "$1.o" >"$1.log" 2>&1
 }
 
 # links FILE PROGRAM
 links() {
-  local source objects=() modules
-  for source in $(sourcesOf "$1"); do
-    cat "$(objectOf "$source").log"
-    objects+=("$(objectOf "$source")")
+  local unit objects=() modules
+  for unit in $(for source in $(sourcesOf "$1"); do echo "${unit_of[$source]}"; done | sort -u); do
+    cat "$unit.log"
+    objects+=("$unit.o")
   done
   modules=$(named "$1" packages)
   # shellcheck disable=SC2046,SC2086
@@ -99,7 +109,8 @@ foundNothing() {
 
 # shellcheck disable=SC2046
 package_flags=$(pkg-config --cflags eigen3 $(for file in "${fuzz_files[@]}"; do named "$file" packages; done | sort -u))
-for source in $(for file in "${fuzz_files[@]}"; do sourcesOf "$file"; done | sort -u); do twoAtOnce compiles "$source"; done
+makeUnits
+for unit in "${unit_named[@]}"; do twoAtOnce compiles "$unit"; done
 wait
 for file in "${fuzz_files[@]}"; do
   name=$(basename "$file" .cpp)

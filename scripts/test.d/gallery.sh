@@ -2,6 +2,7 @@
 # kind: computing
 # cost: 90
 # timeout: 600
+# packages: docs README.md vibe_bringup vibe_python
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 gallery=$root/docs/gallery

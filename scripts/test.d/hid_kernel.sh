@@ -3,6 +3,7 @@
 # units: 4
 # cost: 120
 # alone-with: build-firmware
+# packages: vibe_system_tests
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 check 'hid_kernel refuses a timeout in words' refuses 2 "not 'soon'" "$root/scripts/hid_kernel" --timeout soon

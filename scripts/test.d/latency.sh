@@ -2,6 +2,7 @@
 # kind: timed
 # cost: 120
 # alone-with: fake-camera
+# packages: vibe_bringup vibe_latency
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin # python3 of Debian, which has numpy
 

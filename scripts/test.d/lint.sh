@@ -110,3 +110,51 @@ findsLink() {
 }
 check 'lint sees a link to a file that is not there' findsLink '[x](c.md)' "'c.md' is not there"
 check 'lint sees a link to a heading that is not there' findsLink '[x](a.md#a-name)' "'a.md#a-name': that page has no such heading"
+
+seesAProgramThatDoesNotParse() {
+  local tree
+  tree=$(copyOfTree)
+  printf '#!/usr/bin/env %s\n%s\n' "$1" "$2" >"$tree/src/vibe_sim/program"
+  "$tree/scripts/lint" --only "${1%3}" && { echo 'sees nothing'; return 1; }
+  sed -i 2d "$tree/src/vibe_sim/program"
+  "$tree/scripts/lint" --only "${1%3}"
+}
+check 'lint sees a program in Python that does not parse' seesAProgramThatDoesNotParse python3 'if:'
+check 'lint sees a program in bash that does not parse' seesAProgramThatDoesNotParse bash 'if then'
+
+seesThatThereIsNothing() {
+  local tree
+  tree=$(copyOfTree)
+  rm -r "$tree/src"
+  mkdir "$tree/src"
+  "$tree/scripts/lint" --only format && return 1
+  "$tree/scripts/lint" --only format | grep -x 'format: FAILED, there is no file to look at'
+}
+check 'lint fails where there is no file to look at' seesThatThereIsNothing
+
+# tidies LINE: clang-tidy on a source with this line, for which CMake has a command
+tidies() {
+  local tree source
+  tree=$(copyOfTree)
+  cp "$root/.clang-tidy" "$tree/"
+  printf '#!/bin/sh\n' >"$tree/scripts/build"
+  source=$(readlink -f "$tree")/src/vibe_core/src/state/a.cpp
+  mkdir -p "$tree/build-separate" "${source%/*}"
+  rm "$tree"/src/vibe_core/src/solver/stepper.cpp
+  printf '%s\n' "$1" >"$source"
+  printf '[\n{\n  "directory": "%s",\n  "command": "c++ -c %s",\n  "file": "%s"\n}\n]\n' / "'$source'" "$source" \
+    >"$tree/build-separate/compile_commands.json"
+  [ -z "${2:-}" ] || cp "$source" "${source%/*}/$2"
+  "$tree/scripts/lint" --only tidy
+}
+tidyFinds() {
+  tidies 'int* f() { return nullptr; }' | grep -x 'tidy: ok, 1 files' && ! tidies 'int* f() { return 0; }'
+}
+seesASourceWithoutCommand() {
+  local said
+  said=$(tidies 'int* f() { return nullptr; }' b.cpp) && return 1
+  printf '%s\n' "$said"
+  grep -q '^clang-tidy cannot check these' <<<"$said" && grep -q '/b.cpp$' <<<"$said"
+}
+check 'lint makes clang-tidy look at a source' tidyFinds
+check 'lint sees a source that CMake does not compile' seesASourceWithoutCommand

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # kind: computing
 # cost: 10
+# packages: vibe_core vibe_hardware vibe_benchmarks
 # Every program that takes a scene either works with one that has no tool, or ends with one sentence that says what is
 # missing.
 source "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/../lib/check.sh"

@@ -2,6 +2,7 @@
 # needs. That they build and run is tried by scripts/platform before a release (docs/install.md).
 # kind: computing
 # cost: 10
+# packages: packaging vibe_bringup vibe_python vibe_web
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if ! command -v dh_listpackages >/dev/null; then

@@ -1,6 +1,7 @@
 # What rviz shows in five states of the procedure, against the pictures of the documentation; no display has an error.
 # kind: computing
 # cost: 90
+# packages: docs vibe_bringup vibe_system_tests
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 references=$root/docs/pictures

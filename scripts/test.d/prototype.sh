@@ -2,6 +2,7 @@
 # has, and the same bits as those of the same scene without that way as long as the way is not used.
 # kind: computing
 # cost: 5
+# packages: vibe_prototype
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 devel=$root/devel${VIBE_VARIANT:-}

@@ -1,6 +1,7 @@
 # Random actions in all environments and rough use of their simulations: 20 minutes, 5 under sanitizers.
 # kind: computing
 # timeout: 3600
+# packages: vibe_python
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 variant=${VIBE_VARIANT:-}

@@ -1,5 +1,6 @@
 # scripts/record and scripts/replay refuse what they cannot do.
 # kind: computing
+# packages: vibe_bringup
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 export ROS_MASTER_URI=http://localhost:1

@@ -1,5 +1,6 @@
 # scripts/report refuses what it cannot do; the rest is tested in src/vibe_sessions/test.
 # kind: computing
+# packages: vibe_bringup vibe_sessions
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 check 'report asks for a recording' refuses 2 'which recording' "$root/scripts/report"

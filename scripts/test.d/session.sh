@@ -1,6 +1,7 @@
 # scripts/run as a user meets it: it ends well, says why when it does not, and leaves nothing behind.
 # kind: computing
 # cost: 100
+# packages: vibe_bringup
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if [ -n "${VIBE_VARIANT:-}" ]; then
@@ -124,16 +125,6 @@ os.execv(sys.argv[1], sys.argv[1:])' "$run" --headless --duration 3600 --output 
   done
 }
 
-survivesInterrupt() {
-  local mark=interrupted-$$ status=0
-  startSession "$mark" || return 1
-  kill -INT "$session_pid"
-  wait "$session_pid" || status=$?
-  cat "$scratch/$mark.txt"
-  [ "$status" -eq 0 ] && grep -q '^state hash: ' "$scratch/$mark.txt" && isRecorded "$scratch/$mark" && nobodyLeft "$mark" 0
-}
-check 'an interrupted session is summed up and leaves nothing' survivesInterrupt
-
 # listensOnlyTo MARK ADDRESS: every TCP port that the programs of a session listen on is on this address. Addresses are
 # those of /proc/net/tcp: 0100007F is 127.0.0.1.
 listensOnlyTo() {
@@ -150,17 +141,18 @@ listensOnlyTo() {
   [ "$count" -ge 6 ]
 }
 
-isClosedToTheNetwork() {
-  local mark=closed-$$ status=0
+# One session for both: control of the address, that another one is told apart.
+isClosedAndSurvivesInterrupt() {
+  local mark=interrupted-$$ status=0
   startSession "$mark" || return 1
-  listensOnlyTo "$mark" 0100007F || status=1
-  # control: another address is told apart
-  ! listensOnlyTo "$mark" 00000000 >/dev/null || status=1
+  listensOnlyTo "$mark" 0100007F || { echo 'listens to the network'; return 1; }
+  ! listensOnlyTo "$mark" 00000000 >/dev/null || { echo 'tells no address apart'; return 1; }
   kill -INT "$session_pid"
-  wait "$session_pid" || status=1
-  return "$status"
+  wait "$session_pid" || status=$?
+  cat "$scratch/$mark.txt"
+  [ "$status" -eq 0 ] && grep -q '^state hash: ' "$scratch/$mark.txt" && isRecorded "$scratch/$mark" && nobodyLeft "$mark" 0
 }
-check 'a session listens on the loopback interface only' isClosedToTheNetwork
+check 'a session listens on the loopback interface only; interrupted, it is summed up and leaves nothing' isClosedAndSurvivesInterrupt
 
 # signalProgram MARK SIGNAL PATTERN: sends the signal to the program of a session whose command line matches.
 signalProgram() {

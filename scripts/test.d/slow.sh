@@ -1,6 +1,7 @@
 # The main job whole and twice, without ROS, and from its recording: one hash. Minutes long.
 # kind: computing
 # timeout: 3600
+# packages: vibe_bringup
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ]; then

@@ -1,6 +1,7 @@
 # Half an hour of a session, played through rviz: its memory does not grow. Minutes long: it is played ten times as fast.
 # kind: computing
 # timeout: 3600
+# packages: vibe_bringup vibe_system_tests
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 program=$root/devel/lib/vibe_rviz_plugins/rviz_report

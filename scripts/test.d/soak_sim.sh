@@ -1,6 +1,7 @@
 # Two hours of simulated time: the memory of the simulator does not grow.
 # kind: computing
 # timeout: 10800
+# packages: vibe_system_tests
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ]; then

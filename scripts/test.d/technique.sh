@@ -1,5 +1,6 @@
 # vibe_technique as a lab meets it: names sets, refuses bad files in one sentence, prints the tables of the docs.
 # kind: computing
+# packages: docs vibe_core
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 program=$root/devel${VIBE_VARIANT:-}/lib/vibe_core/vibe_technique

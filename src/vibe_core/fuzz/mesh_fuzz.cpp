@@ -1,7 +1,7 @@
 // sources: src/geometry/*_reader.cpp src/geometry/polygon.cpp src/geometry/text_lines.cpp
-// sources: src/geometry/gltf_values.cpp src/common/number_text.cpp
+// sources: src/geometry/gltf_values.cpp src/files/number_text.cpp
 // sources: src/geometry/surface_check.cpp src/geometry/triangle_tree.cpp src/geometry/surface_mesh.cpp
-// sources: src/common/foreign_content.cpp src/common/elementary_*.cpp
+// sources: src/files/foreign_content.cpp src/arithmetic/elementary_*.cpp
 // includes: ../vibe_firmware/fuzz
 #include <string>
 

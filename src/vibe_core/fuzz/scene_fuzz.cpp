@@ -1,6 +1,6 @@
-// sources: src/scene/[!m]*.cpp src/common/files.cpp src/geometry/stomach_knots.cpp src/common/plugins.cpp
-// sources: src/geometry/surface_mesh.cpp src/common/foreign_content.cpp src/common/elementary_*.cpp
-// sources: src/common/number_text.cpp
+// sources: src/scene/[!m]*.cpp src/files/files.cpp src/geometry/stomach_knots.cpp src/program/plugins.cpp
+// sources: src/geometry/surface_mesh.cpp src/files/foreign_content.cpp src/arithmetic/elementary_*.cpp
+// sources: src/files/number_text.cpp
 // packages: yaml-cpp
 #include <cstdlib>
 #include <string>

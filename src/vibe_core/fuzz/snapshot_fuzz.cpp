@@ -1,4 +1,4 @@
-// sources: src/simulation/snapshot.cpp src/simulation/state_check.cpp src/common/files.cpp
+// sources: src/simulation/snapshot.cpp src/simulation/state_check.cpp src/files/files.cpp
 // includes: ../vibe_firmware/fuzz
 #include <sys/mman.h>
 #include <unistd.h>

@@ -1,10 +1,10 @@
 // sources: src/geometry/mesh_file.cpp src/geometry/*_reader.cpp src/geometry/polygon.cpp src/geometry/text_lines.cpp
-// sources: src/geometry/gltf_values.cpp src/common/number_text.cpp
-// sources: src/common/files.cpp src/common/foreign_content.cpp
+// sources: src/geometry/gltf_values.cpp src/files/number_text.cpp
+// sources: src/files/files.cpp src/files/foreign_content.cpp
 // sources: src/geometry/surface_check.cpp src/geometry/triangle_tree.cpp src/geometry/surface_mesh.cpp
 // sources: src/geometry/remesh.cpp src/geometry/editable_mesh.cpp src/geometry/surface_operators.cpp
 // sources: src/geometry/regions.cpp src/geometry/stomach_axis.cpp src/geometry/landmark_estimate.cpp
-// sources: src/common/elementary_*.cpp
+// sources: src/arithmetic/elementary_*.cpp
 // includes: ../vibe_firmware/fuzz
 // units: 100
 #include <cmath>

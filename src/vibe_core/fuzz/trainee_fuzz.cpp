@@ -2,8 +2,8 @@
 // sources: src/trainee/protocol_reader.cpp src/trainee/suture_pattern.cpp src/input/step_input.cpp
 // sources: src/geometry/organ.cpp src/suture/technique.cpp src/suture/technique_patterns.cpp
 // sources: src/suture/technique_templates.cpp src/scene/yaml_source.cpp src/scene/yaml_guard.cpp src/scene/unit.cpp
-// sources: src/scene/words.cpp src/scene/odd_characters.cpp src/common/foreign_content.cpp
-// sources: src/common/elementary_*.cpp src/common/number_text.cpp src/common/symmetric_eigen.cpp
+// sources: src/scene/words.cpp src/scene/odd_characters.cpp src/files/foreign_content.cpp
+// sources: src/arithmetic/elementary_*.cpp src/files/number_text.cpp src/arithmetic/symmetric_eigen.cpp
 // packages: yaml-cpp bullet
 #include <cmath>
 #include <cstdlib>

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 
 #include "bench_cell.hpp"
 
@@ -44,22 +46,31 @@ const Limit kLimits[] = {
     {"scale", "sleeve", 0.015, 0.95, 0.3},
 };
 
-/// Seeds and frames are not those of the tables in the documentation.
-Score measure(const std::string& scene, const std::string& method, int frames) {
+/// All methods look at the same frames of a scene, which cost more than all that they do. Seeds and frames are not
+/// those of the tables in the documentation.
+const CellResult& measured(const std::string& scene, int frames) {
+  static std::map<std::pair<std::string, int>, CellResult> known;
+  const auto at = known.find({scene, frames});
+  if (at != known.end()) return at->second;
   BenchOptions options;
   options.frames = frames;
   options.seeds = {41, 42};
-  options.methods = {method};
+  options.methods = {"ring", "sleeve", "centroid"};
   Cell cell;
   cell.scene = scene;
-  return runCell(cell, options).scores.front();
+  return known.emplace(std::pair(scene, frames), runCell(cell, options)).first->second;
+}
+
+const Score& measure(const std::string& scene, const std::string& method, int frames) {
+  const std::vector<Score>& scores = measured(scene, frames).scores;
+  return *std::find_if(scores.begin(), scores.end(), [&](const Score& score) { return score.method == method; });
 }
 
 class Reach : public testing::TestWithParam<Limit> {};
 
 TEST_P(Reach, IsKept) {
   const Limit& limit = GetParam();
-  const Score score = measure(limit.scene, limit.method, 50);
+  const Score& score = measure(limit.scene, limit.method, 50);
   ASSERT_GT(score.visible, 50);
   EXPECT_LE(score.rms, limit.rms);
   EXPECT_GE(score.tracked, limit.found * score.visible);
@@ -88,7 +99,7 @@ TEST(ReachControl, ACentroidExceedsTheLimits) {
 TEST(ReachControl, NothingIsReportedWhereNoInstrumentIs) {
   for (const char* scene : {"absent", "only_decoys"})
     for (const char* method : {"ring", "sleeve"}) {
-      const Score score = measure(scene, method, 20);
+      const Score& score = measure(scene, method, 20);
       EXPECT_EQ(score.hidden, 40);
       EXPECT_EQ(score.phantom, 0) << scene << ", " << method;
     }
@@ -98,7 +109,7 @@ TEST(ReachControl, NothingIsWrongBeyondTheStandardScenes) {
   if (std::getenv("VIBE_SLOW_TESTS") == nullptr) GTEST_SKIP() << "takes minutes; scripts/test --slow runs it";
   for (const std::string& scene : harderSceneNames())
     for (const char* method : {"ring", "sleeve"}) {
-      const Score score = measure(scene, method, 150);
+      const Score& score = measure(scene, method, 150);
       EXPECT_LE(score.wrong, 1e-3 * score.reports) << scene << ", " << method;
       EXPECT_EQ(score.phantom, 0) << scene << ", " << method;
     }

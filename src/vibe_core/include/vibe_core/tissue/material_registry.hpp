@@ -21,7 +21,7 @@ enum class Law {
 };
 
 /// One line of the list of laws as a number to be added.
-#define VIBE_COUNT(name, word, formula) +1
+#define VIBE_COUNT(name, word, formula) +1  // NOLINT(bugprone-macro-parentheses): a summand
 /// Number of built-in laws. Laws of other packages have this number and higher ones: see registerMaterialLaw().
 constexpr int kLawCount = VIBE_MATERIAL_LAWS(VIBE_COUNT);
 #undef VIBE_COUNT
