@@ -68,7 +68,7 @@ atMost() {
   [ "$(wc -l <<<"$files")" -le "$1" ]
 }
 
-declare -A limit=([law]=1 [constraint]=2 [display]=3)
+declare -A limit=([law]=1 [constraint]=2 [display]=3 [task]=1)
 for folder in "$examples"/*/; do
   name=$(basename "$folder")
   check "examples/$name builds outside the workspace" build "$name"
