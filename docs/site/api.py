@@ -7,8 +7,12 @@ import xml.etree.ElementTree as ElementTree
 SPECIAL = str.maketrans({mark: "\\" + mark for mark in "\\`*_{}[]<>|$#~"})
 
 SHOWN = ("vibe_core", "vibe_hardware", "vibe_vision", "vibe_firmware", "vibe_graphics", "vibe_rviz_plugins", "vibe_ros_utils")
-NUMBER = re.compile(r"^(?!.*function|.*\(\*).*(\b(double|float)\b|Eigen|Vector)")
-UNIT = re.compile(r"\[|\bunit\b|\bshare\b|\bpart of\b|\b0 to \d|up to 1\b|quaternion|coefficient", re.IGNORECASE)
+NUMBER = re.compile(r"^(?!.*function|.*\(\*|.*::\*).*(\b(double|float)\b|Eigen|Vector)")
+# A unit in brackets, or words for a number that has none; "0: left, 1: right" is a scale of its own
+UNIT = re.compile(r"\[|\bunit\b|\b0 to \d|up to 1\b|\bsum 1\b|(?<!\d)[01]: |\bpart of\b|\bper turn\b|"
+                  r"\b((ratio|share|fraction|factor|weight|coefficient|exponent|tangent|quaternion)s?|turns|probability|"
+                  r"confidence|opacity|strain|stretch|relative|barycentric|dimensionless)\b",
+                  re.IGNORECASE)
 
 
 # --- descriptions in Markdown
@@ -187,8 +191,8 @@ def says_all(member):
 
 
 class Symbol:
-    """A public member with the words about it: its own or those of its line, and those of its struct, which may name the
-    unit of all."""
+    """A public member with the words about it: its name, its own or those of its line, and those of its struct, which may
+    name the unit of all."""
 
     def __init__(self, member, words, around):
         self.member, self.words, self.around = member, words, around
@@ -198,7 +202,8 @@ class Symbol:
 
     def unitless(self):
         is_number = self.member.get("kind") == "variable" and bool(NUMBER.match(text_of(self.member, "type")))
-        return is_number and not UNIT.search(self.words + " " + self.around)
+        name = text_of(self.member, "name").replace("_", " ")
+        return is_number and not UNIT.search(f"{name} {self.words} {self.around}")
 
 
 def symbols_of(compound):
@@ -242,7 +247,7 @@ def problems(xml):
         if silent:
             yield "{}: {} public symbols have no comment; write one".format(package, silent)
         if unitless:
-            yield "{}: {} public numbers have no unit; write it in brackets".format(package, unitless)
+            yield "{}: {} public numbers have no unit; write it in brackets, or that it is a ratio".format(package, unitless)
 
 
 def pages(root, xml):

@@ -11,7 +11,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy  # noqa: E402
 
-E, NU, B = 110e3, 0.45, 2.0  # of the default scene [Pa], [1], [1]
+E, NU, B = 110e3, 0.45, 2.0  # of the default scene [Pa], ratio, ratio
 MU, LAMBDA = E / (2 * (1 + NU)), E * NU / ((1 + NU) * (1 - 2 * NU))
 
 
@@ -55,7 +55,7 @@ def draw_laws(axes):
         energy = numpy.array([equibiaxial(s, law) for s in stretches])
         stress = numpy.gradient(energy, stretches, edge_order=2) / 2 / 1e3
         axes.plot(stretches, stress, label=law, linewidth=2.5 if law == "yeoh" else 1.2)
-    axes.set(xlabel="stretch in both directions [1]", ylabel="nominal stress [kPa]", ylim=(0, 150))
+    axes.set(xlabel="stretch in both directions", ylabel="nominal stress [kPa]", ylim=(0, 150))
     axes.legend(fontsize=8)
 
 
@@ -74,10 +74,10 @@ def squeeze(s, onset=0.25, straight=0.2):
 
 def draw_contact(axes):
     s = numpy.linspace(0.05, 1.4, 300)
-    axes.plot(s, [squeeze(x)[0] for x in s], label="energy $e(s)$ [1]")
-    axes.plot(s, [-squeeze(x)[1] for x in s], label="force $-e'(s)$ [1]")
+    axes.plot(s, [squeeze(x)[0] for x in s], label="energy $e(s)$")
+    axes.plot(s, [-squeeze(x)[1] for x in s], label="force $-e'(s)$")
     axes.axvspan(0.75, 1.25, alpha=0.15, label="contact sets in")
-    axes.set(xlabel="distance over thickness $s = d/t$ [1]", ylim=(0, 9))
+    axes.set(xlabel="distance over thickness $s = d/t$", ylim=(0, 9))
     axes.legend(fontsize=8)
 
 
@@ -87,7 +87,7 @@ def draw_capstan(axes):
     angle = numpy.linspace(0, 180, 100)
     for friction in (0.05, 0.15, 0.3):
         axes.plot(angle, numpy.exp(friction * numpy.radians(angle)), label="friction {}".format(friction))
-    axes.set(xlabel="turn of the thread at a bite [deg]", ylabel="largest ratio of tensions [1]")
+    axes.set(xlabel="turn of the thread at a bite [deg]", ylabel="largest ratio of tensions")
     axes.legend(fontsize=8)
 
 
@@ -112,7 +112,7 @@ def draw_damping(axes):
         axes.plot(frequencies, [damping_ratio(f, radius) for f in frequencies], label="time scheme, radius {}".format(radius))
     omega = 2 * numpy.pi * frequencies
     axes.plot(frequencies, 30 / (2 * omega) + 15e-6 * omega / 2, "k--", label="tissue (30 1/s, 15 µs)")
-    axes.set(xlabel="frequency [Hz]", ylabel="damping ratio [1]", ylim=(0, 0.6))
+    axes.set(xlabel="frequency [Hz]", ylabel="damping ratio", ylim=(0, 0.6))
     axes.legend(fontsize=8)
 
 
@@ -143,7 +143,7 @@ def draw_technique(axes):
     ends = numpy.array([[leg(a) @ leg(b) for a in angles] for b in angles])
     assert min(bar @ leg(a) for a in angles) > -1.01 and ends.min() > -0.51
     picture = axes.contourf(numpy.degrees(angles), numpy.degrees(angles), ends, levels=numpy.arange(-1, 1.01, 0.25), cmap="viridis")
-    plt.colorbar(picture, ax=axes, label="first vector · last vector [1]")
+    plt.colorbar(picture, ax=axes, label="first vector · last vector")
     axes.set(xlabel="first leg against the bar [deg]", ylabel="last leg against the bar [deg]",
              title="least value {:.2f}; a U needs < -0.7".format(ends.min()))
     axes.title.set_fontsize(9)

@@ -18,7 +18,8 @@ import sys
 
 import numpy as np
 
-from vibe.env import BREATHING, HELD_OUT, TASKS, TRAINING, Environment, Expert, demonstrations
+from vibe import Error
+from vibe.env import BREATHING, HELD_OUT, TRAINING, Environment, Expert, demonstrations
 
 INPUTS = ("to_goal", "wrench")
 STEP_PERIOD = 1 / 60  # [s], of the tables in docs/python.md; with the default, 1/20, episodes are computed twice as fast
@@ -228,9 +229,12 @@ def main():
     one.add_argument("--episodes", default="episodes.jsonl", help="file that keeps them (default: %(default)s)")
     one.set_defaults(run=evaluate)
     for one in (commands.choices["demonstrate"], commands.choices["evaluate"]):
-        one.add_argument("--task", choices=tuple(TASKS), default="Reach")
+        one.add_argument("--task", default="Reach", help="of vibe.env, or MODULE:NAME of your own (default: %(default)s)")
     options = parser.parse_args()
-    options.run(options)
+    try:
+        options.run(options)
+    except Error as error:
+        sys.exit(str(error))
 
 
 if __name__ == "__main__":

@@ -70,7 +70,7 @@ atMost() {
   [ "$(wc -l <<<"$files")" -le "$1" ]
 }
 
-declare -A limit=([law]=1 [constraint]=2 [display]=3)
+declare -A limit=([law]=1 [constraint]=2 [display]=3 [task]=1)
 for folder in "$examples"/*/; do
   name=$(basename "$folder")
   [ -z "${limit[$name]:-}" ] || check "examples/$name needs at most ${limit[$name]} files" atMost "${limit[$name]}" "$name"

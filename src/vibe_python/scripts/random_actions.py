@@ -70,7 +70,7 @@ def side_by_side(task, random, actions, autoreset, **settings):
 def alone(task, random, actions, **settings):
     """Half of the actions are the expert's where there is one: they go where chance does not."""
     environment = Environment(task, **settings)
-    expert = None if task == "Inspect" and settings["action"] == "tip" else Expert(environment)
+    expert = Expert(environment) if environment.task.expert(1) else None
     over, found, seen = True, [], None
     for action in itertools.islice(held_actions(environment.action_space, random), actions):
         if over:
@@ -94,7 +94,7 @@ def one_round(number, particles, actions):
     asked += [(task, BREATHS[(number + k) % len(BREATHS)]) for k, task in enumerate(TASKS) if task != "Reach"]
     for k, (task, breathing) in enumerate(asked):
         settings = {"particles": particles, "organs": ORGANS, "breathing": breathing,
-                    "action": "tip" if task in ("Reach", "Inspect") and number % 2 else "joints",
+                    "action": "tip" if TASKS[task].moves_tip_only() and number % 2 else "joints",
                     "camera": (16, 12, 1.7) if (number + k) % 3 == 0 else None, "pictures": ["depth", "normal", "colour"]}
         if (number + k) % 2:
             count, wrong = alone(task, random, actions, **settings)

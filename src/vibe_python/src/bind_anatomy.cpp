@@ -51,7 +51,7 @@ void bindAnatomy(py::module_& module) {
           "The wall at a place: (triangle, weight (3,)). Raises vibe.Error in the openings of the organ.")
       .def(
           "along", [](const Anatomy& a, int t, const py::handle& w) { return a.map.along(pointOf(a, t, w)); },
-          py::arg("triangle"), py::arg("weight"), "Position along the axis [1].")
+          py::arg("triangle"), py::arg("weight"), "Position along the axis, 0 to 1.")
       .def(
           "around", [](const Anatomy& a, int t, const py::handle& w) { return a.map.around(pointOf(a, t, w)); },
           py::arg("triangle"), py::arg("weight"), "Angle around the axis [rad].")

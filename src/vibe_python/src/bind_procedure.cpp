@@ -98,7 +98,7 @@ void bindProcedure(SimulationClass& simulation) {
           "full_thickness: n booleans; length (n-1,) [m] and tension (n-1,) [N] between them; drawn [m], cinch_tension "
           "[N], tear_outs.")
       .def("procedure", &procedure,
-           "A dictionary: phase, grips, turns [1], arm_closed, needle_on_arm, needle_loaded, blood_lost [m^3], "
+           "A dictionary: phase, grips, turns, arm_closed, needle_on_arm, needle_loaded, blood_lost [m^3], "
            "thread_used [m].")
       .def("measures", &measures,
            "Measures of skill by name (docs/metrics.md), since the start or the last restore(); None where the session "

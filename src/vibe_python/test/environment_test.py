@@ -10,37 +10,29 @@ from unittest import mock
 import numpy as np
 
 import vibe
-from vibe.env import BREATHING, TASKS, Environment, Expert, VectorEnvironment, api, demonstrations, organs
+import vibe.env
+from vibe.env import BREATHING, TASKS, Environment, Expert, Reach, VectorEnvironment, api, contract, demonstrations
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../scripts"))
 import random_actions  # noqa: E402
 import rough_use  # noqa: E402
 
 CHECK = """
-import warnings
 import numpy as np
 import gymnasium
-from gymnasium.utils.env_checker import check_env
 from gymnasium.wrappers.vector import RecordEpisodeStatistics
-from vibe.env import TASKS, Environment, VectorEnvironment, api
+from vibe.env import TASKS, Environment, Reach, VectorEnvironment, api, contract
 assert api.REAL and api.gymnasium is gymnasium and issubclass(Environment, gymnasium.Env)
-small = {"particles": 300, "organs": [("sthenic", 1.0)]}
-warnings.simplefilter("error", UserWarning)
-warnings.filterwarnings("ignore", message=".*infinity.*")  # what is measured in metres and newtons has no bound
-for name in TASKS:
-    check_env(gymnasium.make(f"vibe/{name}-v0", disable_env_checker=True, breathing="slight", **small).unwrapped,
-              skip_render_check=True)
-    print(name)
+small = contract.SETTINGS
+for name in list(TASKS):
+    made = gymnasium.make(f"vibe/{name}-v0", disable_env_checker=True, **small).unwrapped
+    print(made.task.name, *contract.broken(name, breathing="slight"))
 
-class Astray(Environment):  # control
-    def reset(self, **keywords):
-        seen, info = super().reset(**keywords)
-        return {**seen, "tip": seen["tip"][:2]}, info
+class Astray(Reach):  # control
+    def observe(self):
+        return {**super().observe(), "tip": np.zeros((self.count, 2), np.float32)}
 
-try:
-    check_env(Astray(**small), skip_render_check=True)
-except AssertionError:
-    print("refused")
+print("refused" if any("checker of Gymnasium" in sentence for sentence in contract.broken(Astray)) else "accepted")
 wrapped = RecordEpisodeStatistics(VectorEnvironment("Reach", 2, threads=1, **small))
 wrapped.reset(seed=1)
 for _ in range(201):
@@ -52,7 +44,19 @@ processes = gymnasium.vector.AsyncVectorEnv([lambda: Environment(**small)] * 2, 
 print("processes" if all(np.array_equal(seen[name], expected[name]) for name in expected) else "differ")
 processes.close()
 """
-SMALL = {"particles": 300, "organs": [("sthenic", 1.0)]}
+SMALL = contract.SETTINGS
+PAGE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../docs/python.md")
+
+
+def task_table():
+    """The tasks of the library as the table of docs/python.md."""
+    rows = ["| task | goal | rewarded | observed besides | action | rate, length |", "|---|---|---|---|---|---|"]
+    for name, task in TASKS.items():
+        further = "; ".join(f"`{key}` {shape}: {words}" for key, (shape, words) in task.further.items()).replace(",)", ")")
+        action = f"{len(task.joints)} joints" + (f", {len(vibe.BUTTONS)} buttons" if task.buttons else "") + (
+            ', or `action="tip"`: 3 velocities' if task.moves_tip_only() else "")
+        rows.append(f"| `{name}` | {task.summary()} | {task.reward} | {further or '-'} | {action} | {task.rate} Hz, {task.seconds:g} s |")
+    return "\n".join(rows) + "\n"
 
 
 def equal(a, b):
@@ -68,46 +72,47 @@ class EnvironmentTest(unittest.TestCase):
         random = np.random.default_rng(seed)
         return random.uniform(-1, 1, (count,) + environment.action_space.shape).astype(np.float32)
 
-    def test_spaces_hold_what_comes(self):
+    def test_every_task_keeps_the_contract(self):
         for name in TASKS:
-            environment = Environment(name, camera=(16, 12, 1.7), **SMALL)
-            seen, _ = environment.reset(seed=3)
-            for action in [None] + list(self.actions(environment, 1, 4)):
-                if action is not None:
-                    self.assertTrue(environment.action_space.contains(action))
-                    seen, reward, terminated, truncated, info = environment.step(action)
-                    self.assertTrue(np.isfinite(reward))
-                    self.assertEqual((type(terminated), type(truncated)), (bool, bool))
-                self.assertTrue(environment.observation_space.contains(seen), name)
-            self.assertIn("is_success", info)
-            environment.close()
+            self.assertEqual(contract.broken(name, actions=15, camera=(16, 12, 1.7)), [])
+        first, second = (Environment("Reach", **SMALL).reset(seed=seed)[0] for seed in (5, 6))  # control
+        self.assertFalse(equal(first, second))
 
-    def test_same_seed_same_episode_in_any_batch(self):
-        alone = []
-        for seed in (5, 6, 7):
-            environment = Environment("Reach", **SMALL)
-            seen = [environment.reset(seed=seed)[0]]
-            rewards = []
-            for action in self.actions(environment, seed, 15):
-                now, reward, over, *_ = environment.step(action)
-                self.assertFalse(over)
-                seen.append(now)
-                rewards.append(reward)
-            alone.append((seen, rewards))
-            environment.close()
-        self.assertFalse(equal(alone[0][0][0], alone[1][0][0]))  # control: another seed is another episode
-        for threads in (1, 2):
-            organs.organ(*SMALL["organs"][0], SMALL["particles"]).goals.clear()  # as in another process
-            together = VectorEnvironment("Reach", 3, threads=threads, **SMALL)
-            seen, _ = together.reset(seed=5)
-            actions = np.stack([self.actions(environment, seed, 15) for seed in (5, 6, 7)], 1)
-            for k in range(16):
-                for slot in range(3):
-                    self.assertTrue(equal(row(seen, slot), alone[slot][0][k]), (threads, k, slot))
-                if k < 15:
-                    seen, rewards, *_ = together.step(actions[k])
-                    self.assertEqual(list(rewards), [alone[slot][1][k] for slot in range(3)])
-            together.close()
+    def test_what_a_task_does_not_keep_is_said(self):
+        class Wrong(Reach):
+            calls = 0
+
+            def judge(self, before, after):
+                Wrong.calls += 1
+                reward, success = super().judge(before, after)
+                return reward + self.error(reward), success
+
+        def of(**members):
+            return "; ".join(contract.broken(type("Astray", (Wrong,), {"error": lambda *_: 0, **members})))
+
+        self.assertEqual(of(), "")
+        wrong_shape = {"further": {"more": ((2,), "")}, "observe_further": lambda self, seen: {"more": seen["tip"]}}
+        for sentence, members in (("the reward is nan", {"error": lambda *_: np.nan}),
+                                  ("the same seed gives another", {"error": lambda *_: Wrong.calls}),
+                                  ("beside others is another", {"error": lambda self, _: self.count}),
+                                  ("'more' is not of its space", wrong_shape),
+                                  ("'more' is not in the space", {**wrong_shape, "further": {}}),
+                                  ("does not end in time", {"advance": lambda self, actions: (
+                                      *Reach.advance(self, actions)[:2], np.zeros(self.count, bool))})):
+            self.assertIn(sentence, of(**members))
+
+    def test_the_page_has_the_table_that_is_made_from_the_tasks(self):
+        with open(PAGE, encoding="utf-8") as file:
+            page = file.read()
+        before, rest = page.split("<!-- tasks: begin -->\n")
+        table, after = rest.split("<!-- tasks: end -->\n")
+        if "VIBE_UPDATE_DOCS" in os.environ:
+            with open(PAGE, "w", encoding="utf-8") as file:
+                file.write(f"{before}<!-- tasks: begin -->\n{task_table()}<!-- tasks: end -->\n{after}")
+            self.skipTest(f"wrote {PAGE}")
+        self.assertEqual(table, task_table(), f"run with VIBE_UPDATE_DOCS=1 to write {PAGE}")
+        for name, task in TASKS.items():
+            self.assertIn(f"{name:11}{task.summary()}", vibe.env.__doc__)
 
     def test_breathing_moves_the_goal_as_the_diaphragm_and_episodes_begin_in_different_phases(self):
         rate, amplitude = BREATHING["strong"]
@@ -144,7 +149,7 @@ class EnvironmentTest(unittest.TestCase):
                 Environment("Reach", step_period=wrong)
 
     def test_autoreset(self):
-        class Short(TASKS["Reach"]):
+        class Short(Reach):
             seconds = 0.1
 
         for mode in ("next_step", "same_step"):
@@ -226,6 +231,9 @@ class EnvironmentTest(unittest.TestCase):
         still = np.zeros(4)
         for sentence, call in (("call reset", lambda: environment.step(still)),
                                ("no task 'Fly'", lambda: Environment("Fly")),
+                               ("no task 'Fly'", lambda: Environment("vibe.env:Fly")),
+                               ("'nowhere:Fly' cannot be had", lambda: Environment("nowhere:Fly")),
+                               ("vibe.env.tasks has a task 'Reach'", lambda: type("Mine", (Reach,), {"name": "Reach"})),
                                ("'action' is 'force'", lambda: Environment("Reach", action="force")),
                                ("'organs' is empty", lambda: Environment("Reach", organs=[]))):
             with self.assertRaisesRegex(vibe.Error, sentence):

@@ -135,11 +135,7 @@ def recording(parser, arguments):
     """The absolute path of the only recording."""
     for bag in arguments.bags[1:]:
         parser.error("one recording at a time, not '{}' as well".format(bag))
-    if not arguments.bags:
-        parser.error("which recording?")
-    if not os.path.isfile(arguments.bags[0]):
-        parser.error(no_file(arguments.bags[0], arguments.bags[0]))
-    return os.path.realpath(arguments.bags[0])
+    return recordings(parser, arguments)[0]
 
 
 def recordings(parser, arguments):

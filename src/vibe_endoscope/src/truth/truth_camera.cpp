@@ -8,7 +8,7 @@ namespace vibe::endoscope {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-// a ray to a point of a surface ends this much before it, so that the surface does not hide its own point [1]
+// a ray to a point of a surface ends this much before it, so that the surface does not hide its own point
 constexpr double kShortened = 1e-4;
 constexpr int kTile = 4;  // edge of a square of pixels whose rays are cast together [px]
 

@@ -118,7 +118,7 @@ Eigen::Vector2d coneOf(const EndoscopeLight& light, const LightGuide& guide) {
 
 namespace {
 
-constexpr double kCloseEnough = 0.04;  // of the target: close enough to show the first picture [1]
+constexpr double kCloseEnough = 0.04;  // of the target: close enough to show the first picture
 constexpr int kTries = 4;              // of the first picture
 constexpr double kFollow = 0.3;  // of what is missing, at most, from picture to picture; all of it would overshoot
 

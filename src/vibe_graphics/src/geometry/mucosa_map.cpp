@@ -21,7 +21,7 @@ constexpr double kTurn = 30e-3;  // blurs the walls: about the radius of the bod
 constexpr double kRegionBlur = 8e-3;   // blurs borders of regions [m]
 constexpr double kCardia = 20e-3;      // reach of the region cardia beyond the junction, as the simulator labels it [m]
 constexpr double kRing = 3e-3;         // length of the sections of which the narrowest is the pylorus [m]
-constexpr double kWellDefined = 0.12;  // length of the blurred direction from which on the angle is fully used [1]
+constexpr double kWellDefined = 0.12;  // length of the blurred direction from which on the angle is fully used
 // Where 30 folds around would be less than 4.5 mm wide the angle is used less, below 2.6 mm not at all [rad/m].
 constexpr double kDense = 47, kCrowded = 80;
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMaxParticles = 10'000'000;  // more is a mistake
 constexpr std::uint8_t kMaxGrade = 3;
-constexpr float kMaxWeight = 1000.0F;  // of a particle in a vertex of the render surface [1]
+constexpr float kMaxWeight = 1000.0F;  // of a particle in a vertex of the render surface
 
 std::string checkTriangles(const std::vector<std::uint32_t>& triangles, std::size_t count, const char* array) {
   if (triangles.size() % 3 != 0)

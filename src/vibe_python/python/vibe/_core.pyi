@@ -15,7 +15,7 @@ class Anatomy:
     def __init__(self, simulation: Simulation) -> None:
         """Takes some 40 ms for 3,618 particles."""
     def along(self, triangle: int, weight: Any) -> float:
-        """Position along the axis [1]."""
+        """Position along the axis, 0 to 1."""
     def around(self, triangle: int, weight: Any) -> float:
         """Angle around the axis [rad]."""
     def at(self, along: float, around: float) -> tuple:
@@ -195,7 +195,7 @@ class Simulation:
     def pressure(self) -> float:
         """Of the gas, above ambient [Pa]."""
     def procedure(self) -> dict:
-        """A dictionary: phase, grips, turns [1], arm_closed, needle_on_arm, needle_loaded, blood_lost [m^3], thread_used [m]."""
+        """A dictionary: phase, grips, turns, arm_closed, needle_on_arm, needle_loaded, blood_lost [m^3], thread_used [m]."""
     def reset(self, seed: Optional[int] = None) -> None:
         """Back to the initial state."""
     def restore(self, snapshot: Snapshot) -> None:

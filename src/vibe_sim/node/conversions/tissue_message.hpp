@@ -13,7 +13,7 @@ namespace vibe::sim {
 
 /// The moving tissue as a point cloud that every ROS tool can read. Per particle, packed in 28 bytes:
 ///   x, y, z   FLOAT32  position [m]
-///   strain    FLOAT32  mean in-plane stretch around the particle against rest, minus 1 [1]
+///   strain    FLOAT32  mean in-plane stretch around the particle against rest, minus 1
 ///   id        UINT32   particle number
 ///   revision  UINT32   of the tissue/topology it belongs to
 ///   region    UINT8    vibe_msgs/TissueTopology REGION_*

@@ -10,7 +10,7 @@ namespace vibe::graphics {
 /// in which the first marks shall be told from the last ones [s].
 constexpr double kTanAge = 240;
 
-/// How far a mark of this age has gone from white (0) over tan (1/2) to brown (1): 1 - 2^(-age / kTanAge) [1].
+/// How far a mark of this age has gone from white (0) over tan (1/2) to brown (1): 1 - 2^(-age / kTanAge).
 /// @param age  [s]
 double browning(double age);
 
@@ -24,7 +24,7 @@ class ScarAge {
   ///               has fallen
   /// @return whether grades or browning have changed, in steps of 1/256
   bool see(const TissueFrame& frame);
-  /// Grade times browning, one per vertex of the drawn surface, with the weights of its particles [1]. Divided by the
+  /// Grade times browning, one per vertex of the drawn surface, with the weights of its particles. Divided by the
   /// grade with the same weights it is the mean browning of the marked ones, whatever is not marked beside them.
   std::vector<float> browned() const;
 
@@ -67,7 +67,7 @@ class Smoke {
   double extinction() const;                 ///< of light by the smoke, at most kDensestSmoke [1/m]
 
  private:
-  std::vector<double> share_;  ///< area of each particle, of that of a spot [1]
+  std::vector<double> share_;  ///< area of each particle, of that of a spot
   std::vector<float> dose_;    ///< of the last frame [J]; empty: there was none
   double time_ = 0;            ///< of the last frame [s]
   double energy_ = 0;

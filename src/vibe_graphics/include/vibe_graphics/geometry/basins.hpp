@@ -35,7 +35,7 @@ struct Pool {
 /// Where a full hollow has run over.
 struct Brim {
   std::uint32_t vertex = 0;  ///< the fluid went on from here
-  double brown = 0;          ///< of what went over, as in Pool [1]
+  double brown = 0;          ///< of what went over, as in Pool (ratio)
 };
 
 /// The hollows of a wall and what stands in them. A hollow that is full to its brim runs over into the next one, and

@@ -50,7 +50,7 @@ Eigen::Vector3d rayOf(const RoundCamera& camera, const Eigen::Vector2d& pixel);
 
 /// The circular image is computed from plane square images, which is what graphics cards draw.
 struct SquareSource {
-  double half_width = 0;  ///< tangent of the angle between the axis and the middle of an edge [1]
+  double half_width = 0;  ///< tangent of the angle between the axis and the middle of an edge
   int size = 0;           ///< of an edge [px]
 };
 
@@ -66,7 +66,7 @@ struct LensSources {
   static constexpr double kMiddle = 0.8;        ///< half angle of the middle [rad]; design choice
   static constexpr double kRimSharpness = 0.6;  ///< of the whole; where it begins to show (media/endoscope.frag), 0.73
                                                 ///< source pixels per image pixel around, 1.06 along the radius; more
-                                                ///< beyond [1]; design choice
+                                                ///< beyond (ratio); design choice
   SquareSource whole;                           ///< the whole field of view
   SquareSource middle;                          ///< size 0: there is none, and the whole has all the sharpness
 };
@@ -77,8 +77,8 @@ LensSources sourcesFor(const RoundCamera& camera, double sharpness, int max);
 /// Parameters of a sensor_msgs/CameraInfo.
 struct CameraNumbers {
   std::string distortion_model;  ///< of ROS: "equidistant", or "plumb_bob" for a rectilinear lens
-  std::vector<double> d;         ///< coefficients of the distortion, in the order of its model [1]
-  std::array<double, 9> k, r;    ///< camera matrix [px] and rotation [1], row by row
+  std::vector<double> d;         ///< coefficients of the distortion, in the order of its model
+  std::array<double, 9> k, r;    ///< camera matrix [px] and rotation, row by row
   std::array<double, 12> p;      ///< projection matrix, 3 x 4, row by row [px]
 };
 
@@ -88,7 +88,7 @@ CameraNumbers numbersOf(const RoundCamera& camera, double baseline);
 /// The end of a bundle of fibres beside the lens.
 struct LightGuide {
   double right, up;     ///< of the lens, as the picture shows right and up [m]
-  double strength = 1;  ///< of its light [1]
+  double strength = 1;  ///< of its light (ratio)
 };
 
 /// The light of an endoscope. The defaults are that of the live view.
@@ -112,11 +112,11 @@ Eigen::Vector2d coneOf(const EndoscopeLight& light, const LightGuide& guide);
 /// of the levels and stamps it has seen, so the same pictures are exposed in the same way again.
 class AutoExposure {
  public:
-  static constexpr double kTarget = 0.45;  ///< mean level of the picture, weighted to its centre; design choice [1]
+  static constexpr double kTarget = 0.45;  ///< mean level of the picture, weighted to its centre; design choice (ratio)
   static constexpr double kRate = 4;       ///< fastest change [stops/s]; design choice: about 0.3 s for a usual change
   static constexpr double kGap = 0.5;      ///< after that long without a picture the exposure is found anew [s]
-  static constexpr double kFixedGain = 1.6;                ///< without automatic exposure, and at first [1]
-  static constexpr double kMinGain = 0.02, kMaxGain = 60;  ///< about 6 and 5 stops around; design choice [1]
+  static constexpr double kFixedGain = 1.6;                ///< without automatic exposure, and at first (ratio)
+  static constexpr double kMinGain = 0.02, kMaxGain = 60;  ///< about 6 and 5 stops around; design choice (ratio)
 
   /// What the radiances of the next picture are to be multiplied with.
   double gain() const { return gain_; }

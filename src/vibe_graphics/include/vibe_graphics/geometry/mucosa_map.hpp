@@ -12,11 +12,11 @@ namespace vibe::graphics {
 /// across the borders of regions. Layout of a vertex buffer.
 struct MucosaVertex {
   float around[2];  ///< cosine and sine of the angle around the organ, 0: anterior, pi/2: greater curvature, times how
-                    ///< well it is defined, 0 to 1: at the apex of the fundus it is not [1]
+                    ///< well it is defined, 0 to 1: at the apex of the fundus it is not
   float bend;       ///< by which the phase of the folds wanders, see foldBend() [rad]
   float broad;      ///< blotches of 42 mm and less, see broadPattern(), 0 to 1
-  float folded;     ///< how much of the rugae this region has: 1 body and fundus, 0 oesophagus and pylorus [1]
-  float antral;     ///< 1: antrum and pylorus, paler and smoother [1]
+  float folded;     ///< how much of the rugae this region has: 1 body and fundus, 0 oesophagus and pylorus (ratio)
+  float antral;     ///< 1: antrum and pylorus, paler and smoother
   float beyond_z;   ///< distance from the Z line, positive on the side of the stomach; 1 m without an oesophagus [m]
   float beyond_ring;  ///< distance from the narrowest place of the pylorus, positive towards the duodenum; -1 m without
                       ///< one [m]
@@ -26,7 +26,7 @@ static_assert(sizeof(MucosaVertex) == 32, "the vertex buffer has no gaps");
 /// What mapMucosa() finds; of the mesh it was made of.
 struct MucosaMap {
   std::vector<MucosaVertex> of_particle, of_vertex;  ///< one per particle, and one per vertex of the drawn surface
-  /// Per particle: stretch around the organ from which on the wall has no rugae, see foldHeight() [1].
+  /// Per particle: stretch around the organ from which on the wall has no rugae, see foldHeight().
   std::vector<float> smooth_stretch;
 };
 
@@ -44,8 +44,8 @@ constexpr float kTallestFold = 4.5e-3F;  ///< of a wall that is compressed; desi
 /// the square of its height. The wall uses up the spare length as it stretches, so
 ///   height = kRestingFold sqrt((smooth - stretch) / (smooth - 1)),
 /// which falls monotonically and is 0 from `smooth` on.
-/// @param stretch  1 at rest [1]
-/// @param smooth   MucosaMap::smooth_stretch, more than 1 [1]
+/// @param stretch  1 at rest
+/// @param smooth   MucosaMap::smooth_stretch, more than 1
 float foldHeight(float stretch, float smooth);
 
 /// The height of the rugae at the vertices of a moving organ, from the stretch of its particle mesh around the organ
@@ -59,7 +59,7 @@ class FoldHeight {
   /// @return  one height per vertex [m]
   const std::vector<float>& update(const std::vector<float>& positions);
 
-  /// Stretch across the folds of each particle, as of the last update [1].
+  /// Stretch across the folds of each particle, as of the last update.
   const std::vector<float>& stretch() const { return stretch_; }
 
  private:

@@ -12,11 +12,11 @@ namespace vibe::graphics {
 struct MucosaLook {
   Eigen::Vector3f shift{0, 0, 0};  ///< of all patterns in the organ at rest; folds meander and fork elsewhere [m]
   double areae_size = 2.5e-3;      ///< of an area gastrica [m]
-  double paleness = 1;             ///< factor of green and blue of the gastric mucosa: less is redder [1]
-  double yellowness = 1;           ///< factor of green against blue [1]
+  double paleness = 1;             ///< factor of green and blue of the gastric mucosa: less is redder
+  double yellowness = 1;           ///< factor of green against blue
   double vessels = 1;              ///< factor of the strength of the net of vessels, 0 to 3
-  double wetness = 1;              ///< factor of the strength of highlights [1]
-  double mucus = 0;  ///< added to the noise that lays a film of mucus where it is above 0.58 to 0.72: more of it [1]
+  double wetness = 1;              ///< factor of the strength of highlights
+  double mucus = 0;  ///< added to the noise (ratio) that lays a film of mucus where it is above 0.58 to 0.72
 
   /// Whether it is the default, for which shaders may use constants.
   bool isUsual() const {

@@ -23,7 +23,7 @@ class SurfaceColours {
   explicit SurfaceColours(const TissueMesh& mesh);  ///< natural tissue, as if never heated; all white
 
   /// Takes effect with the next update.
-  /// @param map  for the colourings with a number: strain [1], heat [J], thickness [m]
+  /// @param map  for the colourings with a number: strain, heat [J], thickness [m]
   void choose(Colouring colouring, const ColourMap& map);
   Colouring colouring() const { return colouring_; }  ///< as chosen last
 

@@ -14,7 +14,7 @@ enum class ThreadColour { Tension, One, PerSuture };
 /// How sutures are drawn.
 struct SutureStyle {
   double thread_diameter = 0.32e-3;                     ///< of 2-0 polypropylene (USP <861>: 0.300 to 0.339 mm) [m]
-  double emphasis = 1;                                  ///< factor for the thickness of thread and symbols [1]
+  double emphasis = 1;                                  ///< factor for the thickness of thread and symbols
   ThreadColour colouring = ThreadColour::Tension;       ///< of the thread
   ColourMap tension_map;                                ///< [N]
   PackedColour slack_colour = packed(0.93, 0.95, 1.0);  ///< of thread without tension, with ThreadColour::Tension

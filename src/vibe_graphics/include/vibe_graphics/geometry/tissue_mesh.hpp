@@ -21,7 +21,7 @@ struct TissueMesh {
   /// Vertex v is the sum over k in [render_offsets[v], render_offsets[v + 1]) of render_weights[k] times particle
   /// render_particles[k]. All empty without a render surface.
   std::vector<std::uint32_t> render_offsets, render_particles;
-  std::vector<float> render_weights;                           ///< of the particles of a vertex, sum 1 [1]
+  std::vector<float> render_weights;                           ///< of the particles of a vertex, sum 1
   bool subdivided() const { return !render_offsets.empty(); }  ///< there is a render surface
 
   // Per particle; empty if the topology does not tell.
@@ -35,7 +35,7 @@ struct TissueFrame {
   std::uint32_t revision = 0;    ///< of the mesh that the frame is of
   double time = 0;               ///< of the sample [s]
   std::vector<float> positions;  ///< x y z per particle [m]
-  std::vector<float> strain;     ///< mean in-plane stretch minus 1 [1]; empty if not given
+  std::vector<float> strain;     ///< mean in-plane stretch minus 1; empty if not given
   std::vector<std::uint8_t>
       grade;                ///< 0 none, 1 mark, 2 burn scar, 3 muscularis at risk; empty in scenes without marks
   std::vector<float> dose;  ///< largest heat so far, as energy of a whole spot [J]; empty like grade

@@ -13,7 +13,7 @@ namespace vibe::graphics {
 /// A point on a wall.
 struct WallPlace {
   std::uint32_t triangle = 0;                         ///< in which it lies
-  Eigen::Vector3d weight = Eigen::Vector3d::UnitX();  ///< barycentric [1]
+  Eigen::Vector3d weight = Eigen::Vector3d::UnitX();  ///< barycentric
   Eigen::Vector3d place = Eigen::Vector3d::Zero();    ///< [m]
   Eigen::Vector3d inward = Eigen::Vector3d::UnitZ();  ///< unit, into the lumen, smooth over the wall
 };

@@ -45,7 +45,7 @@ class DynamicMesh : private Ogre::MovableObject::Listener {
   void setColours(const PackedColour* colours, std::size_t first, std::size_t count);
   /// Sets the heights of the folds of all vertices [m]; now 0.
   void setHeights(const std::vector<float>& heights);
-  /// Sets how brown the scars of all vertices are (ScarAge::browned()) [1]; now 0.
+  /// Sets how brown the scars of all vertices are (ScarAge::browned()), a ratio; now 0.
   void setBrowned(const std::vector<float>& browned);
   /// What to do each time before it is drawn for the endoscope, for values that only its materials read.
   void beforeEndoscope(std::function<void()> prepare) { before_endoscope_ = std::move(prepare); }

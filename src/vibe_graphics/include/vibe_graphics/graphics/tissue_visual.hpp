@@ -53,7 +53,7 @@ struct TissueLook {
   double min = 0, max = 1;                         ///< values at the ends of the map, in the unit of the colouring
   Ogre::ColourValue inside{0.86F, 0.47F, 0.42F};   ///< natural colour of the mucosa
   Ogre::ColourValue outside{0.84F, 0.62F, 0.56F};  ///< natural colour of the serosa
-  double outside_alpha = 0.15;  ///< opacity of the wall seen head-on from outside; with 1 all of it is opaque [1]
+  double outside_alpha = 0.15;  ///< opacity of the wall seen head-on from outside; with 1 all of it is opaque
   double wetness = 0.4;         ///< strength of highlights, 0 to 1
   double relief = 0.6e-3;       ///< height of the fine relief, which is shading only [m]
   bool scars = true;            ///< show marks and burn scars

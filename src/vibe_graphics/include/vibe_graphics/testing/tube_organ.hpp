@@ -15,7 +15,7 @@ struct TubeOrgan {
   std::uint8_t region = 2;               ///< of all particles: REGION_BODY
 
   /// Positions of all particles, row by row, x y z each [m].
-  /// @param wider, longer  factors of radius and length [1]
+  /// @param wider, longer  factors of radius and length
   std::vector<float> places(double wider = 1, double longer = 1) const {
     std::vector<float> result;
     for (std::uint32_t r = 0; r < rows; ++r)

@@ -47,14 +47,14 @@ enum class ForceFrame {
 struct TeleopMapping {
   std::string name;                                    ///< of the arm, for messages
   std::vector<std::string> arm_joints;                 ///< of measured_js; empty: the arm measures measured_cp
-  Eigen::Matrix3d hand = Eigen::Matrix3d::Identity();  ///< axes of the hand's frame, as columns in the arm's base [1]
+  Eigen::Matrix3d hand = Eigen::Matrix3d::Identity();  ///< columns: unit vectors of the hand's axes in the arm's base
   /// By vibe::Joint. Each coordinate moves at most one joint of the scope and one of the suturing device.
   std::array<HandJoint, kJointCount> joints;
   ArmButton device;  ///< while it is pressed, the arm moves the suturing device and the scope stays; no topic: never
   std::array<ArmButton, kButtonCount> buttons;  ///< by vibe::Button; an empty topic: nothing presses that button
   ArmButton clutch;                             ///< while it is pressed, the scope stays and the arm is free
   std::optional<ArmGripper> gripper;            ///< empty: the gripper moves nothing
-  double force_scale = 1;                       ///< of the forces of the tissue; 0: no forces [1]
+  double force_scale = 1;                       ///< of the forces of the tissue; 0: no forces
   std::string force_topic = "servo_cf";         ///< relative to the arm; with arm_joints servo_jf
   ForceFrame force_frame = ForceFrame::Base;    ///< which axes the driver of the arm expects
   double timeout = 0.1;                         ///< without a measurement after which the arm lets go of the scope [s]

@@ -39,11 +39,11 @@ HandImpedance handOnSlide(double mass, double damping, double stiffness, double 
 struct AxisPlant {
   Motor motor;                    ///< that drives the shaft
   Drive drive = Drive::Voltage;   ///< what back-EMF does
-  double ratio = 10;              ///< of the capstan: turns of the motor per turn of the shaft [1]
+  double ratio = 10;              ///< of the capstan: turns of the motor per turn of the shaft
   double inertia = 5e-6;          ///< of drum and shaft, without motor (design choice) [kg m^2]
   double viscous = 0;             ///< friction beside back-EMF [N m s/rad]
   double coulomb = 0;             ///< friction beside that of the motor [N m]
-  double breakaway = 1;           ///< friction at rest over friction in motion, at least 1 [1]
+  double breakaway = 1;           ///< friction at rest over friction in motion, at least 1 (ratio)
   double encoder_step = 3.07e-4;  ///< angle of one count [rad]
   double output_delay = 50e-6;    ///< from sampling the encoder to the new torque; multiple of substep [s]
   double substep = 50e-6;         ///< of the integration [s]

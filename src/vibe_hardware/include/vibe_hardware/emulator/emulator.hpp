@@ -21,7 +21,7 @@ class TickSchedule {
   static constexpr int kMaxBurst = 50;     ///< ticks at once, so that hosts are served in between
 
   /// @param start        wall time of the first tick [s]
-  /// @param clock_error  by which share the device's clock goes slow [1]: a crystal is wrong by up to 1e-4
+  /// @param clock_error  by which share the device's clock goes slow: a crystal is wrong by up to 1e-4
   explicit TickSchedule(double start, double clock_error = 0) : origin_(start), tick_(kTick * (1 + clock_error)) {}
 
   /// Ticks to take now; they count as taken. @param now  wall time [s], never goes back

@@ -36,7 +36,7 @@ struct JointMapping {
   double low = 0;                   ///< position mode: joint at deflection -1 [m], [rad]
   double high = 0;                  ///< position mode: joint at deflection 1 [m], [rad]
   double dead_zone = 0;             ///< deflection below which the control counts as centred, 0 to 0.9
-  double exponent = 1;     ///< of the response beyond the dead zone, 0.2 to 5; 1: linear, 2: fine near the centre [1]
+  double exponent = 1;     ///< of the response beyond the dead zone, 0.2 to 5; 1: linear, 2: fine near the centre
   bool reversed = false;   ///< the deflection counts with the opposite sign
   double full_effort = 0;  ///< position mode: effort shown by the device's greatest force [N], [N m]; 0: no spring
 };

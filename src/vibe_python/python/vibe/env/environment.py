@@ -7,8 +7,7 @@ import numpy as np
 import vibe
 
 from . import api
-from .episodes import numbers, whole
-from .tasks import task_of
+from .episodes import numbers, task_of, whole
 
 
 def _generator(seed):
@@ -20,18 +19,18 @@ def _generator(seed):
 class Environment(api.Env):
     """One episode at a time, with the interface of gymnasium.Env.
 
-    task       Reach, Inspect, Mark, Bite, SutureSet: a name, or a class of vibe.env
+    task       a name in vibe.env.TASKS, MODULE:NAME of one that a module of yours defines, or a class
     particles  of the wall: 1,000 by default (docs/python.md says what that costs in accuracy)
     organs     (shape, scale) of the stomachs that reset() draws from, uniformly; vibe.env.TRAINING, vibe.env.HELD_OUT
-    action     'joints': shares of the greatest joint speeds, then the buttons; 'tip': of the tip's velocity (Reach,
-               Inspect)
+    action     'joints': shares of the greatest joint speeds, then the buttons; 'tip': of the tip's velocity, in tasks
+               that move nothing else
     camera     (width, height, field of view [rad]): adds pictures to the observation, (height, width) each, 0 where
                nothing is seen
     pictures   which: of 'depth' float32 [m], 'label' uint8, 'normal' (.., 3) float32 and 'colour' (.., 3) uint8, as
                vibe.Simulation.camera() has them; depth and label by default
     step_period
-               simulated time per step [s], a whole part of that of an action; None: one step per action, which is 1/20
-               with Reach and Inspect and 1/60 with the others. Shorter steps are slower and more accurate (docs/python.md)
+               simulated time per step [s], a whole part of that of an action; None: one step per action. Shorter steps
+               are slower and more accurate (docs/python.md)
     breathing  None (still), 'slight', 'moderate' or 'strong': the diaphragm moves the stomach (vibe.env.BREATHING)
 
     reset(seed) draws stomach, start and goal; the same seed gives the same episode, to the bit. Steps after an episode

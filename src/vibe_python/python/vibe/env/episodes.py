@@ -1,6 +1,7 @@
 """Episodes side by side: what the single and the vector environment share, so that both have the same bits."""
 
 import functools
+import importlib
 import math
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 import vibe
 
 from . import organs as _organs
-from .api import spaces
+from .api import REAL, gymnasium, spaces
 
 INSUFFLATE = vibe.BUTTONS.index("insufflate")
 SUCCESS = 10.0  # reward of an episode that succeeds
@@ -69,16 +70,31 @@ def _pictures(pictures):
     return names
 
 
+#: name to class, of every task that has been defined
+TASKS = {}
+
+
 class Task:
     """What an environment asks for. Subclasses say which actions there are, what is observed besides, what is rewarded
-    and when an episode ends; an instance holds the episodes of `count` slots as arrays with a row per slot."""
+    and when an episode ends; an instance holds the episodes of `count` slots as arrays with a row per slot. A subclass
+    that gives itself a name is in TASKS and, where the package is installed, in the registry of Gymnasium. Its docstring
+    says what the goal is; docs/python.md has the table that is made from all of this."""
 
     name = ""
+    reward = ""  #: what is rewarded, in words
+    further = {}  #: observations of the task: name to (shape, meaning)
     seconds = 10.0  #: simulated time until an episode is truncated
     rate = 20  #: actions per simulated second
     rate_of_steps = 20  #: steps per simulated second, at least, where `step_period` does not say it
+    joints = vibe.JOINTS[:4]  #: that actions move
     speeds = np.array([0.05, 1.0, 1.0, 1.0])  #: of the joints at action 1 [m/s], [rad/s]
-    along, around = (0.3, 0.72), (-1.2, 1.2)  #: uniform distribution of the goal: axis [1], angle around it [rad]
+    buttons = False  #: whether the action ends with the six buttons, pressed above 0
+    along, around = (0.3, 0.72), (-1.2, 1.2)  #: uniform distribution of the goal: share of the axis, angle around it [rad]
+
+    def __init_subclass__(cls, **keywords):
+        super().__init_subclass__(**keywords)
+        if vars(cls).get("name"):
+            _register(cls)
 
     def __init__(self, count=1, *, particles=1000, organs=_organs.TRAINING, action="joints", threads=1, camera=None,
                  pictures=("depth", "label"), breathing=None, step_period=None):
@@ -86,7 +102,7 @@ class Task:
             raise vibe.Error(f"'action' is {vibe._shown(action)}; use 'joints' or 'tip'.")
         if breathing is not None and (not isinstance(breathing, str) or breathing not in _organs.BREATHING):
             raise vibe.Error(f"'breathing' is {vibe._shown(breathing)}; use {', '.join(_organs.BREATHING)}, or None.")
-        if action == "tip" and len(self.speeds) > 4:
+        if action == "tip" and not self.moves_tip_only():
             raise vibe.Error(f"The task {self.name} moves more than the tip; use action='joints'.")
         self.count, self.particles = whole("count", count, 1, 65536), whole("particles", particles, 100, 1000000)
         self.organs, self.breathing = _pairs(organs), breathing
@@ -113,14 +129,22 @@ class Task:
                              f"{1 / self.rate:.5g}, or None.")
         return float(period)
 
+    @classmethod
+    def moves_tip_only(cls):
+        """Whether an action may be the tip's velocity."""
+        return len(cls.joints) <= 4 and not cls.buttons
+
+    @classmethod
+    def summary(cls):
+        """The goal: the docstring in one line."""
+        return " ".join((cls.__doc__ or "").split())
+
     # --- spaces
 
     @functools.cached_property
     def action_space(self):
-        size = 3 if self.mode == "tip" else len(self.speeds) + (len(vibe.BUTTONS) if self.buttons else 0)
+        size = 3 if self.mode == "tip" else len(self.joints) + (len(vibe.BUTTONS) if self.buttons else 0)
         return spaces.Box(-1.0, 1.0, (size,), np.float32)
-
-    buttons = False  #: whether the action ends with the six buttons, pressed above 0
 
     @functools.cached_property
     def observation_space(self):
@@ -135,10 +159,8 @@ class Task:
             for name in self.pictures:
                 channels, dtype, low, high = PICTURES[name]
                 parts[name] = box(self.camera[1], self.camera[0], *channels, low=low, high=high, dtype=dtype)
-        parts.update({name: box(*shape) for name, shape in self.further.items()})
+        parts.update({name: box(*shape) for name, (shape, _) in self.further.items()})
         return spaces.Dict(parts)
-
-    further = {}  #: observations of the task: name to shape
 
     # --- episodes
 
@@ -206,10 +228,10 @@ class Task:
         actions = np.minimum(np.maximum(actions, -1), 1)
         before = self.current()
         joints = before["joints"].copy()
-        joints[:, : len(self.speeds)] += self._speed(actions) * (self.speeds / self.rate)
+        joints[:, : len(self.joints)] += self._speed(actions) * (self.speeds / self.rate)
         buttons = np.zeros((self.count, len(vibe.BUTTONS)))
         if self.buttons:
-            buttons[:] = actions[:, len(self.speeds):] > 0
+            buttons[:] = actions[:, len(self.joints):] > 0
         buttons[:, INSUFFLATE] = 1
         self.events = vibe.step_all(self.simulation, joints, buttons, self._steps(), self.threads)
         self.time += 1 / self.rate
@@ -226,8 +248,8 @@ class Task:
     def _speed(self, actions):
         """Joint speeds as shares of the greatest, from shares of them or from the tip's velocity in its own axes."""
         if self.mode == "joints":
-            return actions[:, : len(self.speeds)]
-        shares = np.zeros((self.count, len(self.speeds)))
+            return actions[:, : len(self.joints)]
+        shares = np.zeros((self.count, len(self.joints)))
         for slot, simulation in enumerate(self.simulation):
             speed = simulation.tip_pose[:3, :3] @ (TIP_SPEED * actions[slot])
             shares[slot] = tip_motion(simulation.jacobian, speed, self.speeds)
@@ -275,6 +297,9 @@ class Task:
         return {"organ": self.organ[slot].name, "time": float(self.time[slot]),
                 "max_force": float(self.best_force[slot]), "events": [event.kind for event in self.events[slot]]}
 
+    def expert(self, seed):
+        """For subclasses: a policy with reset(task) and action(task, observation) that shows how it is done, or None."""
+
     def close(self):
         for organ, simulation in zip(self.organ, self.simulation):
             if simulation is not None:
@@ -286,6 +311,33 @@ class Task:
     def _check_open(self):
         if self.closed:
             raise vibe.Error("The environment is closed; make another one.")
+
+
+def _register(task):
+    """Makes a class known by its name. One of the same place is what it was before it was changed, as in a notebook."""
+    known = TASKS.get(task.name, task)
+    if (known.__module__, known.__qualname__) != (task.__module__, task.__qualname__):
+        raise vibe.Error(f"{known.__module__} has a task {task.name!r}; give that of {task.__module__} another name.")
+    TASKS[task.name] = task
+    identifier = f"vibe/{task.name}-v0"
+    if REAL and identifier not in gymnasium.registry:
+        gymnasium.register(identifier, entry_point="vibe.env:Environment", kwargs={"task": task.name})
+
+
+def task_of(task):
+    """The class of a task: itself, its name, or MODULE:NAME, which imports the module that defines it, as Gymnasium does."""
+    if isinstance(task, type) and issubclass(task, Task):
+        return task
+    name = task
+    if isinstance(task, str) and ":" in task:
+        module, name = task.split(":", 1)
+        try:
+            importlib.import_module(module)
+        except ImportError as error:
+            raise vibe.Error(f"The task {vibe._shown(task)} cannot be had ({error}); name a module that can be imported.") from None
+    if not isinstance(name, str) or name not in TASKS:
+        raise vibe.Error(f"There is no task {vibe._shown(name)}; use one of {', '.join(TASKS)}.")
+    return TASKS[name]
 
 
 TIP_SPEED = 0.04  # of the tip at action 1 [m/s]

@@ -5,24 +5,16 @@ import numpy as np
 import vibe
 
 from .episodes import TIP_SPEED, tip_motion
-from .tasks import Inspect, Reach
 
 
 class Expert:
-    """Actions for an Environment. Reach: the tip goes straight to the goal. Inspect (action='joints'): the camera turns to
-    where most is unseen for the least turning, and keeps 6 cm from it. Both give way to a force. Mark, Bite, SutureSet: the
-    trainee of the library with the skill of an expert, which looks and pursues the goal. Call reset() after every reset of
-    the environment."""
+    """Actions for an Environment, by the policy that its task has for itself: Task.expert(). Call reset() after every reset
+    of the environment."""
 
     def __init__(self, environment, seed=1):
         task = environment.task
-        if hasattr(task, "protocol"):
-            self._policy = _Trainee(seed)
-        elif isinstance(task, Reach):
-            self._policy = _Reaching()
-        elif isinstance(task, Inspect) and task.mode == "joints":
-            self._policy = _Inspecting()
-        else:
+        self._policy = task.expert(seed)
+        if self._policy is None:
             raise vibe.Error(f"There is no expert for the task {task.name} with action={task.mode!r}.")
         self.environment = environment
 
@@ -39,7 +31,9 @@ def _shares(task, speed):
     return tip_motion(simulation.jacobian, simulation.tip_pose[:3, :3] @ speed, task.speeds)
 
 
-class _Reaching:
+class Reaching:
+    """The tip goes straight to the goal, and gives way to a force."""
+
     def reset(self, task):
         pass
 
@@ -52,8 +46,9 @@ class _Reaching:
         return np.clip(speed / TIP_SPEED, -1, 1) if task.mode == "tip" else _shares(task, speed)
 
 
-class _Inspecting:
-    """All numbers are design choices, found by trying."""
+class Inspecting:
+    """The camera turns to where most is unseen for the least turning, keeps 6 cm from it, and gives way to a force. All
+    numbers are design choices, found by trying."""
 
     apart = 0.06  # of the lens from what it looks at [m]
     cone = np.cos(0.8)  # half of what the camera sees about its axis
@@ -115,7 +110,9 @@ class _Inspecting:
         return shares / max(1.0, np.abs(shares).max())
 
 
-class _Trainee:
+class Pursuing:
+    """The trainee of the library with the skill of an expert, which looks and pursues the goal of the task's protocol."""
+
     def __init__(self, seed):
         self.seed = seed
 

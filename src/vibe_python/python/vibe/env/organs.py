@@ -38,6 +38,7 @@ class Organ:
             sections["breathing"] = {"rate": rate, "amplitude": amplitude}
         geometry = {"particles": particles, "shape": shape, "scale": scale}
         self.model = vibe.load(geometry=geometry, render_surface=False, **sections)
+        self.joint_speeds = np.array([speed for _, _, speed in self.model.joint_limits.values()])  # greatest [m/s], [rad/s]
         self.goals = {}  # of tasks, by what they are drawn from; see Task
         self._free = []
         self._lock = threading.Lock()

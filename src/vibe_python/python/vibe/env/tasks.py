@@ -1,4 +1,4 @@
-"""The tasks. Lengths in metres; rewards of a step are the sum of what is named here, -0.01, -0.02 per newton above 2 N
+"""The tasks. Lengths in metres; rewards of a step are the sum of what `reward` says, -0.01, -0.02 per newton above 2 N
 of force on the tool, and 10 when the episode succeeds. All weights are design choices."""
 
 import numpy as np
@@ -6,13 +6,14 @@ import numpy as np
 import vibe
 
 from .episodes import Task
+from .expert import Inspecting, Pursuing, Reaching
 
 
 class Reach(Task):
-    """Bring the tip to a place on the wall: within 3 mm of the inside of the wall (the success of arXiv 2509.00319).
-    Rewarded: 1 per centimetre that the tip comes nearer. Ten seconds."""
+    """The tip within 3 mm of a place on the inside of the wall (the success of arXiv 2509.00319)."""
 
     name = "Reach"
+    reward = "1 per centimetre that the tip comes nearer"
     tolerance = 3e-3
 
     def distance(self, seen):
@@ -29,17 +30,20 @@ class Reach(Task):
     def measures(self, slot):
         return {**super().measures(slot), "distance": float(self.distance(self.current())[slot])}
 
+    def expert(self, seed):
+        return Reaching()
+
 
 class Inspect(Task):
-    """Look at the wall: a picture of 64 x 64 pixels is taken after every action, and the triangles in it that are not
-    farther than 0.1 m count as seen. Rewarded: 10 times the share of the wall's area that is seen anew. Success: 60 %
-    of it. Thirty seconds; the goal of the observation has no meaning here."""
+    """60 % of the wall's area seen. A picture of 64 x 64 pixels is taken after every action, and the triangles in it that
+    are not farther than 0.1 m count as seen. The goal of the observation has no meaning here."""
 
     name = "Inspect"
+    reward = "10 times the share of the area that is seen anew"
     seconds = 30.0
     share = 0.6
     sight = 0.1
-    further = {"seen": (1,)}
+    further = {"seen": ((1,), "share of the area that was seen")}
 
     def begun(self, slot):
         self.mask = getattr(self, "mask", [None] * self.count)
@@ -71,16 +75,27 @@ class Inspect(Task):
     def measures(self, slot):
         return {**super().measures(slot), "seen": float(self.covered[slot])}
 
+    def expert(self, seed):
+        return Inspecting() if self.mode == "joints" else None
+
+
+APPROACH = "1 per centimetre that the tip comes nearer, until it is within 2 cm"
+
 
 class _Procedure(Task):
-    """Tasks with all seven joints, at the speeds of the URDF, and the six buttons; insufflate stays pressed."""
+    """Tasks with all seven joints and the six buttons; insufflate stays pressed. Subclasses have a `protocol` for the
+    trainee, in which {along} and {around} are the goal's."""
 
     rate = 60
-    speeds = np.array([0.15, 3.14, 3.14, 3.14, 0.1, 25.0, 0.1])
+    joints = vibe.JOINTS
     buttons = True
     seconds = 90.0
     tolerance = 10e-3
-    further = {"holds": (4,)}
+    further = {"holds": ((4,), "whether the helix grips, the arm is closed, the needle is on the arm, and loaded")}
+
+    @property
+    def speeds(self):
+        return self.organ[0].joint_speeds
 
     def observe_further(self, seen):
         rows = []
@@ -89,11 +104,14 @@ class _Procedure(Task):
             rows.append([now["grips"], now["arm_closed"], now["needle_on_arm"], now["needle_loaded"]])
         return {"holds": np.array(rows, float)}
 
+    def expert(self, seed):
+        return Pursuing(seed)
+
     def reachable(self, model, position, outward, joints):
         return True  # it need not be from straight ahead
 
     def approach(self, before, after):
-        """1 per centimetre that the tip comes nearer, until it is within 2 cm."""
+        """APPROACH."""
         far = np.maximum(np.linalg.norm(before["goal"] - before["tip"], axis=1), 0.02)
         near = np.maximum(np.linalg.norm(after["goal"] - after["tip"], axis=1), 0.02)
         return 100 * (far - near)
@@ -106,9 +124,10 @@ class _Procedure(Task):
 
 
 class Mark(_Procedure):
-    """Mark a place with the argon beam, within 10 mm. Rewarded: approach; -1 for every burn."""
+    """A mark by argon plasma within 10 mm of a place."""
 
     name = "Mark"
+    reward = f"{APPROACH}; -1 for every burn"
     seconds = 40.0
     protocol = "goals:\n  - mark: {{along: {along}, around: {around} rad}}\n"
 
@@ -119,10 +138,10 @@ class Mark(_Procedure):
 
 
 class Bite(_Procedure):
-    """One bite through the wall within 10 mm of a place. Rewarded: approach; 1 when the helix takes hold; -1 for every
-    bite elsewhere and every slip."""
+    """One bite through the wall within 10 mm of a place."""
 
     name = "Bite"
+    reward = f"{APPROACH}; 1 when the helix takes hold; -1 for every bite elsewhere and every slip"
     protocol = "goals:\n  - bite: {{along: {along}, around: {around} rad}}\n"
 
     def judge(self, before, after):
@@ -133,10 +152,10 @@ class Bite(_Procedure):
 
 
 class SutureSet(_Procedure):
-    """A suture set of seven bites in the shape of a U around a place, with T-tag and cinch. Rewarded: approach; 1 for
-    every bite. Success: cinched, and recognised as U."""
+    """A suture set of seven bites around a place, with T-tag and cinch, that is cinched and recognised as U."""
 
     name = "SutureSet"
+    reward = f"{APPROACH}; 1 for every bite"
     seconds = 240.0
     around = (-0.3, 0.3)
     protocol = ("goals:\n  - suture_set: {{pattern: u, bites: 7, along: {along}, around: {around} rad, "
@@ -148,14 +167,3 @@ class SutureSet(_Procedure):
         for slot in np.flatnonzero(success):
             success[slot] = any(t["stage"] == "cinched" and t["technique"] == "u" for t in self.simulation[slot].threads())
         return self.approach(before, after) + bites, success
-
-
-TASKS = {task.name: task for task in (Reach, Inspect, Mark, Bite, SutureSet)}
-
-
-def task_of(task):
-    if isinstance(task, type) and issubclass(task, Task):
-        return task
-    if not isinstance(task, str) or task not in TASKS:
-        raise vibe.Error(f"There is no task {vibe._shown(task)}; use one of {', '.join(TASKS)}.")
-    return TASKS[task]

@@ -1,5 +1,6 @@
 """The tables of the pages: numbers as people read them, with their units."""
 
+import dataclasses
 import statistics
 
 from .references import REFERENCES, verdict
@@ -34,6 +35,31 @@ INDEX_COLUMNS = (
     ("> 5 N [s]", "time_above", 1, 1),
     ("blood [mL]", "blood_lost", 1e6, 1),
     ("warnings", "warning_count", 1, 0),
+)
+# the same without headings, which are in the template
+PHASE_COLUMNS = (
+    ("phase", 1, None), ("time", 1, 1), ("path_length", 1, 3), ("log_dimensionless_jerk", 1, 2),
+    ("spectral_arc_length", 1, 2), ("submovements", 1, 0), ("economy", 1, 2), ("max_force", 1, 2), ("mean_force", 1, 2),
+    ("time_above", 1, 2),
+)  # fmt: skip
+SET_COLUMNS = (
+    ("set", 1, None), ("technique", 1, None), ("technique_margin", 1, 2), ("bites", 1, None), ("full_thickness", 1, None),
+    ("tear_outs", 1, None), ("along", 1, 2), ("spacing_mean", 1e3, 1), ("depth_mean", 1e3, 1), ("thread_length", 1e3, 1),
+    ("thread_drawn", 1e3, 1), ("cinch_tension", 1, 2), ("tension", 1, 2), ("time", 1, 1), ("stage", 1, None),
+)  # fmt: skip
+# and with the words of the row first and the unit last; the stages of a step follow the first three
+SOLVER_ROWS = (
+    ("CPU time of a step, p50", "step_p50", 1e3, 2, "ms"),
+    ("CPU time of a step, p99", "step_p99", 1e3, 2, "ms"),
+    ("CPU time of a step, max", "step_max", 1e3, 2, "ms"),
+    ("wall time of a step with messages, p50", "total_p50", 1e3, 2, "ms"),
+    ("wall time of a step with messages, p99", "total_p99", 1e3, 2, "ms"),
+    ("wall time of a step with messages, max", "total_max", 1e3, 2, "ms"),
+    ("real-time factor", "real_time_factor", 1, 2, ""),
+    ("missed deadlines", "missed_deadlines", 1, None, ""),
+    ("steps that ended at the limit of their work", "unfinished_steps", 1, None, ""),
+    ("residual, max", "residual", 1e6, 2, "µm"),
+    ("particles", "particles", 1, None, ""),
 )
 # what is drawn and summed up by group
 MAIN_MEASURES = (
@@ -116,81 +142,28 @@ def reference_rows(numbers):
     for reference in REFERENCES:
         value = numbers["measures"].get(reference.measure)
         scaled = value * reference.scale if value is not None else None
-        rows.append(
-            {
-                "label": reference.label,
-                "unit": reference.unit,
-                "value": shown(scaled, 1, reference.digits),
-                "verdict": verdict(reference, scaled),
-                "expert": reference.expert,
-                "novice": reference.novice,
-                "other": reference.other,
-                "source": reference.source,
-                "note": reference.note,
-            }
-        )
+        words = {"value": shown(scaled, 1, reference.digits), "verdict": verdict(reference, scaled)}
+        rows.append({**dataclasses.asdict(reference), **words})
     return rows
+
+
+def cells(row, columns):
+    return [shown(row.get(key), scale, digits) for key, scale, digits in columns]
 
 
 def phase_rows(numbers):
     whole = {"phase": "whole", **numbers["measures"]}
-    return [
-        [
-            phase["phase"],
-            shown(phase.get("time"), 1, 1),
-            shown(phase.get("path_length"), 1, 3),
-            shown(phase.get("log_dimensionless_jerk"), 1, 2),
-            shown(phase.get("spectral_arc_length"), 1, 2),
-            shown(phase.get("submovements"), 1, 0),
-            shown(phase.get("economy"), 1, 2),
-            shown(phase.get("max_force"), 1, 2),
-            shown(phase.get("mean_force"), 1, 2),
-            shown(phase.get("time_above"), 1, 2),
-        ]
-        for phase in numbers["phases"] + ([whole] if numbers["phases"] else [])
-    ]
+    return [cells(phase, PHASE_COLUMNS) for phase in numbers["phases"] + ([whole] if numbers["phases"] else [])]
 
 
 def set_rows(numbers):
-    return [
-        [
-            str(each["set"]),
-            shown(each["technique"]),
-            shown(each["technique_margin"], 1, 2),
-            shown(each["bites"]),
-            shown(each["full_thickness"]),
-            shown(each["tear_outs"]),
-            shown(each["along"], 1, 2),
-            shown(each["spacing_mean"], 1e3, 1),
-            shown(each["depth_mean"], 1e3, 1),
-            shown(each["thread_length"], 1e3, 1),
-            shown(each["thread_drawn"], 1e3, 1),
-            shown(each["cinch_tension"], 1, 2),
-            shown(each["tension"], 1, 2),
-            shown(each["time"], 1, 1),
-            each["stage"],
-        ]
-        for each in numbers["sets"]
-    ]
+    return [cells(each, SET_COLUMNS) for each in numbers["sets"]]
 
 
 def solver_rows(numbers):
     solver = numbers["solver"]
-    get = solver.get
-    return [
-        ("CPU time of a step, p50", shown(get("step_p50"), 1e3, 2), "ms"),
-        ("CPU time of a step, p99", shown(get("step_p99"), 1e3, 2), "ms"),
-        ("CPU time of a step, max", shown(get("step_max"), 1e3, 2), "ms"),
-        *stage_rows(solver["stages"]),
-        ("wall time of a step with messages, p50", shown(get("total_p50"), 1e3, 2), "ms"),
-        ("wall time of a step with messages, p99", shown(get("total_p99"), 1e3, 2), "ms"),
-        ("wall time of a step with messages, max", shown(get("total_max"), 1e3, 2), "ms"),
-        ("real-time factor", shown(get("real_time_factor"), 1, 2), ""),
-        ("missed deadlines", shown(get("missed_deadlines")), ""),
-        ("steps that ended at the limit of their work", shown(get("unfinished_steps")), ""),
-        ("residual, max", shown(get("residual"), 1e6, 2), "µm"),
-        ("particles", shown(get("particles")), ""),
-    ]
+    rows = [(words, shown(solver.get(key), scale, digits), unit) for words, key, scale, digits, unit in SOLVER_ROWS]
+    return rows[:3] + stage_rows(solver["stages"]) + rows[3:]
 
 
 def stage_rows(stages):
