@@ -10,8 +10,11 @@ namespace vibe::vision {
 /// tracker_numbers.inl is a member here, a row of docs/vision.md, and something that `vibe_tracker_numbers` shifts to
 /// see what moves.
 struct TrackerPolicy {
+/// No member.
 #define VIBE_POLICY_SECTION(title)
+/// A number with a unit, or a ratio.
 #define VIBE_REAL(name, value, unit, meaning, reason) double name = value;
+/// A count.
 #define VIBE_COUNT(name, value, meaning, reason) int name = value;
 #include "vibe_vision/track/tracker_numbers.inl"
 #undef VIBE_POLICY_SECTION
@@ -21,12 +24,15 @@ struct TrackerPolicy {
 
 /// One number of the policy, for tables and for what shifts it.
 struct TrackerNumber {
-  std::string section, name;
-  std::string unit;  ///< empty for a ratio or a count
-  std::string meaning, reason;
-  double TrackerPolicy::*real = nullptr;  ///< exactly one of `real` and `count` is set
-  int TrackerPolicy::*count = nullptr;
+  std::string section;                    ///< what it decides about
+  std::string name;                       ///< of the member of TrackerPolicy
+  std::string unit;                       ///< empty for a ratio or a count
+  std::string meaning;                    ///< what it is
+  std::string reason;                     ///< why it has its default
+  double TrackerPolicy::*real = nullptr;  ///< the member, in `unit`; null if it is a count
+  int TrackerPolicy::*count = nullptr;    ///< the member, if it is a count
 
+  /// Its value in a policy.
   double of(const TrackerPolicy& policy) const { return real != nullptr ? policy.*real : policy.*count; }
   /// A count becomes the nearest whole number, at least 1 above or below where it would stay the same.
   void scale(TrackerPolicy& policy, double factor) const;
