@@ -36,7 +36,7 @@ newerSources() {
   [ $# -gt 0 ] || folders=("$vibe_root/src")
   for name in "$@"; do [ ! -d "$vibe_root/src/$name" ] || folders+=("$vibe_root/src/$name"); done
   [ ${#folders[@]} -eq 0 ] || find "${folders[@]}" -type f -newer "$built" "${without[@]}" \( -name '*.[ch]pp' -o -name '*.[ch]' \
-    -o -name '*.cc' -o -name '*.msg' -o -name '*.srv' -o -name '*.action' -o -name '*.cmake' -o -name CMakeLists.txt \
+    -o -name '*.cc' -o -name '*.inl' -o -name '*.msg' -o -name '*.srv' -o -name '*.action' -o -name '*.cmake' -o -name CMakeLists.txt \
     -o -name package.xml -o -name setup.py \)
 }
 

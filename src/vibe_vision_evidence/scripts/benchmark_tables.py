@@ -7,11 +7,10 @@ There, cells of what the table does not have, methods or scenes that were not ru
 import argparse
 import math
 import os
-import re
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from benchmark_rows import isStandard, readRows
+from benchmark_rows import isStandard, readRows, updatePage
 
 SCENES = {
     'static': 'at rest', 'moving': 'moving, 1 ms exposure', 'long_exposure': '4 ms exposure', 'defocus': 'defocus',
@@ -208,15 +207,7 @@ def main():
     if not arguments.update:
         print('\n\n'.join(text.replace(MISSING, '–') for text in texts.values()))
         return
-    with open(arguments.update) as file:
-        page = file.read()
-    for name, text in texts.items():
-        page, count = re.subn(rf'(<!-- bench: {name} -->\n)(.*?)(<!-- end -->)',
-                              lambda m, t=text: f'{m[1]}{keep(m[2], t)}\n{m[3]}', page, flags=re.DOTALL)
-        if count != 1:
-            raise SystemExit(f"'{arguments.update}' has {count} places '<!-- bench: {name} -->'; it needs exactly one.")
-    with open(arguments.update, 'w') as file:
-        file.write(page)
+    updatePage(arguments.update, {name: lambda old, text=text: keep(old, text) for name, text in texts.items()})
 
 
 if __name__ == '__main__':

@@ -5,9 +5,12 @@ Prints it as Markdown, or with --update writes it between the marks <!-- bench: 
 """
 import argparse
 import csv
-import re
+import os
+import sys
 
-MARK = re.compile(r'(<!-- bench: numbers -->\n).*?(<!-- end -->)', re.DOTALL)
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from benchmark_rows import updatePage
+
 NOTICEABLE = 0.005  # change of an error, relative
 
 
@@ -47,12 +50,7 @@ def main():
     if not arguments.update:
         print(text)
         return
-    with open(arguments.update, encoding='utf-8') as file:
-        page, count = MARK.subn(lambda mark: f'{mark[1]}{text}\n{mark[2]}', file.read())
-    if count != 1:
-        raise SystemExit(f"'{arguments.update}' has {count} places '<!-- bench: numbers -->'; it needs exactly one.")
-    with open(arguments.update, 'w', encoding='utf-8') as file:
-        file.write(page)
+    updatePage(arguments.update, {'numbers': lambda _: text})
 
 
 if __name__ == '__main__':
