@@ -19,7 +19,7 @@ from catkin_pkg.package import parse_package
 
 DEVELOPMENT = "vibe-dev"
 DEVELOPMENT_ONLY = {"vibe_cmake", "vibe_testing"}
-UNPACKAGED = {"vibe_system_tests"}  # they test the workspace
+UNPACKAGED = {"vibe_system_tests", "vibe_vision_evidence"}  # they test and measure the workspace
 # Python modules beside a library that is used in C++, and macros of CMake: they bring headers of all of ROS and Boost
 COMPILERS_ONLY = {"python3-cv-bridge", "python3-tf2-ros", "ros-message-runtime"}
 SHOWN_BY = {"vibe_description"}  # what shows it is recommended: the simulator without ROS reads it, too

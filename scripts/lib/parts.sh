@@ -6,7 +6,7 @@ packagesOf() {
   case $1 in
     session) echo vibe_cmake vibe_msgs vibe_core vibe_description vibe_ros_utils vibe_sim vibe_graphics vibe_endoscope vibe_rviz_plugins vibe_sessions vibe_bringup ;;
     devices) echo vibe_firmware vibe_hardware ;;
-    vision) echo vibe_vision ;;
+    vision) echo vibe_vision vibe_vision_evidence ;;
     measurements) echo vibe_latency vibe_prototype vibe_testing vibe_benchmarks ;;
     python) echo vibe_python ;;
     web) echo vibe_web ;;
@@ -36,7 +36,7 @@ newerSources() {
   [ $# -gt 0 ] || folders=("$vibe_root/src")
   for name in "$@"; do [ ! -d "$vibe_root/src/$name" ] || folders+=("$vibe_root/src/$name"); done
   [ ${#folders[@]} -eq 0 ] || find "${folders[@]}" -type f -newer "$built" "${without[@]}" \( -name '*.[ch]pp' -o -name '*.[ch]' \
-    -o -name '*.cc' -o -name '*.msg' -o -name '*.srv' -o -name '*.action' -o -name '*.cmake' -o -name CMakeLists.txt \
+    -o -name '*.cc' -o -name '*.inl' -o -name '*.msg' -o -name '*.srv' -o -name '*.action' -o -name '*.cmake' -o -name CMakeLists.txt \
     -o -name package.xml -o -name setup.py \)
 }
 

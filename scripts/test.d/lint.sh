@@ -75,6 +75,18 @@ check 'lint sees a room that is not in the table' findsRoomProblem src/attic/a.c
 check 'lint sees an include of a header that is not there' findsRoomProblem src/solver/a.cpp \
   '#include "vibe_core/state/lost.hpp"' 'is no public header'
 
+seesRoomsOfTheCameras() {
+  local tree
+  tree=$(copyOfTree)
+  mkdir -p "$tree"/src/vibe_vision/src/{tag,track}
+  touch "$tree/src/vibe_vision/src/track/a.hpp"
+  "$tree/scripts/lint" --only rooms || return 1
+  echo '#include "track/a.hpp"' >"$tree/src/vibe_vision/src/tag/a.cpp"
+  refuses 1 'not clean: rooms' bash -c '"$1" --only rooms 2>&1 >"$2"' - "$tree/scripts/lint" "$tree/said" &&
+    grep -F 'src/vibe_vision/src/tag/a.cpp:1: tag includes "track/a.hpp", but track comes after tag' "$tree/said"
+}
+check 'lint sees a circle between rooms of the cameras' seesRoomsOfTheCameras
+
 # findsName FILE TEXT PATTERN: two sources of a folder and a header pass; with TEXT in FILE lint must name the problem
 findsName() {
   local tree core

@@ -24,7 +24,7 @@ containsAll() {
   for folder in "$root"/src/*/; do
     folder=$(basename "$folder")
     case $folder in
-      vibe_system_tests) ;; # of the workspace
+      vibe_system_tests|vibe_vision_evidence) ;; # of the workspace
       vibe_cmake|vibe_testing) grep -qxF "$folder vibe-dev" "$scratch/debian/ros_packages" ;;
       *) grep -qxF "${folder//_/-}" "$scratch/packages" ;;
     esac || { echo "$folder is in no package"; return 1; }

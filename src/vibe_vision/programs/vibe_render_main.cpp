@@ -57,15 +57,6 @@ std::ofstream openTable(const std::filesystem::path& file) {
   return table;
 }
 
-void writeTruth(std::ostream& table, const vision::RenderedFrame& rendered, const vision::SyntheticScene& scene) {
-  for (std::size_t i = 0; i < rendered.truth.size(); ++i) {
-    const vision::SyntheticTruth& t = rendered.truth[i];
-    table << rendered.frame.sequence << ',' << rendered.frame.stamp << ',' << scene.instruments[i].nominal.name << ','
-          << t.slide << ',' << t.rotation << ',' << t.along << ',' << t.lateral << ',' << t.pixel.x() << ','
-          << t.pixel.y() << ',' << t.velocity << ',' << t.visible << '\n';
-  }
-}
-
 void render(const Options& options) {
   const vision::SyntheticScene scene = vision::namedScene(options.scene);
   std::error_code failed;
@@ -76,7 +67,7 @@ void render(const Options& options) {
   std::ofstream truth = openTable(folder / "truth.csv");
   openTable(folder / "config.yaml") << vision::toYaml(vision::nominalConfig(scene));
   stamps << "sequence,stamp,exposure\n";
-  truth << "sequence,stamp,instrument,slide,rotation,along,lateral,x,y,velocity,visible\n";
+  truth << vision::kTruthColumns;
 
   const vision::Renderer renderer(scene);
   Recording recording(options, scene);
@@ -84,7 +75,9 @@ void render(const Options& options) {
     const vision::RenderedFrame rendered = renderer.render(k, options.start);
     recording.add(rendered.frame);
     stamps << rendered.frame.sequence << ',' << rendered.frame.stamp << ',' << rendered.frame.exposure << '\n';
-    writeTruth(truth, rendered, scene);
+    for (std::size_t i = 0; i < rendered.truth.size(); ++i)
+      vision::writeTruth(truth, rendered.frame.sequence, rendered.frame.stamp, scene.instruments[i].nominal.name,
+                         rendered.truth[i]);
   }
 }
 

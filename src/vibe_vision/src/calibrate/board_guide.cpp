@@ -29,23 +29,13 @@ std::vector<cv::Point2f> pointsOf(const std::vector<Eigen::Vector2d>& corners) {
   return points;
 }
 
-/// "a, b and c"
-std::string listOf(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i)
-    text += (i == 0 ? "" : i + 1 < words.size() ? ", " : " and ") + words[i];
-  return text;
-}
-
 /// Grey value below which a share of the pixels is.
 int quantileOf(const cv::Mat& grey, double share) {
-  std::array<int, 256> counts{};
-  for (int y = 0; y < grey.rows; ++y)
-    for (int x = 0; x < grey.cols; ++x) ++counts[grey.at<std::uint8_t>(y, x)];
-  double left = share * static_cast<double>(grey.total());
-  int value = 0;
-  while (value < 255 && (left -= counts[static_cast<std::size_t>(value)]) > 0) ++value;
-  return value;
+  std::vector<std::uint8_t> values;
+  for (int y = 0; y < grey.rows; ++y) values.insert(values.end(), grey.ptr(y), grey.ptr(y) + grey.cols);
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
 }
 
 /// Why no board is found.

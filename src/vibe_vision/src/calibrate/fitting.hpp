@@ -57,6 +57,14 @@ Number median(std::vector<Number> values) {
   return *middle;
 }
 
+/// "a, b and c"
+inline std::string listOf(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += (i == 0 ? "" : i + 1 < words.size() ? ", " : " and ") + words[i];
+  return text;
+}
+
 inline std::string withDecimals(double value, int decimals) {
   char text[40];
   std::snprintf(text, sizeof text, "%.*f", decimals, value);

@@ -6,7 +6,7 @@
 #include "calibrate/fitting.hpp"
 #include "tag/tag_place.hpp"
 #include "vibe_core/program/error.hpp"
-#include "vibe_vision/marker/tag_reader.hpp"
+#include "vibe_vision/tag/tag_reader.hpp"
 #include "vibe_vision/track/tracker.hpp"
 
 namespace vibe::vision {

@@ -156,7 +156,7 @@ struct FakeCamera::Impl {
   void openTruth() {
     truth.open(options.truth_file);
     if (!truth) throw Error(options.truth_file + ": cannot be written; check the folder and its permissions.");
-    truth << "sequence,stamp,instrument,slide,rotation,along,lateral,x,y,velocity,visible\n" << std::setprecision(17);
+    truth << kTruthColumns << std::setprecision(17);
   }
 
   void openBlinks() {
@@ -222,10 +222,9 @@ struct FakeCamera::Impl {
   void write(double stamp, const FrameRing::Turn& turn, double rate) {
     const double pace = (turn.is_backward ? -1 : 1) * rate / ring->rate;
     for (std::size_t i = 0; i < ring->instruments.size(); ++i) {
-      const SyntheticTruth& t = ring->truth[turn.index][i];
-      truth << kFirstFrame + sent << ',' << stamp << ',' << ring->instruments[i] << ',' << t.slide << ',' << t.rotation
-            << ',' << t.along << ',' << t.lateral << ',' << t.pixel.x() << ',' << t.pixel.y() << ','
-            << pace * t.velocity << ',' << t.visible << '\n';
+      SyntheticTruth shown = ring->truth[turn.index][i];
+      shown.velocity *= pace;
+      writeTruth(truth, kFirstFrame + sent, stamp, ring->instruments[i], shown);
     }
     truth.flush();  // complete whenever somebody looks
   }

@@ -1,5 +1,6 @@
 #include "vibe_vision/config/vision_config.hpp"
 
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "config/config_reader.hpp"
@@ -42,14 +43,9 @@ std::size_t VisionConfig::indexOf(const std::string& instrument) const {
 
 namespace {
 
-/// A single value of a flow list or map: quoted where YAML would read something else.
+/// A text that YAML reads as it is: a string of JSON.
 std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + "\"";
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 std::string pair(double a, double b, const std::string& unit) {

@@ -48,52 +48,6 @@ double percent(std::uint64_t part, std::uint64_t whole) {
 
 }  // namespace
 
-const char* toWord(LostReason reason) {
-  switch (reason) {
-    case LostReason::None:
-      return "";
-    case LostReason::NotFound:
-      return "not_found";
-    case LostReason::Occluded:
-      return "occluded";
-    case LostReason::Saturated:
-      return "saturated";
-    case LostReason::Dark:
-      return "dark";
-    case LostReason::Mismatch:
-      return "mismatch";
-    case LostReason::Jump:
-      return "jump";
-    case LostReason::OutOfView:
-      return "out_of_view";
-    case LostReason::WrongImage:
-      return "wrong_image";
-    case LostReason::NoFrame:
-      return "no_frame";
-  }
-  return "unknown";
-}
-
-const char* toWord(Doubt doubt) {
-  switch (doubt) {
-    case Doubt::None:
-      return "";
-    case Doubt::Size:
-      return "size";
-    case Doubt::Shutter:
-      return "shutter";
-    case Doubt::Unchecked:
-      return "unchecked";
-    case Doubt::Askew:
-      return "askew";
-    case Doubt::Bent:
-      return "bent";
-    case Doubt::Response:
-      return "response";
-  }
-  return "unknown";
-}
-
 TrackTable::TrackTable(const std::string& file, const VisionConfig& config) : file_(file), out_(file) {
   if (!out_) throw Error(file + ": cannot be written; give a file in an existing folder that you may write to");
   for (const InstrumentConfig& instrument : config.instruments) names_.push_back(field(instrument.name));

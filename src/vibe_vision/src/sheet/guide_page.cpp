@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "calibrate/fitting.hpp"
 #include "sheet/sheet_layout.hpp"
 #include "vibe_core/program/error.hpp"
 
@@ -63,12 +64,6 @@ class GuidePainter {
  private:
   cairo_t* context_;
   double room_, left_, right_, bottom_, y_ = kMargin;
-
-  static std::string listOf(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text;
-  }
 
   void colour(const Colour& c) { cairo_set_source_rgb(context_, c.red, c.green, c.blue); }
   void face(Face which, double size) {

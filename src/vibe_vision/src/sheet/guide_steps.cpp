@@ -2,17 +2,10 @@
 
 #include <cstdio>
 
+#include "calibrate/fitting.hpp"
+
 namespace vibe::vision {
 namespace {
-
-std::string listed(const std::vector<std::string>& names, std::size_t from) {
-  std::string text;
-  for (std::size_t i = from; i < names.size(); ++i) {
-    if (i > from) text += i + 1 == names.size() ? " and " : ", ";
-    text += names[i];
-  }
-  return text;
-}
 
 /// "rig.yaml" -> "rig_2.yaml": what the second command writes.
 std::string numbered(const std::string& file, std::size_t number) {
@@ -28,7 +21,8 @@ GuideStep axisStep(const std::string& rig, const std::vector<std::string>& instr
       " at 8 to 12 known slides over its whole range, with gauge blocks, and take a picture at each with "
       "the camera's own viewer. List them in stops.csv.";
   if (instruments.size() > 1)
-    what += " Then the same for " + listed(instruments, 1) + ", each beginning with the file that was written last.";
+    what += " Then the same for " + listOf(std::vector<std::string>(instruments.begin() + 1, instruments.end())) +
+            ", each beginning with the file that was written last.";
   return {
       "Axis of each instrument.", what,
       "rosrun vibe_vision vibe_calibrate axis --config " + numbered(rig, 1) + " --instrument " + first + " --stops " +

@@ -4,7 +4,7 @@
 
 #include "sheet/sheet_layout.hpp"
 #include "vibe_core/program/error.hpp"
-#include "vibe_vision/marker/tag_reader.hpp"
+#include "vibe_vision/tag/tag_reader.hpp"
 
 namespace vibe::vision {
 namespace {

@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "synthetic/degradation.hpp"
-#include "vibe_vision/marker/tag_reader.hpp"
 #include "vibe_vision/synthetic/synthetic_scene.hpp"
+#include "vibe_vision/tag/tag_reader.hpp"
 
 namespace vibe::vision {
 namespace {
@@ -61,6 +61,14 @@ SyntheticTruth truthAt(const SyntheticScene& scene, std::size_t instrument, doub
   truth.velocity = (ideal(time + kStep) - ideal(time - kStep)).dot(axis.direction) / (2 * kStep);
   truth.visible = visibleShare(scene, object, time);
   return truth;
+}
+
+void writeTruth(std::ostream& table, std::uint64_t sequence, double stamp, const std::string& instrument,
+                const SyntheticTruth& t) {
+  table << sequence << ',' << stamp << ',' << instrument;
+  for (const double value : {t.slide, t.rotation, t.along, t.lateral, t.pixel.x(), t.pixel.y(), t.velocity, t.visible})
+    table << ',' << value;
+  table << '\n';
 }
 
 void setTag(SyntheticInstrument& instrument, const TagDesign& tag) {

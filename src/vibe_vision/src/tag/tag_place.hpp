@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "vibe_vision/config/vision_config.hpp"
-#include "vibe_vision/marker/tag_reader.hpp"
+#include "vibe_vision/tag/tag_reader.hpp"
 
 namespace vibe::vision {
 

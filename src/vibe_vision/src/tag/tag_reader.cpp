@@ -1,4 +1,4 @@
-#include "vibe_vision/marker/tag_reader.hpp"
+#include "vibe_vision/tag/tag_reader.hpp"
 
 #include <apriltag/apriltag.h>
 #include <apriltag/tag36h11.h>
@@ -65,10 +65,10 @@ class TagReader::Detector {
 
 class TagReader::AprilTagDetector : public Detector {
  public:
-  AprilTagDetector(int id, bool refine_edges) : id_(id) {
+  explicit AprilTagDetector(int id) : id_(id) {
     detector_->nthreads = 1;
     detector_->quad_decimate = 1;
-    detector_->refine_edges = refine_edges;
+    detector_->refine_edges = true;
     apriltag_detector_add_family(detector_, family_);
   }
   ~AprilTagDetector() override {
@@ -129,9 +129,9 @@ class TagReader::ArucoDetector : public Detector {
   cv::Ptr<cv::aruco::DetectorParameters> parameters_ = arucoParameters();
 };
 
-TagReader::TagReader(const TagDesign& tag, double pixels_per_metre, bool refine_edges) {
+TagReader::TagReader(const TagDesign& tag, double pixels_per_metre) {
   if (tag.family == TagFamily::AprilTag)
-    detector_ = std::make_unique<AprilTagDetector>(tag.id, refine_edges);
+    detector_ = std::make_unique<AprilTagDetector>(tag.id);
   else
     detector_ = std::make_unique<ArucoDetector>(tag.id, tag.side * pixels_per_metre / tagCells(tag.family));
 }

@@ -24,14 +24,6 @@ inline Four loadFour(const float* p) {
 inline void store(float* p, Four v) {
   __builtin_memcpy(p, &v, sizeof v);
 }
-inline Four greater(Four a, Four b) {
-  return a > b ? a : b;
-}
-inline Four squareRoot(Four v) {
-  Four root;
-  for (int k = 0; k < 4; ++k) root[k] = std::sqrt(v[k]);  // one instruction
-  return root;
-}
 
 inline double total(Four s) {
   return (static_cast<double>(s[0]) + s[1]) + (static_cast<double>(s[2]) + s[3]);

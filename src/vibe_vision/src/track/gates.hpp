@@ -1,25 +1,25 @@
 #pragma once
 
-#include "track/kalman_filters.hpp"
 #include "track/marker_fitter.hpp"
 #include "vibe_vision/config/vision_config.hpp"
+#include "vibe_vision/track/tracker_policy.hpp"
 
 namespace vibe::vision {
 
 /// Decides whether a fit is the marker.
 class Gates {
  public:
-  Gates(const VisionConfig& config, const InstrumentConfig& instrument);
+  Gates(const VisionConfig& config, const InstrumentConfig& instrument, const TrackerPolicy& policy = {});
 
   /// Everything that one picture tells. @param nominal  what the calibration says about size and tilt there
   /// @param expected  the place agrees with a good prediction
   LostReason judge(const MarkerFit& fit, const FitVector& nominal, bool expected = false) const;
-  /// Whether an instrument that was seen some time ago can be there. @param dt  since then [s]
-  bool isReachable(double slide, const MotionFilter::State& predicted, double last_slide, double dt) const;
 
  private:
+  double sureTilt(const MarkerFit& fit) const;
+
   GateConfig limits_;
-  MotionLimits motion_;
+  TrackerPolicy policy_;
   double begin_, end_;        ///< along the axis [px]
   double lateral_tolerance_;  ///< [px]
 };

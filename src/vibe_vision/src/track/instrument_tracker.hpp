@@ -3,6 +3,7 @@
 #include "track/gates.hpp"
 #include "track/kalman_filters.hpp"
 #include "track/marker_fitter.hpp"
+#include "track/outcome.hpp"
 #include "track/slow_state.hpp"
 
 namespace vibe::vision {
@@ -11,7 +12,7 @@ namespace vibe::vision {
 class InstrumentTracker {
  public:
   InstrumentTracker(const VisionConfig& config, const InstrumentConfig& instrument,
-                    std::unique_ptr<MarkerPattern> pattern);
+                    std::unique_ptr<MarkerPattern> pattern, const TrackerPolicy& policy);
 
   /// @param frame  an image of the calibration's sensor
   const Measurement& track(const Frame& frame);
@@ -42,22 +43,23 @@ class InstrumentTracker {
   bool searchRange(const Frame& frame, const Prediction& prediction, double begin, double end);
   MarkerFit tryCandidate(const Frame& frame, const Prediction& prediction, const AxisSearch::Candidate& candidate);
   FitPrior searchPrior(double slide) const;
-  static bool isPart(const MarkerFit& fit);
+  bool isPart(const MarkerFit& fit) const;
   bool isNear(const MarkerFit& fit, const Prediction& prediction) const;
   bool isExpected(const MarkerFit& fit, const Prediction& prediction, double stamp);
-  LostReason whyNothing(const AxisSearch::Result& found) const;
   void accept(const Frame& frame, const MarkerFit& fit, const Prediction& prediction, bool reacquired);
   void toMiddle(const Frame& frame, const MarkerFit& fit, double scale);
   void describe(const MarkerFit& fit);
   void updateFilters(double stamp, const MarkerFit& fit, double scale, bool restart);
 
   InstrumentConfig config_;
+  TrackerPolicy policy_;
   MarkerView view_;
   double min_contrast_;
   MarkerFitter fitter_;
   AxisMap map_;
   AxisSearch search_;
   Gates gates_;
+  Reach reach_;
   SlowState slow_;
   const SlowState unknown_;  ///< at the beginning, always
   LightModel light_;
@@ -67,8 +69,6 @@ class InstrumentTracker {
   double last_slide_ = 0, last_rotation_ = 0;
   int tries_ = 0;  ///< candidates of this frame
   int lost_frames_ = 0;
-  int jumps_ = 0;  ///< frames in a row that show the marker where it cannot be
-  double jump_slide_ = 0, jump_stamp_ = 0;
   LostReason reason_ = LostReason::NotFound;
   Measurement measurement_;
 };

@@ -30,7 +30,6 @@ class RingTable {
   int columns() const { return used_columns_; }
   double blur() const { return blur_; }  ///< of the composed table
   double motion() const { return motion_; }
-  double maxMotion() const { return max_motion_; }
 
  private:
   struct Level {

@@ -13,7 +13,7 @@
 #include "sheet/guide_steps.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_testing/expect_error.hpp"
-#include "vibe_vision/marker/tag_reader.hpp"
+#include "vibe_vision/tag/tag_reader.hpp"
 
 namespace vibe::vision::marker_sheet_test {
 namespace {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "track/outcome.hpp"
 #include "track/ring_scene.hpp"
 
 namespace vibe::vision::gates_test {
@@ -108,14 +109,22 @@ TEST(Gates, ShareThatIsSeen) {
   EXPECT_FALSE(cover(-25).tracked());
 }
 
-TEST(Gates, ReachOfAnInstrument) {
-  const SyntheticScene scene = ringScene("static");
-  const VisionConfig config = nominalConfig(scene);
-  const Gates gates(config, config.instruments[0]);
+TEST(Reach, OfAnInstrument) {
+  const Reach reach(0.8, {});
   MotionFilter::State state;
   state.covariance.diagonal().setConstant(1e-12);
-  EXPECT_TRUE(gates.isReachable(0.8 * 0.0068, state, 0, 0.0068));
-  EXPECT_FALSE(gates.isReachable(0.8 * 0.0068 + 2e-4, state, 0, 0.0068));
+  EXPECT_TRUE(reach.contains(0.8 * 0.0068, state, 0, 0.0068));
+  EXPECT_FALSE(reach.contains(0.8 * 0.0068 + 2e-4, state, 0, 0.0068));
+}
+
+TEST(Reach, IsGivenUpWhereThreeFramesAgree) {
+  Reach reach(0.8, {});
+  MotionFilter::State state;
+  state.covariance.diagonal().setConstant(1e-12);
+  EXPECT_FALSE(reach.believes(0.02, 0.007, state, 0, 0.007));
+  EXPECT_FALSE(reach.believes(0.01, 0.014, state, 0, 0.007));  // elsewhere: counted anew
+  EXPECT_FALSE(reach.believes(0.01, 0.021, state, 0, 0.007));
+  EXPECT_TRUE(reach.believes(0.01, 0.028, state, 0, 0.007));
 }
 
 TEST(Gates, ALookAlikeBesideTheMarkerIsNeverReported) {

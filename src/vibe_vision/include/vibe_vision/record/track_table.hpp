@@ -11,11 +11,6 @@
 
 namespace vibe::vision {
 
-/// "not_found", "occluded", ...: the reason as one word for tables; "" if tracked.
-const char* toWord(LostReason reason);
-/// "size", "shutter", ...: the same for what speaks against camera or calibration; "" if nothing does.
-const char* toWord(Doubt doubt);
-
 /// Results as CSV: one row per frame and instrument. Columns: docs/vision.md, "Tracking recorded material".
 class TrackTable {
  public:

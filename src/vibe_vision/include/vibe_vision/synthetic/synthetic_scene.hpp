@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,12 @@ struct SyntheticTruth {
   /// sleeve as it is seen, the cells of a tag.
   double visible = 1;
 };
+
+/// First line of a table of truths.
+constexpr const char* kTruthColumns = "sequence,stamp,instrument,slide,rotation,along,lateral,x,y,velocity,visible\n";
+/// A line of it.
+void writeTruth(std::ostream& table, std::uint64_t sequence, double stamp, const std::string& instrument,
+                const SyntheticTruth& truth);
 
 /// The rig as a calibration would describe it.
 VisionConfig nominalConfig(const SyntheticScene& scene);

@@ -8,6 +8,7 @@
 
 #include "vibe_vision/config/vision_config.hpp"
 #include "vibe_vision/image/frame.hpp"
+#include "vibe_vision/track/tracker_policy.hpp"
 
 namespace vibe::vision {
 
@@ -26,6 +27,8 @@ enum class LostReason {
   NoFrame = 9,     ///< no image
 };
 const char* toText(LostReason reason);  ///< a sentence for people
+/// "not_found", "occluded", ...: the reason as one word for tables; "" if tracked.
+const char* toWord(LostReason reason);
 
 /// What speaks against camera or calibration although the marker is tracked, from many frames.
 enum class Doubt {
@@ -38,6 +41,7 @@ enum class Doubt {
   Response    ///< the response of the camera is not the one that was given
 };
 const char* toText(Doubt doubt);  ///< a sentence for people, with possible causes; empty for None
+const char* toWord(Doubt doubt);  ///< "size", "shutter", ...: one word for tables; empty for None
 
 /// What one frame says about one instrument.
 struct Measurement {
@@ -74,7 +78,8 @@ using Measurements = std::vector<Measurement>;
 class Tracker {
  public:
   /// @throws Error if the configuration cannot be tracked: see checkMarker()
-  explicit Tracker(const VisionConfig& config);
+  /// @param policy  other numbers than the defaults are for experiments
+  explicit Tracker(const VisionConfig& config, const TrackerPolicy& policy = {});
   ~Tracker();
   Tracker(Tracker&&) noexcept;  ///< leaves the other unusable
   Tracker& operator=(Tracker&&) noexcept;

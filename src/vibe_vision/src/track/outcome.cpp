@@ -1,0 +1,114 @@
+#include "track/outcome.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "track/arithmetic.hpp"
+
+namespace vibe::vision {
+
+namespace {
+
+struct Words {
+  const char* word;      ///< for tables
+  const char* sentence;  ///< for people
+};
+
+/// By LostReason.
+constexpr Words kReasons[] = {
+    {"", "tracked"},
+    {"not_found", "nothing along the axis looks like the marker"},
+    {"occluded", "too little of the marker is visible"},
+    {"saturated", "the image is too bright"},
+    {"dark", "the image is too dark"},
+    {"mismatch", "pattern, size or tilt is not that of the marker"},
+    {"jump", "it would have moved faster than the instrument can"},
+    {"out_of_view", "the marker leaves the image"},
+    {"wrong_image", "the image does not have the size of the calibration"},
+    {"no_frame", "no image"},
+};
+
+/// By Doubt.
+constexpr Words kDoubts[] = {
+    {"", ""},
+    {"size",
+     "the marker is not as large as calibrated: the camera may have moved or have another lens, or the print another "
+     "size; calibrate the axis anew, or correct the size"},
+    {"shutter",
+     "the picture of the moving marker is sheared, as by a rolling shutter; use a camera with a global shutter"},
+    {"unchecked", "too few fast frames have been seen to exclude a rolling shutter; move the instrument to and fro"},
+    {"askew",
+     "the tilt of the sleeve's bars changes with its rotation: it may be glued askew, which moves its slide with the "
+     "rotation; glue it anew, its ends at right angles to the rod"},
+    {"bent",
+     "the marker is bent or its ends stand off: a ring is shortened towards two of its sides, or the ends of a marker "
+     "are not as far from the camera as its middle; glue it anew, a ring on something flat"},
+    {"response",
+     "the grey values do not grow with the light as configured: set camera.gamma to the camera's response, or switch "
+     "its gamma correction off"},
+};
+
+template <class Enum, std::size_t count>
+Words wordsOf(const Words (&table)[count], Enum value) {
+  const auto i = static_cast<std::size_t>(value);
+  return i < count ? table[i] : Words{"unknown", "unknown"};
+}
+
+}  // namespace
+
+const char* toText(LostReason reason) {
+  return wordsOf(kReasons, reason).sentence;
+}
+
+const char* toWord(LostReason reason) {
+  return wordsOf(kReasons, reason).word;
+}
+
+const char* toText(Doubt doubt) {
+  return wordsOf(kDoubts, doubt).sentence;
+}
+
+const char* toWord(Doubt doubt) {
+  return wordsOf(kDoubts, doubt).word;
+}
+
+Measurement lostMeasurement(LostReason reason) {
+  constexpr double kNotSeen = std::numeric_limits<double>::quiet_NaN();
+  Measurement lost;
+  lost.reason = reason;
+  lost.slide = lost.rotation = lost.along = lost.lateral = kNotSeen;
+  lost.pixel.setConstant(kNotSeen);
+  return lost;
+}
+
+LostReason whyNothing(const BandLight& light, double min_contrast, const TrackerPolicy& policy) {
+  if (!light.in_view) return LostReason::OutOfView;
+  if (light.saturated > policy.saturated_share) return LostReason::Saturated;
+  return light.brightest < policy.dark_contrasts * min_contrast ? LostReason::Dark : LostReason::NotFound;
+}
+
+void stateDoubts(const CalibrationDoubts& doubts, const MotionFilter::State& state, double scale, int height,
+                 const TrackerPolicy& policy, Measurement& measurement) {
+  const Doubt doubt = doubts.doubt();
+  measurement.along_variance += square(doubts.shutterError(state.mean[1] * scale, height));
+  measurement.covariance(0, 0) = measurement.along_variance / square(scale);
+  const double fastest = std::abs(state.mean[1]) + std::sqrt(state.covariance(1, 1));
+  const bool known = doubts.unknownShutterError(fastest, height) < policy.unchecked_shift;
+  measurement.doubt = known || doubt == Doubt::Shutter ? doubt : Doubt::Unchecked;
+}
+
+bool Reach::contains(double slide, const MotionFilter::State& predicted, double last_slide, double dt) const {
+  const double travel = max_speed_ * dt + policy_.rest;
+  return std::abs(slide - last_slide) <= travel ||
+         std::abs(slide - predicted.mean[0]) <= policy_.reach_deviations * predicted.deviation();
+}
+
+bool Reach::believes(double slide, double stamp, const MotionFilter::State& predicted, double last_slide, double dt) {
+  if (contains(slide, predicted, last_slide, dt)) return true;
+  const double step = max_speed_ * std::abs(stamp - jump_stamp_) + policy_.rest;
+  jumps_ = jumps_ > 0 && std::abs(slide - jump_slide_) < step ? jumps_ + 1 : 1;
+  jump_slide_ = slide, jump_stamp_ = stamp;
+  return jumped();
+}
+
+}  // namespace vibe::vision

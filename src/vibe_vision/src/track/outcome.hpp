@@ -1,0 +1,51 @@
+#pragma once
+
+#include "track/calibration_doubts.hpp"
+#include "track/kalman_filters.hpp"
+#include "vibe_vision/track/tracker_policy.hpp"
+
+namespace vibe::vision {
+
+/// What trackers of all markers say where nothing was seen.
+Measurement lostMeasurement(LostReason reason);
+
+/// What the pixels tell in which a marker was looked for.
+struct BandLight {
+  bool in_view = false;  ///< there are any
+  double saturated = 0;  ///< share of them
+  double brightest = 0;  ///< [DN]
+};
+LostReason whyNothing(const BandLight& light, double min_contrast, const TrackerPolicy& policy);
+
+/// States the doubt of a tracked instrument, and widens its variance by that of the shutter. As long as nobody knows
+/// whether all rows are exposed at the same time, what moves fast may be elsewhere.
+/// @param scale  [px/m]. @param height  of the sensor [px]
+void stateDoubts(const CalibrationDoubts& doubts, const MotionFilter::State& state, double scale, int height,
+                 const TrackerPolicy& policy, Measurement& measurement);
+
+/// The shift of a blurred marker's middle against its place at the middle of the exposure, per unit of acceleration:
+/// the mean of t^2 / 2 over the exposure.
+inline double exposureShift(double exposure) {
+  return exposure * exposure / 24;
+}
+
+/// Where an instrument can be. Frames in a row that agree on a place out of reach are believed: somebody moved it.
+class Reach {
+ public:
+  Reach(double max_speed, const TrackerPolicy& policy) : max_speed_(max_speed), policy_(policy) {}
+
+  /// A stop ends a motion at once: from where it was, only the speed is limited. @param dt  since then [s]
+  bool contains(double slide, const MotionFilter::State& predicted, double last_slide, double dt) const;
+  /// @return false if a place in a frame is out of reach and not believed yet
+  bool believes(double slide, double stamp, const MotionFilter::State& predicted, double last_slide, double dt);
+  bool jumped() const { return jumps_ >= policy_.jumps_to_believe; }
+  void settle() { jumps_ = 0; }
+
+ private:
+  double max_speed_;  ///< [m/s]
+  TrackerPolicy policy_;
+  int jumps_ = 0;  ///< frames in a row that show the marker where it cannot be
+  double jump_slide_ = 0, jump_stamp_ = 0;
+};
+
+}  // namespace vibe::vision

@@ -1,0 +1,60 @@
+#include <fstream>
+#include <iostream>
+
+#include "numbers/number_study.hpp"
+#include "vibe_core/program/command_line.hpp"
+#include "vibe_core/program/error.hpp"
+
+namespace vibe::vision::evidence {
+namespace {
+
+struct Options {
+  StudyOptions study;
+  std::string csv;
+  bool list = false;
+};
+
+int run(Options options) {
+  if (options.list) {
+    for (const TrackerNumber& n : trackerNumbers())
+      std::cout << n.name << " = " << n.of({}) << (n.unit.empty() ? "" : " ") << n.unit << ": " << n.meaning << " ("
+                << n.reason << ")\n";
+    return 0;
+  }
+  if (options.study.scenes.empty()) options.study.scenes = studyScenes();
+  const auto effects = studyNumbers(options.study, [](const std::string& scene) { std::cerr << scene << "\n"; });
+  std::ofstream file;
+  if (!options.csv.empty()) file.open(options.csv);
+  if (!options.csv.empty() && !file)
+    throw Error("--csv: cannot write to '" + options.csv + "'; name a file in a folder that exists");
+  writeEffects(options.csv.empty() ? std::cout : file, effects);
+  return 0;
+}
+
+int study(int argc, char** argv) {
+  CommandLine line(
+      "Shifts each number that decides in the tracker and says what moves on synthetic scenes: frames found, errors, "
+      "doubts.");
+  Options options;
+  line.option("--scene", options.study.scenes, "only these scenes of vibe_vision_bench");
+  line.option("--number", options.study.numbers, "only these numbers; --list shows them");
+  line.option("--factor", options.study.factors, "by which each is multiplied; default: 0.8 1.2");
+  line.option("--frames", options.study.frames, "of each scene").check(inRange(2, 100000)).showDefault();
+  line.option("--csv", options.csv, "write to this file instead of the standard output");
+  line.flag("--list", options.list, "print the numbers and end");
+  try {
+    return line.parse(argc, argv) ? run(options) : 0;
+  } catch (const UsageError& error) {
+    std::cerr << "vibe_tracker_numbers: " << error.what() << "; see --help.\n";
+  } catch (const std::exception& error) {
+    std::cerr << "vibe_tracker_numbers: " << error.what() << "\n";
+  }
+  return 2;
+}
+
+}  // namespace
+}  // namespace vibe::vision::evidence
+
+int main(int argc, char** argv) {
+  return vibe::vision::evidence::study(argc, argv);
+}

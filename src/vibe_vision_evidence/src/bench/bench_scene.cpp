@@ -1,0 +1,134 @@
+#include "bench/bench_scene.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+namespace vibe::vision::evidence {
+namespace {
+
+constexpr double kNominalMarker = 40;                      // [px]
+constexpr double kNominalSpeed = 0.5;                      // [m/s]
+constexpr double kTagSide = 4e-3;                          // [m]
+constexpr double kArucoBelow = 132, kAprilTagBelow = 232;  // the ring; look-alikes pass between them [px]
+
+void resize(RingDesign& ring, double factor) {
+  ring.outer_diameter *= factor;
+  ring.inner_diameter *= factor;
+  ring.side *= factor;
+}
+
+void resize(SleeveDesign& sleeve, double factor) {
+  sleeve.diameter *= factor;
+  sleeve.length *= factor;
+  for (Bar& bar : sleeve.bars) bar = {bar.begin * factor, bar.end * factor};
+  sleeve.helix_begin *= factor;
+  sleeve.helix_end *= factor;
+  sleeve.helix_pitch *= factor;
+}
+
+void resize(TagDesign& tag, double factor) {
+  tag.side *= factor;
+}
+
+/// Another part of the motion for each seed, and of the pixel grid.
+void changeMotion(SyntheticMotion& motion, double speed, std::uint64_t seed) {
+  const double factor = speed / kNominalSpeed, later = 0.613 * static_cast<double>(seed - 1);
+  const auto slide = motion.slide, rotation = motion.rotation;
+  motion.slide = [=](double time) { return slide(factor * time + later); };
+  if (!rotation) return;
+  motion.rotation = [=](double time) { return rotation(factor * time + later); };
+}
+
+}  // namespace
+
+void enlarge(SyntheticScene& scene, int width, int height) {
+  const Eigen::Vector2d shift(0.5 * (width - scene.camera.width), 0.5 * (height - scene.camera.height));
+  scene.camera.width = width;
+  scene.camera.height = height;
+  scene.camera.cx += shift.x();
+  scene.camera.cy += shift.y();
+  for (SyntheticInstrument& instrument : scene.instruments) instrument.nominal.axis.origin += shift;
+}
+
+namespace {
+
+/// A tag that moves as the ring does, on an axis of its own below it.
+SyntheticInstrument tagBeside(const SyntheticInstrument& ring, const std::string& name, const TagDesign& tag,
+                              double below) {
+  SyntheticInstrument instrument = ring;
+  instrument.nominal.name = name;
+  instrument.nominal.axis.origin.y() += below;
+  setTag(instrument, tag);
+  return instrument;
+}
+
+void indexMarkers(BenchScene& bench) {
+  for (std::size_t i = 0; i < bench.scene.instruments.size(); ++i)
+    (std::holds_alternative<SleeveDesign>(bench.scene.instruments[i].nominal.marker) ? bench.sleeve : bench.ring) = i;
+}
+
+void addTags(BenchScene& bench, double factor) {
+  const SyntheticInstrument ring = bench.scene.instruments[bench.ring];
+  bench.aruco = bench.scene.instruments.size();
+  bench.scene.instruments.push_back(
+      tagBeside(ring, "aruco", {TagFamily::Aruco, kArucoId, kTagSide * factor}, kArucoBelow));
+  bench.apriltag = bench.scene.instruments.size();
+  bench.scene.instruments.push_back(
+      tagBeside(ring, "apriltag", {TagFamily::AprilTag, kAprilTagId, kTagSide * factor}, kAprilTagBelow));
+}
+
+}  // namespace
+
+std::string Cell::name() const {
+  std::string text = scene;
+  char part[64];
+  const auto append = [&](const char* format, double value) {
+    std::snprintf(part, sizeof part, format, value);
+    text += part;
+  };
+  append(", marker %.0f px", marker);
+  if (exposure) append(", exposure %.2f ms", 1e3 * *exposure);
+  append(", peak %.2f m/s", speed);
+  if (width > 0) append(", sensor %.0f", width), append(" x %.0f", height);
+  return text;
+}
+
+BenchScene makeBenchScene(const Cell& cell, std::uint64_t seed) {
+  BenchScene bench;
+  const HarderScene* harder = findHarderScene(cell.scene);
+  bench.scene = namedScene(harder ? harder->base : cell.scene);
+  bench.scene.seed = seed;
+  if (cell.exposure) bench.scene.degradation.exposure = *cell.exposure;
+  if (cell.width > 0) enlarge(bench.scene, cell.width, cell.height);
+  const double factor = cell.marker / kNominalMarker;
+  for (SyntheticInstrument& instrument : bench.scene.instruments) {
+    std::visit([&](auto& marker) { resize(marker, factor); }, instrument.nominal.marker);
+    changeMotion(instrument.motion, cell.speed, seed);
+    instrument.nominal.axis.origin += static_cast<double>(seed - 1) * Eigen::Vector2d(0.37, 0.21);
+  }
+  indexMarkers(bench);
+  addTags(bench, factor);
+  if (harder) harder->change(bench.scene, seed);
+  bench.config = nominalConfig(bench.scene);
+  bench.config.instruments = {bench.scene.instruments[bench.sleeve].nominal,
+                              bench.scene.instruments[bench.ring].nominal};
+  return bench;
+}
+
+std::vector<Cell> furtherCells() {
+  std::vector<Cell> cells;
+  const auto add = [&](const std::string& scene) -> Cell& {
+    cells.push_back({});
+    cells.back().scene = scene;
+    return cells.back();
+  };
+  for (const char* scene : {"static", "moving"})
+    for (const double marker : {16.0, 24.0, 32.0, 64.0}) add(scene).marker = marker;
+  for (const double exposure : {0.1e-3, 0.2e-3, 0.5e-3, 1e-3, 2e-3, 4e-3}) add("moving").exposure = exposure;
+  Cell& large = add("moving");
+  large.width = 1936;
+  large.height = 1216;
+  return cells;
+}
+
+}  // namespace vibe::vision::evidence
