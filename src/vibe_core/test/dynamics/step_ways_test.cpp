@@ -12,6 +12,7 @@
 #include "vibe_core/simulation/simulator.hpp"
 #include "vibe_core/solver/step_policy.hpp"
 #include "vibe_testing/scope_fixture.hpp"
+#include "vibe_testing/tool_crossings.hpp"
 
 namespace vibe::step_ways_test {
 namespace {
@@ -119,16 +120,180 @@ double farthestApart(const State& a, const State& b) {
   return most;
 }
 
+/// Triangles of the wall through which the core of a shape of the tool passes.
+int piercedBy(const Model& model, const State& state) {
+  std::vector<Eigen::Isometry3d> poses;
+  model.tool->forwardKinematics(state.joints, state.tool_displacement, poses);
+  for (Eigen::Isometry3d& pose : poses) pose = model.tool_base * pose;
+  std::vector<char> passes;
+  for (const End end : model.organ.end) passes.push_back(end != End::None ? 1 : 0);
+  const SurfaceView view{model.organ.surface.triangles, state.x, state.y, state.z};
+  return test::findToolCrossing(*model.tool, poses, view, passes).pierced;
+}
+
 bool hasNoAcceleration(const State& state) {
   for (const auto* a : {&state.ax, &state.ay, &state.az})
     if (std::any_of(a->begin(), a->end(), [](double value) { return value != 0; })) return false;
   return true;
 }
 
-TEST(StepWays, TheSessionTakesTheseWays) {
-  for (const auto& [way, moment] : session().moments()) RecordProperty(nameOf(way), 1);
-  for (const auto& [way, moment] : session().moments())
-    std::printf("%s: step %ld\n", nameOf(way), long(moment.before.step));
+TEST(StepWays, AMomentIsWhollyInTheStateAndTheInput) {
+  for (const auto& [way, moment] : session().moments()) {
+    const Result one = session().stepFrom(moment), other = session().stepFrom(moment);
+    EXPECT_GT(one.report.ways.of(way), 0) << nameOf(way) << " is not taken again";
+    EXPECT_EQ(hash(one.state), hash(other.state)) << nameOf(way);
+  }
+}
+
+// A guess along the velocities is given up where it is tangled, or where something has met the wall.
+TEST(StepWays, AGuessThatIsTangledIsGivenUp) {
+  const Moment moment = momentOf(StepWay::GuessTangled);
+  StepPolicy keeps;
+  keeps.guess_growth = kOff;
+  const Result given_up = session().stepFrom(moment), kept = session().stepFrom(moment, keeps);
+  EXPECT_EQ(kept.report.ways.of(StepWay::GuessTangled), 0);
+  EXPECT_GT(farthestApart(given_up.state, kept.state), 0);
+}
+
+TEST(StepWays, AGuessThatMisleadsIsGivenUp) {
+  const Moment moment = momentOf(StepWay::GuessMisled);
+  StepPolicy keeps;
+  keeps.misled_part = kOff;
+  const Result given_up = session().stepFrom(moment), kept = session().stepFrom(moment, keeps);
+  EXPECT_EQ(kept.report.ways.of(StepWay::GuessMisled), 0);
+  EXPECT_GT(farthestApart(given_up.state, kept.state), 0);
+}
+
+TEST(StepWays, ContactsThatWouldBeDeepInTheToolGetRows) {
+  const Moment moment = momentOf(StepWay::ContactsExchanged);
+  StepPolicy keeps;
+  keeps.contact_exchanges = 0;
+  const Result exchanged = session().stepFrom(moment), kept = session().stepFrom(moment, keeps);
+  EXPECT_EQ(kept.report.ways.of(StepWay::ContactsExchanged), 0);
+  EXPECT_LT(exchanged.report.residual, kept.report.residual) << "what has no row is in the residual";
+}
+
+TEST(StepWays, AToolThatIsLedElsewhereIsAimedAgainBeforeAnythingMoves) {
+  const Moment moment = momentOf(StepWay::ToolReaimedEarly);
+  StepPolicy never;
+  never.miss_speed = kOff;
+  const Result aimed = session().stepFrom(moment), missed = session().stepFrom(moment, never);
+  EXPECT_EQ(missed.report.ways.of(StepWay::ToolReaimedEarly), 0);
+  EXPECT_EQ(aimed.report.solves, 1 + aimed.report.ways.of(StepWay::ToolLimited)) << "the first direction is no solve";
+  EXPECT_NE(aimed.state.tool_displacement, missed.state.tool_displacement);
+}
+
+TEST(StepWays, AToolThatOnlyTheSolveShowsElsewhereIsSolvedAgain) {
+  const Moment moment = momentOf(StepWay::ToolReaimed);
+  const Result aimed = session().stepFrom(moment);
+  EXPECT_GE(aimed.report.solves, 2);
+  EXPECT_EQ(aimed.report.ways.of(StepWay::ToolReaimedEarly), 0) << "once in a step";
+}
+
+TEST(StepWays, ADirectionThatLeadsUpLosesItsHistory) {
+  const Result result = session().stepFrom(momentOf(StepWay::PairsDropped));
+  EXPECT_TRUE(result.report.arrived || result.report.evaluations > 8);
+}
+
+TEST(StepWays, ASearchThatFailsWithAHistoryIsMadeAgainWithout) {
+  const Result result = session().stepFrom(momentOf(StepWay::SearchRestarted));
+  EXPECT_GT(result.report.iterations, 1);
+}
+
+TEST(StepWays, WhatTheToolHoldsGoesWhereTheToolGoes) {
+  const Moment moment = momentOf(StepWay::ConstraintsMet);
+  StepPolicy never;
+  never.satisfy_after = 1 << 20;
+  const Result met = session().stepFrom(moment), unmet = session().stepFrom(moment, never);
+  EXPECT_EQ(unmet.report.ways.of(StepWay::ConstraintsMet), 0);
+  EXPECT_GT(farthestApart(met.state, unmet.state), 0);
+}
+
+// What is not looked at is a hundredth of what was moved.
+TEST(StepWays, AMoveThatIsNotEvaluatedLeavesLittle) {
+  const Moment moment = momentOf(StepWay::LastMoveUnseen);
+  StepPolicy looks;
+  looks.rest_part = 0;
+  looks.usual_growth = 0;
+  const Result unseen = session().stepFrom(moment), seen = session().stepFrom(moment, looks);
+  EXPECT_LT(unseen.report.evaluations, seen.report.evaluations);
+  EXPECT_LT(farthestApart(unseen.state, seen.state), 0.05 * farthestApart(moment.before, seen.state) + 1e-6);
+}
+
+TEST(StepWays, AStepThatDoesNotArriveEndsWithItsMeanVelocity) {
+  const Moment moment = momentOf(StepWay::NotArrived);
+  const Result result = session().stepFrom(moment);
+  EXPECT_FALSE(result.report.arrived);
+  EXPECT_TRUE(hasNoAcceleration(result.state));
+  EXPECT_EQ(result.state.solver.fallback, StepPolicy().fallback_steps);
+  StepPolicy once;
+  once.fallback_steps = 0;
+  EXPECT_EQ(session().stepFrom(moment, once).state.solver.fallback, 0);
+}
+
+TEST(StepWays, StepsAfterItTakeBackwardEuler) {
+  const Moment moment = momentOf(StepWay::BackwardEuler);
+  const Result result = session().stepFrom(moment);
+  EXPECT_GT(moment.before.solver.fallback, 0);
+  EXPECT_TRUE(result.report.fallback);
+  Moment without = moment;
+  without.before.solver.fallback = 0;
+  EXPECT_EQ(session().stepFrom(without).report.ways.of(StepWay::BackwardEuler), 0);
+}
+
+TEST(StepWays, AToolThatTheWallStopsIsSolvedForWhereItCanGo) {
+  const Moment moment = momentOf(StepWay::ToolLimited);
+  const Result result = session().stepFrom(moment);
+  EXPECT_GE(result.report.solves, 2);
+  EXPECT_EQ(piercedBy(session().model(), result.state), 0);
+}
+
+TEST(StepWays, AWallThatWouldRunIntoTheToolStopsOnItsWay) {
+  const Moment moment = momentOf(StepWay::WallStopped);
+  const Result result = session().stepFrom(moment);
+  const double dt = session().model().scene.step_period;
+  EXPECT_EQ(result.report.ways.of(StepWay::ToolLimited), 1);
+  EXPECT_TRUE(hasNoAcceleration(result.state));
+  EXPECT_EQ(piercedBy(session().model(), result.state), 0);
+  const State &to = result.state, &from = moment.before;
+  for (std::size_t i = 0; i < to.x.size(); ++i) ASSERT_NEAR(to.vx[i] * dt, to.x[i] - from.x[i], 1e-12) << i;
+}
+
+/// A stomach that stands, with an input that does nothing.
+Moment standing() {
+  return {initialState(session().model(), 1), {}};
+}
+
+TEST(StepWays, TissueThatRestsSleeps) {
+  Moment moment = standing();
+  moment.before.solver.rest_steps = StepPolicy().rest_steps;
+  moment.before.step = 1;
+  const Result asleep = session().stepFrom(moment);
+  if (asleep.report.ways.of(StepWay::Asleep) == 0) GTEST_SKIP() << "the loads of the scene act";
+  EXPECT_EQ(asleep.report.evaluations, 0);
+  EXPECT_EQ(farthestApart(asleep.state, moment.before), 0);
+}
+
+TEST(StepWays, AnOrganThatIsInsideOutIsLedToRest) {
+  Moment moment = standing();
+  State& state = moment.before;
+  for (auto* axis : {&state.x, &state.y, &state.z})
+    for (double& value : *axis) value = -value;
+  const Result result = session().stepFrom(moment);
+  EXPECT_EQ(result.report.ways.of(StepWay::Recovery), 1);
+  EXPECT_TRUE(result.report.put_back);
+  const State rest = initialState(session().model(), 1);
+  EXPECT_LT(farthestApart(result.state, rest), 0.75 * farthestApart(state, rest));
+}
+
+TEST(StepWays, NumbersThatAreNotFiniteStartAgainFromRest) {
+  Moment moment = standing();
+  moment.before.vx[7] = std::nan("");
+  const Result result = session().stepFrom(moment);
+  EXPECT_EQ(result.report.ways.of(StepWay::NotFinite), 1);
+  EXPECT_EQ(farthestApart(result.state, initialState(session().model(), 1)), 0);
+  EXPECT_TRUE(std::any_of(result.events.begin(), result.events.end(),
+                          [](const Event& event) { return event.kind == Event::Kind::Recovery; }));
 }
 
 }  // namespace
