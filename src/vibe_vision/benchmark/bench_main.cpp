@@ -102,18 +102,9 @@ int main(int argc, char** argv) {
       "same rendered frames with known truth."};
   Options options;
   addOptions(line, options);
-  try {
-    if (!line.parse(argc, argv)) return 0;
-  } catch (const vibe::UsageError& error) {
-    std::cerr << "vibe_vision_bench: " << error.what() << "; see --help.\n";
-    return 2;
-  }
-  if (options.quick && !line.isGiven("--frames")) options.bench.frames = 60;
-  if (options.quick && !line.isGiven("--seed")) options.bench.seeds = {1};
-  try {
+  return vibe::runProgram(line, argc, argv, [&] {
+    if (options.quick && !line.isGiven("--frames")) options.bench.frames = 60;
+    if (options.quick && !line.isGiven("--seed")) options.bench.seeds = {1};
     return run(options);
-  } catch (const std::exception& error) {
-    std::cerr << error.what() << "\n";
-    return 2;
-  }
+  });
 }
