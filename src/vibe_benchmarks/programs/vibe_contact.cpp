@@ -46,10 +46,10 @@ void save(const std::string& file, const Write& write) {
 }
 
 OptionCheck rateOfFrames() {
-  return OptionCheck([](const std::string& text) {
+  return {[](const std::string& text) {
     const int rate = std::atoi(text.c_str());
     return rate >= 60 && rate % 60 == 0 ? std::string() : text + " is not a multiple of 60, the rate of the frames";
-  });
+  }};
 }
 
 OptionList addStates(OptionList& line, Options& o) {

@@ -241,22 +241,11 @@ int main(int argc, char** argv) {
   Options options;
   CommandLine line{"Emulates the haptic device and the input device with the firmware in them, in wall time.",
                    "vibe_emulator"};
-  line.setHelp("--help", "print this text and end");
   addOptions(line, options);
-  try {
-    if (!line.parse(argc, argv)) return 0;
-  } catch (const UsageError& error) {
-    std::fprintf(stderr, "vibe_emulator: %s; see --help.\n", error.what());
-    return 2;
-  }
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stopped = 1; });
-  std::signal(SIGUSR1, [](int) { toggled = 1; });
-  std::signal(SIGPIPE, SIG_IGN);
-  try {
+  return runProgram(line, argc, argv, [&options] {
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stopped = 1; });
+    std::signal(SIGUSR1, [](int) { toggled = 1; });
+    std::signal(SIGPIPE, SIG_IGN);
     Session(options).run();
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "vibe_emulator: %s\n", error.what());
-    return 2;
-  }
+  });
 }

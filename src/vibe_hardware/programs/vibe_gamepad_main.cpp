@@ -203,23 +203,14 @@ class LiveView {
 }  // namespace
 
 int main(int argc, char** argv) {
-  vibe::CommandLine line("Lists gamepads, shows live what a mapping makes of one, records it, and tries its motors.");
+  vibe::CommandLine line("Lists gamepads, shows live what a mapping makes of one, records it, and tries its motors.",
+                         "vibe_gamepad");
   Options options;
   addOptions(line, options);
-  try {
-    if (!line.parse(argc, argv)) return 0;
-  } catch (const vibe::UsageError& error) {
-    std::fprintf(stderr, "%s\nRun with --help for more information.\n", error.what());
-    return 2;
-  }
-  std::signal(SIGINT, [](int) { stopped = 1; });
-  std::signal(SIGTERM, [](int) { stopped = 1; });
-  try {
+  return vibe::runProgram(line, argc, argv, [&options] {
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stopped = 1; });
     if (options.list) return listDevices(options);
     if (options.test) return testMotors(options);
     return LiveView(options).run();
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "vibe_gamepad: %s\n", error.what());
-    return 2;
-  }
+  });
 }

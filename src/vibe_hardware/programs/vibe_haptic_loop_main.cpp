@@ -96,15 +96,6 @@ int main(int argc, char** argv) {
   Options options;
   CommandLine line{"Compares the force of the haptic device with that of a simulation of a thousand steps per second.",
                    "vibe_haptic_loop"};
-  line.setHelp("--help", "print this text and end");
   addOptions(line, options);
-  try {
-    if (line.parse(argc, argv)) run(options);
-    return 0;
-  } catch (const UsageError& error) {
-    std::fprintf(stderr, "vibe_haptic_loop: %s; see --help.\n", error.what());
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "vibe_haptic_loop: %s\n", error.what());
-  }
-  return 2;
+  return runProgram(line, argc, argv, [&options] { run(options); });
 }

@@ -1,10 +1,6 @@
 #pragma once
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
-#include <functional>
 #include <string>
-#include <vector>
 
 #include "vibe_core/program/command_line.hpp"
 #include "vibe_core/program/error.hpp"
@@ -32,18 +28,6 @@ inline BoardSpec boardOption(const std::string& corners, const std::string& squa
   }
   board.square = lengthOption("--square", square);
   return board;
-}
-
-/// Parses the command line and runs. Wrong options and errors end with status 2 and one sentence.
-inline int runProgram(CommandLine& line, int argc, char** argv, const std::function<int()>& run) {
-  try {
-    return line.parse(argc, argv) ? run() : 0;
-  } catch (const UsageError& error) {
-    std::fprintf(stderr, "%s: %s\n", line.name().c_str(), usageSentence(error, error.unknown_anywhere).c_str());
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s\n", line.name().c_str(), error.what());
-  }
-  return 2;
 }
 
 }  // namespace vibe::vision

@@ -365,7 +365,7 @@ int main(int argc, char** argv) {
   addBoardOptions(boards, options);
   boards.option("--folder", options.folder, "Where the pictures go").required();
   addFileOptions(import_lens, export_lens, options);
-  return vision::runProgram(line, argc, argv, [&] {
+  return vibe::runProgram(line, argc, argv, [&] {
     if (lens.isChosen()) return calibrateLens(options);
     if (boards.isChosen()) return takeBoards(options);
     if (check.isChosen()) return checkCalibration(options);

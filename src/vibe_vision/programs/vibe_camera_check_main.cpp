@@ -110,5 +110,5 @@ int main(int argc, char** argv) {
       .showDefault();
   line.flag("--paced", options.camera.paced, "recordings: in real time");
   line.option("--csv", options.csv, "file for sequence, stamp, arrival and taken [s] of each frame");
-  return vision::runProgram(line, argc, argv, [&options] { return check(options) ? 0 : 1; });
+  return vibe::runProgram(line, argc, argv, [&options] { return check(options) ? 0 : 1; });
 }

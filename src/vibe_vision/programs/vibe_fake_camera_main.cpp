@@ -130,7 +130,7 @@ int main(int argc, char** argv) {
       "vibe_fake_camera");
   Options options;
   addOptions(line, options);
-  return vision::runProgram(line, argc, argv, [&options] {
+  return vibe::runProgram(line, argc, argv, [&options] {
     serve(options);
     return 0;
   });

@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
   line.option("--start", options.start, "stamp of frame 0, Unix time [s]").check(vibe::finiteIn(0, 1e10)).showDefault();
   line.option("--out", options.out, "folder, made if it is not there").required();
   line.option("--format", options.format, "images or video").check(vibe::oneOf({"images", "video"})).showDefault();
-  return vision::runProgram(line, argc, argv, [&options] {
+  return vibe::runProgram(line, argc, argv, [&options] {
     render(options);
     return 0;
   });

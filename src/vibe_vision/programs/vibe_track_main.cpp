@@ -173,5 +173,5 @@ int main(int argc, char** argv) {
                          "vibe_track");
   Options options;
   addOptions(line, options);
-  return vision::runProgram(line, argc, argv, [&options] { return run(options); });
+  return vibe::runProgram(line, argc, argv, [&options] { return run(options); });
 }

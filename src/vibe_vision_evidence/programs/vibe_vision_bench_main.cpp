@@ -67,22 +67,9 @@ int benchmark(int argc, char** argv) {
       "same rendered frames with known truth."};
   Options options;
   addOptions(line, options);
-  try {
-    if (!line.parse(argc, argv)) return 0;
+  return vibe::runProgram(line, argc, argv, [&] {
     if (options.quick && !line.isGiven("--frames")) options.bench.frames = 60;
     if (options.quick && !line.isGiven("--seed")) options.bench.seeds = {1};
     return run(options);
-  } catch (const UsageError& error) {
-    std::cerr << "vibe_vision_bench: " << error.what() << "; see --help.\n";
-  } catch (const std::exception& error) {
-    std::cerr << "vibe_vision_bench: " << error.what() << "\n";
-  }
-  return 2;
-}
-
-}  // namespace
-}  // namespace vibe::vision::evidence
-
-int main(int argc, char** argv) {
-  return vibe::vision::evidence::benchmark(argc, argv);
+  });
 }

@@ -20,61 +20,57 @@ namespace {
 
 constexpr std::size_t kColumn = 22;  // column where the description of an option begins
 
-OptionCheck described(CLI::Validator validator) {
-  return OptionCheck(std::make_shared<const CLI::Validator>(std::move(validator)));
+/// As CLI11 checks and describes it.
+OptionCheck checkOf(CLI::Validator validator) {
+  std::string shown = validator.get_description();
+  return {[validator = std::move(validator)](const std::string& text) { return validator(text); }, std::move(shown)};
 }
 
-std::string first(const std::vector<std::string>& words) {
-  return words.empty() ? "" : words.front();
+/// A text that `read` accepts in all its length.
+template <class Value, class Read, class Within>
+OptionCheck numberCheck(Read read, Within within, std::string wanted) {
+  return {[=](const std::string& text) -> std::string {
+    char* end = nullptr;
+    errno = 0;
+    const Value value = read(text.c_str(), &end);
+    const bool accepted = !text.empty() && *end == '\0' && errno != ERANGE && within(value);
+    return accepted ? "" : "'" + text + "' is not a " + wanted;
+  }};
+}
+
+OptionCheck finite(double min, double max, const std::string& wanted) {
+  return numberCheck<double>([](const char* text, char** end) { return std::strtod(text, end); },
+                             [=](double x) { return std::isfinite(x) && x >= min && x <= max; }, wanted);
+}
+
+/// "Option '--x' is unknown; see --help." if there is an unknown word, since that may be the misspelt name of a
+/// required option; otherwise what the error says.
+std::string sentenceOf(const CLI::ParseError& error, const std::vector<std::string>& unknown) {
+  if (unknown.empty()) return std::string(error.what()) + "; see --help.";
+  const std::string word = "'" + unknown.front() + "' is ";
+  return (unknown.front()[0] == '-' ? "Option " + word + "unknown" : word + "not an option") + "; see --help.";
 }
 
 }  // namespace
 
-OptionCheck::OptionCheck(const std::function<std::string(const std::string&)>& complaint)
-    : validator_(
-          std::make_shared<const CLI::Validator>([complaint](std::string& text) { return complaint(text); }, "")) {}
-
-OptionCheck OptionCheck::hidden() const {
-  CLI::Validator validator = *validator_;
-  return described(validator.description(""));
-}
-
-std::string OptionCheck::complaint(const std::string& text) const {
-  return (*validator_)(text);
-}
-
 OptionCheck finiteFrom(double min) {
-  return OptionCheck([min](const std::string& text) {
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    const bool accepted = !text.empty() && *end == '\0' && std::isfinite(value) && value >= min;
-    return accepted ? std::string() : "'" + text + "' is not a number of at least " + CLI::detail::to_string(min);
-  });
+  return finite(min, std::numeric_limits<double>::max(), "number of at least " + CLI::detail::to_string(min));
 }
 
 OptionCheck finiteIn(double min, double max) {
-  return OptionCheck([min, max](const std::string& text) {
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    char limits[80];
-    std::snprintf(limits, sizeof limits, "' is not a number from %g to %g", min, max);
-    return !text.empty() && *end == 0 && value >= min && value <= max ? std::string() : "'" + text + limits;
-  });
+  char wanted[80];
+  std::snprintf(wanted, sizeof wanted, "number from %g to %g", min, max);
+  return finite(min, max, wanted);
 }
 
 OptionCheck wholeFrom(long min, long max) {
-  return OptionCheck([min, max](const std::string& text) {
-    char* end = nullptr;
-    errno = 0;
-    const long value = std::strtol(text.c_str(), &end, 10);
-    const bool accepted = !text.empty() && *end == '\0' && errno == 0 && value >= min && value <= max;
-    return accepted ? std::string()
-                    : "'" + text + "' is not a whole number from " + std::to_string(min) + " to " + std::to_string(max);
-  });
+  return numberCheck<long>([](const char* text, char** end) { return std::strtol(text, end, 10); },
+                           [=](long x) { return x >= min && x <= max; },
+                           "whole number from " + std::to_string(min) + " to " + std::to_string(max));
 }
 
 OptionCheck wholeNumber() {
-  return OptionCheck([](const std::string& text) -> std::string {
+  return {[](const std::string& text) -> std::string {
     std::uint64_t value = 0;
     const char* const last = text.data() + text.size();
     const auto [end, error] = std::from_chars(text.data(), last, value);
@@ -83,19 +79,19 @@ OptionCheck wholeNumber() {
     if (error == std::errc::result_out_of_range)
       return "'" + text + "' is too large; write at most " + std::to_string(std::numeric_limits<std::uint64_t>::max());
     return "";
-  });
+  }};
 }
 
 OptionCheck inRange(int min, int max) {
-  return described(CLI::Range(min, max));
+  return checkOf(CLI::Range(min, max));
 }
 
 OptionCheck inRange(double min, double max) {
-  return described(CLI::Range(min, max));
+  return checkOf(CLI::Range(min, max));
 }
 
 OptionCheck oneOf(const std::vector<std::string>& words) {
-  return described(CLI::IsMember(words));
+  return checkOf(CLI::IsMember(words));
 }
 
 CommandOption& CommandOption::typeName(const std::string& name) {
@@ -104,7 +100,8 @@ CommandOption& CommandOption::typeName(const std::string& name) {
 }
 
 CommandOption& CommandOption::check(const OptionCheck& check) {
-  option_->check(check.validator());
+  option_->check(
+      CLI::Validator([complaint = check.complaint](std::string& text) { return complaint(text); }, check.shown));
   return *this;
 }
 
@@ -177,12 +174,6 @@ bool OptionList::isGiven(const std::string& name) const {
   return app_->count(name) > 0;
 }
 
-std::string usageSentence(const UsageError& error, const std::string& unknown) {
-  if (unknown.empty()) return std::string(error.what()) + "; see --help.";
-  return unknown.compare(0, 1, "-") == 0 ? "Option '" + unknown + "' is unknown; see --help."
-                                         : "'" + unknown + "' is not an option; see --help.";
-}
-
 CommandLine::CommandLine(const std::string& about, const std::string& name)
     : CommandLine(std::make_unique<CLI::App>(about, name)) {}
 
@@ -190,41 +181,22 @@ CommandLine::CommandLine(std::unique_ptr<CLI::App> app) : OptionList(*app), owne
 
 CommandLine::~CommandLine() = default;
 
-std::string CommandLine::name() const {
-  return app_->get_name();
-}
-
-void CommandLine::setHelp(const std::string& flags, const std::string& about) {
-  app_->set_help_flag(flags, about);
-}
-
-void CommandLine::setColumn(std::size_t column) {
-  app_->get_formatter()->column_width(column);
-}
-
-bool CommandLine::parse(int argc, const char* const* argv) {
+int CommandLine::run(int argc, const char* const* argv, const std::function<int()>& work) {
+  app_->set_help_flag("-h,--help", "print this text and end");
+  app_->get_formatter()->column_width(kColumn);
+  std::string problem;
   try {
     app_->parse(argc, argv);
-    return true;
+    return work();
   } catch (const CLI::Success&) {
     std::cout << app_->help() << std::flush;
-    return false;
-  } catch (const CLI::ParseError& error) {
-    throw UsageError(error.what(), first(app_->remaining()), first(app_->remaining(true)));
-  }
-}
-
-int runProgram(CommandLine& line, int argc, const char* const* argv, const std::function<void()>& work) {
-  line.setHelp("--help", "print this text and end");
-  line.setColumn(kColumn);
-  try {
-    if (line.parse(argc, argv)) work();
     return 0;
-  } catch (const UsageError& error) {
-    std::fprintf(stderr, "%s: %s\n", line.name().c_str(), usageSentence(error, error.unknown).c_str());
+  } catch (const CLI::ParseError& error) {
+    problem = sentenceOf(error, app_->remaining(true));
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s\n", line.name().c_str(), error.what());
+    problem = error.what();
   }
+  std::fprintf(stderr, "%s: %s\n", app_->get_name().c_str(), problem.c_str());
   return 2;
 }
 

@@ -22,16 +22,5 @@ TEST(ProgramOptions, BoardsAreTwoWholeNumbers) {
     EXPECT_NE(errorOf([wrong] { boardOption(wrong, "5 mm"); }).find("is not a chessboard"), std::string::npos) << wrong;
 }
 
-TEST(ProgramOptions, ErrorsAndWrongOptionsEndWithStatusTwo) {
-  char name[] = "program", wrong[] = "--wrong";
-  char* arguments[] = {name, wrong};
-  CommandLine line("It does nothing.", "program");
-  EXPECT_EQ(runProgram(line, 1, arguments, [] { return 0; }), 0);
-  EXPECT_EQ(runProgram(line, 1, arguments, []() -> int { throw Error("x: is wrong; mend it"); }), 2);
-  testing::internal::CaptureStderr();
-  EXPECT_EQ(runProgram(line, 2, arguments, [] { return 0; }), 2);
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "program: Option '--wrong' is unknown; see --help.\n");
-}
-
 }  // namespace
 }  // namespace vibe::vision::program_options_test

@@ -1,14 +1,13 @@
 #pragma once
 #include <functional>
 #include <memory>
-#include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace CLI {
 class App;
 class Option;
-class Validator;
 }  // namespace CLI
 
 namespace vibe {
@@ -17,21 +16,12 @@ namespace vibe {
 // several seconds.
 
 /// What the text of a value must be.
-class OptionCheck {
- public:
-  /// @param complaint  says what is wrong with a text; empty: nothing is
-  explicit OptionCheck(const std::function<std::string(const std::string&)>& complaint);
-  /// @param validator  of CLI11, not null
-  explicit OptionCheck(std::shared_ptr<const CLI::Validator> validator) : validator_(std::move(validator)) {}
+struct OptionCheck {
+  std::function<std::string(const std::string&)> complaint;  ///< what is wrong with a text; empty: nothing is
+  std::string shown = {};                                    ///< what it accepts, in the help text
 
-  /// The same, without its description in the help text.
-  OptionCheck hidden() const;
-  /// @return what is wrong with a text; empty: nothing is
-  std::string complaint(const std::string& text) const;
-  const CLI::Validator& validator() const { return *validator_; }  ///< of CLI11; lives as long as this or a copy of it
-
- private:
-  std::shared_ptr<const CLI::Validator> validator_;
+  /// The same, without a word in the help text.
+  OptionCheck hidden() const { return {complaint, {}}; }
 };
 
 /// Accepts finite numbers of at least `min`.
@@ -94,38 +84,17 @@ class OptionList {
   CLI::App* app_;
 };
 
-/// A command line that is not as described; what() says how, without a full stop.
-class UsageError : public std::runtime_error {
- public:
-  /// @param own, any  become `unknown` and `unknown_anywhere`
-  UsageError(const std::string& what, std::string own, std::string any)
-      : std::runtime_error(what), unknown(std::move(own)), unknown_anywhere(std::move(any)) {}
-  std::string unknown;           ///< first word that the program does not know; empty: none
-  std::string unknown_anywhere;  ///< the same, words behind a subcommand included
-};
-
-/// "Option '--x' is unknown; see --help." if there is an unknown word, since that may be the misspelt name of a
-/// required option; otherwise what the error says.
-std::string usageSentence(const UsageError& error, const std::string& unknown);
-
 /// The command line of a program.
 class CommandLine : public OptionList {
  public:
-  /// @param name  of the program in the help text; empty: as it was called
+  /// @param name  of the program in the help text and before errors; empty: as it was called
   explicit CommandLine(const std::string& about, const std::string& name = "");
   ~CommandLine();
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
-  /// As given to the constructor; otherwise how the program was called, which is known from parse() on.
-  std::string name() const;
-  /// Instead of -h and --help.
-  void setHelp(const std::string& flags, const std::string& about);
-  void setColumn(std::size_t column);  ///< where descriptions begin in the help text
-
-  /// @return whether to go on; false: the help text was asked for and has been printed
-  /// @throws UsageError
-  bool parse(int argc, const char* const* argv);
+  /// @see runProgram()
+  int run(int argc, const char* const* argv, const std::function<int()>& work);
 
  private:
   std::unique_ptr<CLI::App> owned_;
@@ -136,8 +105,15 @@ class CommandLine : public OptionList {
 /// Main function of a command-line program: parses the options and calls `work`. With --help it prints the help text
 /// instead. An error in the command line or in `work` is printed to standard error as one sentence after the name of
 /// the program.
-/// @param line  options and positional arguments bound to variables that `work` uses; its name is that of the program
-/// @returns the exit status: 0, or 2 after an error
-int runProgram(CommandLine& line, int argc, const char* const* argv, const std::function<void()>& work);
+/// @param line  options and positional arguments bound to variables that `work` uses
+/// @returns the exit status: what `work` returns, 0 if it returns nothing, or 2 after an error
+template <class Work>
+int runProgram(CommandLine& line, int argc, const char* const* argv, const Work& work) {
+  return line.run(argc, argv, [&work]() -> int {
+    if constexpr (!std::is_void_v<decltype(work())>) return work();
+    work();
+    return 0;
+  });
+}
 
 }  // namespace vibe
