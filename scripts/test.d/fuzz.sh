@@ -57,7 +57,7 @@ makeUnits() {
   for file in "${fuzz_files[@]}"; do
     for source in $(sourcesOf "$file"); do programs_of[$source]+=" $file"; done
   done
-  for source in "${!programs_of[@]}"; do
+  for source in $(printf '%s\n' "${!programs_of[@]}" | sort); do
     key="${source%/*}${programs_of[$source]}"
     [ -n "${unit_named[$key]:-}" ] || unit_named[$key]=$scratch/unit${#unit_named[@]}.cpp
     unit_of[$source]=${unit_named[$key]}
