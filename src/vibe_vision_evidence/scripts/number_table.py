@@ -24,9 +24,14 @@ def effect(row):
     return ', '.join(parts) or '–'
 
 
+def line(*cells):
+    return '| ' + ' | '.join(cells) + ' |'
+
+
 def table(rows):
-    factors = list(dict.fromkeys(row['factor'] for row in rows))
-    lines = ['| number | default | what it is | why | ' + ' | '.join(f'× {factor}' for factor in factors) + ' |',
+    """Without a factor, rows only say what the numbers are."""
+    factors = list(dict.fromkeys(row['factor'] for row in rows if row['factor']))
+    lines = [line('number', 'default', 'what it is', 'why', *(f'× {factor}' for factor in factors)),
              '|---' * (4 + len(factors)) + '|']
     section = None
     for name in dict.fromkeys(row['number'] for row in rows):
@@ -34,9 +39,9 @@ def table(rows):
         row = own[0]
         if row['section'] != section:
             section = row['section']
-            lines.append(f'| **{section}** |' + ' |' * (3 + len(factors)))
+            lines.append(line(f'**{section}**', *[''] * (3 + len(factors))))
         default = f"{row['default']} {row['unit']}".strip()
-        lines.append(f"| `{name}` | {default} | {row['meaning']} | {row['reason']} | " + ' | '.join(map(effect, own)) + ' |')
+        lines.append(line(f'`{name}`', default, row['meaning'], row['reason'], *(effect(row) for row in own if row['factor'])))
     return '\n'.join(lines)
 
 

@@ -12,7 +12,7 @@ void TrackerNumber::scale(TrackerPolicy& policy, double factor) const {
   }
   const int before = policy.*count;
   const int step = std::max(1, static_cast<int>(std::lround(std::abs(factor - 1) * before)));
-  policy.*count = factor < 1 ? std::max(0, before - step) : before + step;
+  policy.*count = factor < 1 ? std::max(1, before - step) : before + step;
 }
 
 const std::vector<TrackerNumber>& trackerNumbers() {

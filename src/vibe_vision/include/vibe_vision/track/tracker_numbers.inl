@@ -1,53 +1,74 @@
-// Numbers of the tracker, for tracker_policy.hpp: name, default, unit, meaning, source or reason. What a shift by a fifth
-// moves is measured in docs/vision.md, "Numbers of the tracker".
+// Numbers of the tracker, for tracker_policy.hpp: name, default, unit, meaning, source or reason. vibe_tracker_numbers
+// measures what a shift by a fifth moves.
 
 VIBE_POLICY_SECTION("From frame to frame")
-VIBE_REAL(close_enough, 1.2, "px", "deviation of a prediction below which a fit starts from it", "a fit converges")
-VIBE_REAL(max_gap, 0.5, "s", "time without a measurement after which the motion is forgotten", "a hand turns in 0.2 s")
-VIBE_COUNT(forget_after, 60, "lost frames after which size, tilt, blur and light are forgotten", "0.4 s at 147 Hz")
-VIBE_COUNT(doubt_after, 3, "lost frames after which every other one is searched as if they were", "what was learnt may be wrong")
-VIBE_REAL(same_motion, 0.2, "px", "length of the motion that prediction and fit may differ by before the fit is repeated", "a fifth of what blurs an edge visibly")
-VIBE_REAL(same_bend, 0.03, "px", "the same of its acceleration", "moves the middle by a third of it")
-VIBE_REAL(filter_floor, 1e-6, "m", "deviation that a measurement has at least for the prediction; of a rotation 1000 rad/m times it", "repeatability of a hand's rest")
+VIBE_REAL(close_enough, 1.2, "px", "deviation of a prediction below which a fit starts from it",
+          "design choice: a fit converges from there")
+VIBE_REAL(max_gap, 0.5, "s", "time without a measurement after which the motion is forgotten", "design choice")
+VIBE_COUNT(forget_after, 60, "lost frames after which size, tilt, blur and light are forgotten",
+           "design choice: 0.4 s at 147 Hz")
+VIBE_COUNT(doubt_after, 3, "lost frames after which every other one is searched as if they were",
+           "design choice: what was learnt may be wrong")
+VIBE_REAL(same_motion, 0.2, "px",
+          "length of the motion that prediction and fit may differ by before the fit is repeated", "design choice")
+VIBE_REAL(same_bend, 0.03, "px", "the same of its acceleration", "design choice")
+VIBE_REAL(filter_floor, 1e-6, "m",
+          "deviation that a measurement has at least for the prediction; of a rotation 1000 rad/m times it",
+          "design choice")
 
 VIBE_POLICY_SECTION("What is taken for the marker")
-VIBE_REAL(max_misfit, 4, "", "chi^2 per degree of freedom of a whole marker", "a wrong marker has ten and more")
-VIBE_REAL(max_misfit_of_half, 1.5, "", "the same of half a marker, which fits other poses nearly as well", "1 plus the scatter of its pixels")
-VIBE_REAL(sure_tilt, 3, "", "standard deviations of the tilt that are in doubt of the marker", "a thousandth")
-VIBE_REAL(shear, 0.004, "", "tilt of a slanted ring away from the middle, times its aspect", "perspective of the design camera")
-VIBE_REAL(weaker_edges, 0.4, "", "share of the edges of one direction that must be seen, of the share of all", "a finger covers both alike")
-VIBE_REAL(slack, 1, "px", "beyond the range and across the axis", "a calibration is right to a tenth of it")
-VIBE_REAL(max_black, 0.75, "", "black over white", "paper and ink differ more")
+VIBE_REAL(max_misfit, 4, "", "chi^2 per degree of freedom of a whole marker", "design choice")
+VIBE_REAL(max_misfit_of_half, 1.5, "", "the same of half a marker, which fits other poses nearly as well",
+          "design choice")
+VIBE_REAL(sure_tilt, 3, "", "standard deviations of the tilt that are in doubt of the marker", "design choice")
+VIBE_REAL(shear, 0.004, "", "tilt of a slanted ring away from the middle, times its aspect",
+          "design choice: perspective turns the direction of its slant a little")
+VIBE_REAL(weaker_edges, 0.4, "", "share of the edges of one direction that must be seen, of the share of all",
+          "design choice")
+VIBE_REAL(slack, 1, "px", "beyond the range and across the axis", "design choice")
+VIBE_REAL(max_black, 0.75, "", "black over white", "design choice: paper and ink differ more")
 
 VIBE_POLICY_SECTION("Where it can be")
-VIBE_REAL(reach_deviations, 6, "", "standard deviations of a prediction that an instrument may be away", "six are never seen by chance")
-VIBE_REAL(rest, 1e-4, "m", "by which anything may have moved", "a pixel")
-VIBE_COUNT(jumps_to_believe, 3, "frames in a row that agree on a place out of reach until they are believed", "two wrong reports in a row may agree by chance")
+VIBE_REAL(reach_deviations, 6, "", "standard deviations of a prediction that an instrument may be away",
+          "design choice")
+VIBE_REAL(rest, 1e-4, "m", "by which anything may have moved", "design choice: a pixel of the design point")
+VIBE_COUNT(jumps_to_believe, 3, "frames in a row that agree on a place out of reach until they are believed",
+           "design choice")
 
 VIBE_POLICY_SECTION("Search")
-VIBE_REAL(search_margin, 3, "px", "around the range of the search", "width of a blurred edge")
-VIBE_COUNT(tries, 3, "candidates that a frame may cost", "time of a frame")
-VIBE_COUNT(relax_after, 15, "lost frames after which a frame may cost one less", "0.1 s at 147 Hz")
-VIBE_REAL(good_loss, 0.25, "", "loss of a pixel below which no other candidate is looked at", "that of a wrong place is 0.5")
-VIBE_REAL(scale_step, 0.05, "", "logarithm of the size by which the search must differ to be taken", "step of the search")
-VIBE_REAL(known_rotation, 0.3, "rad", "deviation of a predicted rotation from which a fit starts", "a fit converges")
-VIBE_REAL(search_visible, 0.7, "", "share of a sleeve that a search must see", "part of the bars fits at other places, too")
-VIBE_REAL(whole_from, 0.88, "", "visible share from which a sleeve begins to count as whole", "the rim is never read")
-VIBE_REAL(whole, 0.94, "", "visible share from which it is whole", "the rim is never read")
-VIBE_REAL(part_misfit, 1.5, "", "misfit that a search accepts of a part of a sleeve", "as max_misfit_of_half")
-VIBE_REAL(whole_misfit, 4, "", "the same of a whole sleeve", "as max_misfit")
-VIBE_REAL(known_place, 3, "px", "deviation of a prediction that tells a sleeve from where else its bars would fit", "those are 6 px away and more")
-VIBE_REAL(near, 3, "", "standard deviations of such a prediction in which the sleeve is", "a thousandth")
-VIBE_REAL(nearby_reach, 2.5, "", "the same in which places are tried", "a hundredth, and a step of trials")
-VIBE_REAL(nearby_visible, 0.5, "", "share of a sleeve that must be seen there", "as min_visible")
-VIBE_REAL(saturated_share, 0.5, "", "share of saturated pixels along the axis for the reason `saturated`", "says why, decides nothing")
-VIBE_REAL(dark_contrasts, 2, "", "brightest pixel, in least contrasts, for the reason `dark`", "says why, decides nothing")
+VIBE_REAL(search_margin, 3, "px", "around the range of the search", "design choice")
+VIBE_COUNT(tries, 3, "candidates that a frame may cost", "design choice: bounds the time of a frame")
+VIBE_COUNT(relax_after, 15, "lost frames after which a frame may cost one less", "design choice: 0.1 s at 147 Hz")
+VIBE_REAL(good_loss, 0.25, "", "loss of a pixel below which no other candidate is looked at", "design choice")
+VIBE_REAL(scale_step, 0.05, "", "logarithm of the size by which the search must differ to be taken",
+          "design choice: the search knows the size no better")
+VIBE_REAL(known_rotation, 0.3, "rad", "deviation of a predicted rotation from which a fit starts",
+          "design choice: a fit converges from there")
+VIBE_REAL(search_visible, 0.7, "", "share of a sleeve that a search must see",
+          "design choice: part of the bars also fits at other places")
+VIBE_REAL(whole_from, 0.88, "", "visible share from which a sleeve begins to count as whole", "design choice")
+VIBE_REAL(whole, 0.94, "", "visible share from which it is whole", "design choice")
+VIBE_REAL(part_misfit, 1.5, "", "misfit that a search accepts of a part of a sleeve", "design choice")
+VIBE_REAL(whole_misfit, 4, "", "the same of a whole sleeve", "design choice")
+VIBE_REAL(known_place, 3, "px", "deviation of a prediction that tells a sleeve from where else its bars would fit",
+          "design choice: where else its bars would fit is further away")
+VIBE_REAL(near, 3, "", "standard deviations of such a prediction in which the sleeve is", "design choice")
+VIBE_REAL(nearby_reach, 2.5, "", "the same in which places are tried", "design choice")
+VIBE_REAL(nearby_visible, 0.5, "", "share of a sleeve that must be seen there", "design choice")
+VIBE_REAL(saturated_share, 0.5, "", "share of saturated pixels along the axis for the reason `saturated`",
+          "design choice: of what is reported only")
+VIBE_REAL(dark_contrasts, 2, "", "brightest pixel, in least contrasts, for the reason `dark`",
+          "design choice: of what is reported only")
 
 VIBE_POLICY_SECTION("Learning and doubts")
-VIBE_REAL(good_look, 0.6, "", "share of the marker that must be seen to learn size, tilt and blur from it", "what covers it changes its look")
-VIBE_REAL(search_doubt, 0.1, "", "share of the first variance of size, tilt and blur that a search leaves of a ring", "motion and blur look alike")
-VIBE_COUNT(first_looks, 16, "moving frames that are all looked at for distortions", "a rolling shutter is known in 0.1 s")
-VIBE_COUNT(look_every, 4, "of later ones, every how many", "a look costs half a step of the fit")
-VIBE_REAL(telling_speed, 0.05, "m/s", "from which a picture would be sheared", "0.1 px across a sleeve at 10 us per row")
-VIBE_REAL(unchecked_shift, 2.5e-4, "m", "deviation by an unknown shutter that is worth a doubt", "half of what counts as wrong")
-VIBE_REAL(uneven, 0.028, "1/px", "bars apart, by optics that blur not as a Gaussian, per square of the blur", "discs of 1 to 3 px radius")
+VIBE_REAL(good_look, 0.6, "", "share of the marker that must be seen to learn size, tilt and blur from it",
+          "design choice: what covers a marker changes its look")
+VIBE_REAL(search_doubt, 0.1, "", "share of the first variance of size, tilt and blur that a search leaves of a ring",
+          "design choice")
+VIBE_COUNT(first_looks, 16, "moving frames that are all looked at for distortions", "design choice: 0.1 s at 147 Hz")
+VIBE_COUNT(look_every, 4, "of later ones, every how many", "design choice: a look costs half a step of the fit")
+VIBE_REAL(telling_speed, 0.05, "m/s", "from which a picture would be sheared", "design choice")
+VIBE_REAL(unchecked_shift, 2.5e-4, "m", "deviation by an unknown shutter that is worth a doubt",
+          "design choice: half of what counts as wrong")
+VIBE_REAL(uneven, 0.028, "1/px", "bars apart, by optics that blur not as a Gaussian, per square of the blur",
+          "design choice")

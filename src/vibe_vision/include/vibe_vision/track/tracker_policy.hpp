@@ -34,7 +34,7 @@ struct TrackerNumber {
 
   /// Its value in a policy.
   double of(const TrackerPolicy& policy) const { return real != nullptr ? policy.*real : policy.*count; }
-  /// A count becomes the nearest whole number, at least 1 above or below where it would stay the same.
+  /// A count becomes the nearest whole number, at least 1 above or below where it would stay the same, never below 1.
   void scale(TrackerPolicy& policy, double factor) const;
 };
 
