@@ -27,28 +27,6 @@ Eigen::Matrix<double, 6, 1> wrenchOf(const State& state) {
 
 namespace {
 
-py::dict contacts(SimulationHandle& handle) {
-  const Use use(handle);
-  std::vector<Eigen::Vector3d> point, normal, force;
-  py::list link, kind;
-  for (const ToolTouch& touch : use->touches) {
-    const bool grip = touch.kind == ToolTouch::Kind::Grip;
-    if (!grip && touch.force.squaredNorm() == 0) continue;
-    point.push_back(touch.point);
-    normal.push_back(grip ? Eigen::Vector3d::Zero().eval() : touch.direction[0]);
-    force.emplace_back(-touch.force);
-    link.append(use.model().tool->linkName(touch.link));
-    kind.append(grip ? "grip" : "contact");
-  }
-  py::dict found;
-  found["point"] = rowsOf(point);
-  found["normal"] = rowsOf(normal);
-  found["force"] = rowsOf(force);
-  found["link"] = link;
-  found["kind"] = kind;
-  return found;
-}
-
 py::object lookAheadOf(SimulationHandle& handle) {
   const Use use(handle);
   needTool(use.model());
@@ -104,11 +82,6 @@ void bindTool(SimulationClass& simulation) {
           },
           "New array (6, 4): linear and angular velocity of scope_tip in world per speed of the four "
           "joints of the scope.")
-      .def(
-          "contacts", &contacts,
-          "Forces of the tissue on the tool in the last step. A dictionary: point (n, 3) [m], normal (n, 3) out of the "
-          "tool, zero for the grip of the helix, force (n, 3), mean over the step [N], all in world; link, kind: lists "
-          "of n names. Empty with shape matching.")
       .def("look_ahead", &lookAheadOf,
            "Where the tip looks: None, or triangle, point (3,) [m], normal (3,), distance [m].")
       .def("impedance", &impedance,

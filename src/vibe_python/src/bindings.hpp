@@ -25,6 +25,7 @@ void explainRefusals(pybind11::module_& module);
 void bindStepping(SimulationClass& simulation);
 void bindState(SimulationClass& simulation);
 void bindTool(SimulationClass& simulation);
+void bindContacts(SimulationClass& simulation);
 void bindProcedure(SimulationClass& simulation);
 void bindCamera(SimulationClass& simulation);
 

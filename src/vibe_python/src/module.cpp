@@ -43,13 +43,13 @@ PYBIND11_MODULE(_core, module) {
   bindStepping(simulation);
   bindState(simulation);
   bindTool(simulation);
+  bindContacts(simulation);
   bindProcedure(simulation);
   bindCamera(simulation);
   bindAnatomy(module);
   bindTechnique(module);
   bindBatch(module);
   explainRefusals(module);
-  observeTouches();
 }
 
 }  // namespace vibe::python

@@ -10,19 +10,6 @@ namespace vibe::python {
 
 namespace {
 
-// Where the block of the simulation that this thread steps writes to.
-thread_local std::vector<ToolTouch>* touches_of_step = nullptr;
-
-/// Adds nothing to the step; it comes after the blocks of the library and reads what they have found.
-class TouchObserver : public ConstraintBlock {
- public:
-  Activity prepare(const StepContext& /*context*/, BodyLoads& /*loads*/) override { return Activity::Sleep; }
-  double store(const StepContext& /*context*/, const BodyLoads& /*loads*/, std::vector<ToolTouch>& touches) override {
-    if (touches_of_step != nullptr) *touches_of_step = touches;
-    return 0;
-  }
-};
-
 /// In a child of fork() the threads of a simulation do not exist: it can neither be used nor ended, and is left.
 struct EndInOwnProcess {
   pid_t process;
@@ -33,21 +20,11 @@ struct EndInOwnProcess {
 
 }  // namespace
 
-void observeTouches() {
-  registerConstraint("python_touches", [](const Model& model) -> std::unique_ptr<ConstraintBlock> {
-    if (!model.tool || model.solver->usesSubsteps()) return nullptr;
-    return std::make_unique<TouchObserver>();
-  });
-}
-
 Session::Session(std::shared_ptr<const Model> model, const SimulationSettings& settings)
     : simulation(std::move(model), settings) {}
 
 void Session::step(const StepInput& input) {
-  touches.clear();
-  touches_of_step = &touches;
   const std::vector<Event>& happened = simulation.step(input);
-  touches_of_step = nullptr;
   events.insert(events.end(), happened.begin(), happened.end());
 }
 
@@ -58,7 +35,6 @@ void Session::replaceState(const State& state) {
   simulation.replaceState(state);
   kept = simulation.state();
   simulation.editState() = std::move(kept);
-  touches.clear();
   events.clear();
 }
 

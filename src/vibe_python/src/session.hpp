@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "vibe_core/constraints/constraint_registry.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
 namespace vibe::python {
@@ -13,11 +12,10 @@ namespace vibe::python {
 /// What a Python object `Simulation` and its views share. It lives until the last of them is gone.
 struct Session {
   Simulation simulation;
-  std::vector<ToolTouch> touches;  ///< forces between tool and tissue in the last step
-  std::vector<Event> events;       ///< of all steps of the last call
+  std::vector<Event> events;  ///< of all steps of the last call
 
   Session(std::shared_ptr<const Model> model, const SimulationSettings& settings);
-  /// One step, with its touches; appends its events.
+  /// One step; appends its events.
   void step(const StepInput& input);
   /// Another state takes over, in the arrays of the old one, so that views of them show it.
   void replaceState(const State& state);
@@ -59,8 +57,5 @@ class Use {
   SimulationHandle& handle_;
   std::shared_ptr<Session> session_;
 };
-
-/// Makes simulations report their touches; once per process.
-void observeTouches();
 
 }  // namespace vibe::python

@@ -167,8 +167,41 @@ class ToolTest(Worlds):
         force = simulation.tip_pose[:3, :3] @ simulation.wrench[:3]
         self.assertGreater(np.linalg.norm(force), 0.01)
         np.testing.assert_allclose(contacts["force"].sum(0), force, atol=1e-9)
-        self.assertTrue(np.all(np.einsum("ij,ij->i", contacts["force"], contacts["normal"]) <= 1e-12))
-        self.assertEqual(contacts["point"].shape, contacts["force"].shape)
+        self.assertEqual({len(rows) for rows in contacts.values()}, {len(contacts["link"])})
+        self.assertTrue(np.all(contacts["normal_force"] >= 0))
+        parts = contacts["tangential_force"] - contacts["normal_force"][:, None] * contacts["normal"]
+        np.testing.assert_allclose(parts, contacts["force"], atol=1e-12)
+
+    def test_contacts_lie_on_the_wall(self):
+        simulation = self.pressed()
+        contacts, positions, triangles = simulation.contacts(), simulation.positions, self.model.triangles
+        for k in np.flatnonzero(np.array(contacts["kind"]) == "contact"):
+            nodes = contacts["nodes"][k][contacts["nodes"][k] >= 0]
+            weights = contacts["weights"][k][:len(nodes)]
+            np.testing.assert_allclose(weights @ positions[nodes], contacts["point"][k], atol=1e-9)
+            self.assertLessEqual(set(nodes), set(triangles[contacts["triangle"][k]]))
+            self.assertEqual(contacts["region"][k], self.model.region[nodes[np.argmax(weights)]])
+
+    def test_what_belongs_to_the_last_step_goes_with_it(self):
+        simulation = self.pressed()
+        snapshot = simulation.snapshot()
+        for replace in (simulation.reset, lambda: simulation.restore(snapshot)):
+            simulation.restore(snapshot)
+            simulation.step()
+            self.assertGreater(len(simulation.contacts()["link"]), 0)
+            self.assertIsNotNone(simulation.impedance())
+            replace()
+            self.assertEqual(len(simulation.contacts()["link"]), 0)
+            self.assertIsNone(simulation.impedance())
+
+    def test_walls_and_threads_are_told_on_request(self):
+        simulation = self.pressed()
+        hashed = simulation.hash()
+        walls, threads = simulation.wall_contacts(), simulation.thread_contacts()
+        self.assertEqual(walls["nodes"].shape, walls["weights"].shape)
+        np.testing.assert_allclose(walls["weights"].sum(1), 0, atol=1e-9)
+        self.assertEqual((threads["force"].shape, threads["bite"].shape), ((0, 3), (0,)))
+        self.assertEqual(simulation.hash(), hashed)
 
     def test_kinematics_go_both_ways(self):
         joints = np.array([0.1, 0.3, 0.4, -0.2, 0, 0, 0])

@@ -156,7 +156,7 @@ class Recorder {
     trace_.frames.push_back({state.x, state.y, state.z});
     trace_.crossings = std::max(trace_.crossings, static_cast<int>(check_.wall(state).size()));
     trace_.depth = std::max(trace_.depth, check_.tool(state).depth);
-    trace_.pairs = std::max(trace_.pairs, contacts_.count(state));
+    trace_.pairs = std::max(trace_.pairs, static_cast<int>(contacts_.find(state).size()));
   }
 
   const ContactCase& one_;

@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "arithmetic/symmetric_eigen.hpp"
 #include "constraints/blocks.hpp"
+#include "tool_contact/contact_places.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/solver/step_policy.hpp"
 #include "vibe_core/state/state.hpp"
@@ -32,6 +34,11 @@ class Claws {
   }
   std::size_t size() const { return local_.size(); }
   const AttachmentPoint& patch(std::size_t claw) const { return patch_[claw]; }
+  /// The particle that has most of it.
+  int heaviest(std::size_t claw) const {
+    const std::vector<double>& weight = patch_[claw].weight;
+    return patch_[claw].node[std::max_element(weight.begin(), weight.end()) - weight.begin()];
+  }
   /// Position of a claw in the frame of the link that carries the helix [m].
   const Eigen::Vector3d& local(std::size_t claw) const { return local_[claw]; }
 
@@ -93,7 +100,8 @@ class GripBlock : public ConstraintBlock {
       touch.link = link;
       touch.point = context.tool->end[link] * claws_.local(c);
       touch.motion = touch.point - context.tool->start[link] * claws_.local(c);
-      touch.force = loads.pointForce(first_[c]);
+      touch.force = -loads.pointForce(first_[c]);
+      placeAtNode(context.model.organ, claws_.heaviest(c), touch);
       touch.work = loads.pointWork(first_[c]);
       touch.middle = touch.point - 0.5 * touch.motion;
       touch.direction = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};

@@ -130,11 +130,21 @@ WallContacts::WallContacts(const Model& model) {
 
 WallContacts::~WallContacts() = default;
 
-int WallContacts::count(const State& state) {
-  if (!contact_) return 0;
+const std::vector<WallContact>& WallContacts::find(const State& state) {
+  found_.clear();
+  if (!contact_) return found_;
   contact_->detect({state.x.data(), state.y.data(), state.z.data()},
                    {state.vx.data(), state.vy.data(), state.vz.data()}, 0, 0);
-  return static_cast<int>(contact_->pairs().size());
+  for (const SelfContact::Pair& pair : contact_->pairs()) {
+    WallContact contact{pair.node, pair.weight, Eigen::Vector3d::Zero(), pair.normal, pair.away.norm(), 0};
+    for (std::size_t k = 0; k < pair.node.size(); ++k) {
+      const int i = pair.node[k];
+      if (i >= 0) contact.point += 0.5 * std::abs(pair.weight[k]) * Eigen::Vector3d(state.x[i], state.y[i], state.z[i]);
+    }
+    contact.force = SelfContact::normalForce(pair);
+    found_.push_back(contact);
+  }
+  return found_;
 }
 
 }  // namespace vibe

@@ -3,6 +3,8 @@
 
 #include "constraints/blocks.hpp"
 #include "tool/tool_motion.hpp"
+#include "tool_contact/contact_places.hpp"
+#include "tool_contact/shape_distance.hpp"
 #include "tool_contact/surface_contacts.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/solver/step_policy.hpp"
@@ -24,14 +26,16 @@ class ToolContactBlock : public ConstraintBlock {
   explicit ToolContactBlock(const Model& model)
       : passable_(passableVertices(model.organ)),
         excluded_(passable_.size()),
-        contacts_(*model.tool, model.organ.surface, model.organ.thickness, passable_) {
+        contacts_(*model.tool, model.organ.surface, model.organ.thickness, passable_),
+        places_(model.organ) {
+    for (const ToolShape& shape : model.tool->shapes()) distance_.emplace_back(*shape.shape);
     for (auto& v : ahead_) v.resize(static_cast<std::size_t>(model.particle_count));
   }
 
   Activity prepare(const StepContext& context, BodyLoads& loads) override {
     first_ = loads.contacts.size();
     local_point_.clear();
-    link_.clear();
+    origin_.clear();
     if (context.tool == nullptr) return Activity::Sleep;
     lookAhead(context);
     exclude(context);
@@ -93,7 +97,7 @@ class ToolContactBlock : public ConstraintBlock {
     constraint.anchor = anchor;
     constraint.yield = toolYield(context, link, anchor);
     local_point_.push_back(local);
-    link_.push_back(link);
+    origin_.push_back({contact.shape, contact.clearance});
   }
 
   // Equation (10): the inner half of the wall, between tool and mid-surface, is compressed where it cannot yield
@@ -119,28 +123,48 @@ class ToolContactBlock : public ConstraintBlock {
     touch.kind = ToolTouch::Kind::Contact;
     touch.surface = contact.point;
     touch.compliance = contact.compliance;
-    touch.link = link_[number];
+    touch.shape = origin_[number].shape;
+    touch.link = context.model.tool->shapes()[touch.shape].link;
     touch.point = positionOf(contact.point, context.state);
+    touch.normal = contact.normal;
+    touch.gap = distanceOf(context, touch) - origin_[number].clearance;
+    places_.place(touch);
     const Eigen::Vector3d from = context.tool->start[touch.link] * local_point_[number];
     touch.motion = context.tool->end[touch.link] * local_point_[number] - from;
     touch.middle = from + 0.5 * touch.motion;
-    touch.force = contact.force;
+    touch.force = -contact.force;
     touch.work = contact.work;
     const double push = contact.force.dot(contact.normal);
     const double drag = (contact.force - push * contact.normal).norm();
     const Eigen::Vector3d tangent = contact.normal.unitOrthogonal();
     touch.direction = {contact.normal, tangent, contact.normal.cross(tangent)};
-    touch.direction_count = drag < stepPolicy().touch_sticks * contact.friction * push ? 3 : 1;
+    touch.direction_count = drag < stepPolicy().touch_sticks * contact.used_friction * push ? 3 : 1;
     return touch;
   }
 
+  // Of the point from the surface of its shape at the end of the step [m].
+  double distanceOf(const StepContext& context, const ToolContact& contact) const {
+    const ToolShape& shape = context.model.tool->shapes()[contact.shape];
+    const Eigen::Isometry3d pose = context.tool->end[contact.link] * shape.origin;
+    Eigen::Vector3d normal;
+    return distance_[contact.shape](pose.inverse() * contact.point, normal);
+  }
+
+  // What a contact of the loads comes from.
+  struct Origin {
+    int shape;         // of the tool
+    double clearance;  // of the mid-surface from the shape where it touches [m]
+  };
+
   std::vector<char> passable_, excluded_;  // per node
   SurfaceContacts contacts_;
+  ContactPlaces places_;
+  std::vector<PointDistance> distance_;       // per shape
   std::array<std::vector<double>, 3> ahead_;  // [m]
   SurfacePath path_;
   std::size_t first_ = 0;                     // of its contacts in the loads
   std::vector<Eigen::Vector3d> local_point_;  // of each contact at the start of the step, in the frame of its link [m]
-  std::vector<int> link_;                     // of the tool at each contact
+  std::vector<Origin> origin_;                // of each contact
 };
 
 }  // namespace

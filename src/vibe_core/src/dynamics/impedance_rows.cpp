@@ -24,7 +24,7 @@ void addTouch(const Model& model, const std::vector<Eigen::Isometry3d>& poses, c
     rows.rows.push_back({touch.surface, touch.compliance, direction, direction.transpose() * motion, touch.patch});
   }
   if (touch.kind == ToolTouch::Kind::Contact) rows.contacts = true;
-  rows.force -= motion.transpose() * touch.force;
+  rows.force += motion.transpose() * touch.force;
 }
 
 // The forces are those of a moment before the end of the step.

@@ -157,10 +157,11 @@ void ToolStep::report(const ImplicitStepper& stepper) {
 void ToolStep::reportForces() {
   const Eigen::Vector3d tip = scratch_.tool.end[model_.tip_link].translation();
   for (const ToolTouch& touch : scratch_.touches) {
-    if (touch.kind == ToolTouch::Kind::Grip) report_.grip_force -= touch.force;
+    if (touch.kind == ToolTouch::Kind::Grip) report_.grip_force += touch.force;
     if (touch.kind == ToolTouch::Kind::Contact) ++report_.contact_count;
-    state_.energy.friction_loss += touch.force.dot(touch.motion) - touch.work;
-    pushTool(-touch.force, touch.point, touch.motion, tip, report_, state_.energy);
+    state_.energy.friction_loss -= touch.force.dot(touch.motion) + touch.work;
+    pushTool(touch.force, touch.point, touch.motion, tip, report_, state_.energy);
+    report_.contacts.push_back(touch);
   }
 }
 
@@ -174,7 +175,7 @@ void ToolStep::reportHand(double tool_work) {
   if (model_.scope_springs) motion.displaceEnd(report_.tool_displacement);
   motion.linkPoses(0.5, scratch_.tool.middle);
   for (const ToolTouch& touch : scratch_.touches)
-    effort += pointJacobian(*model_.tool, scratch_.tool.middle, touch.link, touch.middle).transpose() * touch.force;
+    effort -= pointJacobian(*model_.tool, scratch_.tool.middle, touch.link, touch.middle).transpose() * touch.force;
   const double scope_loss = state_.energy.scope_loss;
   if (springs_) {  // between the hand and the tool, they carry what the hand bears
     const ToolDisplacement& after = report_.tool_displacement;

@@ -61,6 +61,7 @@ XpbdSubstep::XpbdSubstep(const Model& model, const ClusterSet& clusters, const T
   scratch_.sweep.z = scratch_.ahead_z.data();
   for (const auto& block : scratch_.added) block->substepLoad()->prepareSubsteps(model, state);
   scratch_.pull.prepare(model, state);
+  for (auto& numbers : scratch_.contact_of) std::fill(numbers.begin(), numbers.end(), -1);
 }
 
 void XpbdSubstep::run(int index, int count) {
@@ -163,9 +164,10 @@ void XpbdSubstep::holdGrip() {
     const Eigen::Vector3d target = helix * point.local;
     const Eigen::Vector3d shift = target - Eigen::Vector3d(state_.x[i], state_.y[i], state_.z[i]);
     shiftParticle(i, shift);
-    const Eigen::Vector3d force = model_.mass[i] / (h_ * h_) * shift;  // tool on tissue
-    report_.grip_force -= force;
-    pushTool(-force, target, target - old_helix * point.local, tip(), report_, state_.energy);
+    const Eigen::Vector3d force = -model_.mass[i] / (h_ * h_) * shift;
+    report_.grip_force += force;
+    pushTool(force, target, target - old_helix * point.local, tip(), report_, state_.energy);
+    contactOf(i, ToolContact::Kind::Grip, model_.grip_link).force += force;
   }
 }
 
@@ -200,7 +202,28 @@ void XpbdSubstep::pushOut(const Contact& contact) {
   const double sliding = tangential.norm();
   if (sliding > 0) shift -= std::min(1.0, model_.scene.scope->friction * depth / sliding) * tangential;
   shiftParticle(i, shift);
-  pushTool(-model_.mass[i] / (h_ * h_) * shift, p, tool_step, tip(), report_, state_.energy);
+  const Eigen::Vector3d force = -model_.mass[i] / (h_ * h_) * shift;
+  pushTool(force, p, tool_step, tip(), report_, state_.energy);
+  ToolContact& reported = contactOf(i, ToolContact::Kind::Contact, link);
+  reported.force += force;
+  reported.shape = contact.shape;
+  reported.normal = contact.normal;
+  reported.gap = contact.distance - model_.particle_radius;
+}
+
+// The force of a particle in this step, over all sub-steps.
+ToolContact& XpbdSubstep::contactOf(int particle, ToolContact::Kind kind, int link) {
+  int& number = scratch_.contact_of[static_cast<std::size_t>(kind)][static_cast<std::size_t>(particle)];
+  if (number < 0) {
+    number = static_cast<int>(report_.contacts.size());
+    report_.contacts.emplace_back();
+    report_.contacts.back().surface = SurfacePoint::ofNode(particle);
+    scratch_.places->place(report_.contacts.back());
+  }
+  ToolContact& contact = report_.contacts[static_cast<std::size_t>(number)];
+  contact.kind = kind;
+  contact.link = link;
+  return contact;
 }
 
 // A displacement imposed on a particle is an impulse.
@@ -262,6 +285,11 @@ void XpbdSubstep::finish(int count) {
   report_.tool_force /= count;
   report_.tool_torque /= count;
   report_.grip_force /= count;
+  for (ToolContact& contact : report_.contacts) {
+    const int i = contact.surface.node[0];
+    contact.force /= count;
+    contact.point = {state_.x[i], state_.y[i], state_.z[i]};
+  }
 }
 
 std::unique_ptr<SolverWorkspace> XpbdSolver::makeWorkspace(const Model& model) const {
@@ -277,7 +305,11 @@ std::unique_ptr<SolverWorkspace> XpbdSolver::makeWorkspace(const Model& model) c
     scratch->foundation_rate[i] = foundation[i] * model.inverse_mass[i];
   scratch->buffers = makeSweepBuffers(tissue_->clusters());
   scratch->sweep_function = chooseClusterSweep();
-  if (model.tool) scratch->collision = std::make_unique<ToolCollision>(*model.tool);
+  if (model.tool) {
+    scratch->collision = std::make_unique<ToolCollision>(*model.tool);
+    scratch->places = std::make_unique<ContactPlaces>(model.organ);
+    for (auto& numbers : scratch->contact_of) numbers.resize(n);
+  }
   return scratch;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "tissue/cluster_builder.hpp"
 #include "tissue/shape_matching.hpp"
 #include "tissue/shape_matching_kernel.hpp"
+#include "tool_contact/contact_places.hpp"
 #include "tool_contact/tool_collision.hpp"
 #include "vibe_core/constraints/constraint_registry.hpp"
 #include "vibe_core/model/model.hpp"
@@ -28,6 +30,8 @@ class XpbdWorkspace : public SolverWorkspace {
   ClusterSweep sweep{};
   ClusterSweepFunction sweep_function = nullptr;
   std::unique_ptr<ToolCollision> collision;
+  std::unique_ptr<ContactPlaces> places;       // of the contacts; null without a tool
+  std::array<std::vector<int>, 2> contact_of;  // by kind, per particle: its number in the report, -1: none
   XpbdPull pull;
   std::vector<std::unique_ptr<ConstraintBlock>> added;  // each with a substepLoad()
   LinkPoses old_tool, tool_ahead;                       // before the sub-step, after the last one until the next search
@@ -56,6 +60,7 @@ class XpbdSubstep {
   void holdGrip();
   void resolveContacts();
   void pushOut(const Contact& contact);
+  ToolContact& contactOf(int particle, ToolContact::Kind kind, int link);
   void shiftParticle(int i, const Eigen::Vector3d& shift);
   void limitSpeeds();
   void limitSpeed(int i, double speed2);

@@ -180,6 +180,10 @@ void SelfContact::finish(Pair& pair) {
   pairs_.push_back(pair);
 }
 
+double SelfContact::normalForce(const Pair& pair) {
+  return -pair.stiffness / pair.thickness * squeeze(pair.away.norm() / pair.thickness, pair.straight_below).slope;
+}
+
 double SelfContact::evaluate(const double* positions4, float* gradient4) const {
   double energy = 0;
   const double smooth = policy_.wall_sliding_speed * lead_, onset = policy_.wall_onset;

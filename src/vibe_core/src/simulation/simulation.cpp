@@ -60,7 +60,9 @@ const std::vector<Event>& Simulation::step() {
 void Simulation::warmUp() {
   State state = state_;
   std::vector<Event> events;
+  const StepReport before = workspace_->report();
   vibe::step(*model_, state, input_, *workspace_, events);
+  workspace_->report() = before;
 }
 
 void Simulation::record(const std::vector<Event>& events) {
@@ -91,6 +93,11 @@ void Simulation::reset(std::optional<std::uint64_t> seed) {
   replaceState(initialState(*model_, seed.value_or(model_->scene.seed)));
 }
 
+const std::vector<WallContact>& Simulation::wallContacts() {
+  if (!walls_) walls_ = std::make_unique<WallContacts>(*model_);
+  return walls_->find(state_);
+}
+
 std::shared_ptr<const void> Simulation::prepare() {
   return model_->solver->prepare(state_, workspace_->solverWorkspace());
 }
@@ -99,13 +106,19 @@ void Simulation::replaceState(State state) {
   state_ = std::move(state);
   input_ = holdingInput(state_);
   if (recorder_) recorder_->restart(*model_, state_);
+  forgetStep();
+}
+
+void Simulation::forgetStep() {
   events_.clear();
+  workspace_->report().clear();
 }
 
 void Simulation::replaceModel(std::shared_ptr<const Model> model) {
   State state = initialState(*model, model->scene.seed);
   auto workspace = workspaceFor(*model, settings_);
   if (recorder_) recorder_.emplace(*model, state);
+  walls_.reset();
   workspace_ = std::move(workspace);  // before the model goes, which it refers to
   model_ = std::move(model);
   replaceState(std::move(state));

@@ -162,11 +162,10 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   }
   movePullSpring(model, input, state);
   StepReport& report = workspace.report();
-  report = StepReport();
+  report.clear();
   if (model.scope_springs) report.tool_displacement = relaxed(model, state, dt);
   moveTissue(model, motion ? &*motion : nullptr, pedal, insufflator_on, state, workspace, report);
   beam.insufflation = std::max(0.0, (state.gas_amount - gas_before) / (kAmbientPressure * dt));
-  workspace.toolImpedance() = report.tool_impedance;
   ++state.step;
   state.time = static_cast<double>(state.step) * dt;
   if (model.tool) {
@@ -185,7 +184,10 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   if (report.speed_limited > 0)
     log.emit(Event::Kind::Recovery, -1, report.speed_limited).detail = EventDetail::SpeedLimited;
   if (report.put_back) log.emit(Event::Kind::Recovery).detail = EventDetail::Distorted;
-  if (!isFinite(state)) recover(model, state, log);
+  if (!isFinite(state)) {
+    recover(model, state, log);
+    report.contacts.clear();
+  }
   if (stages != nullptr) report.stage_times = stages->stop();
 }
 

@@ -190,6 +190,7 @@ void storeToolForces(const RowSystem& system, BodyLoads& loads) {
   for (std::size_t c = 0; c < rows.counted; ++c) {
     ContactConstraint& contact = loads.contacts[rows.contacts[c].load];
     for (int k = 0; k < 3; ++k) contact.force += force[rows.contactRow(c) + k] * rows.contacts[c].direction[k];
+    contact.used_friction = rows.contacts[c].friction;
   }
   YieldVector pull = YieldVector::Zero();
   rows.forEachYield([&](int row, const YieldVector& yield) { pull += force[row] * yield; });

@@ -139,13 +139,18 @@ bool hasNoAcceleration(const State& state) {
 TEST(StepWays, Print) {
   for (const auto& [way, moment] : session().moments()) {
     const Result r = session().stepFrom(moment);
-    std::printf("%s: step %ld solves %d evaluations %d residual %g force %g contacts %d limited %d\n", nameOf(way), long(moment.before.step), r.report.solves, r.report.evaluations, r.report.residual, r.state.tool_force.norm(), r.report.contact_count, r.report.limited);
+    std::printf("%s: step %ld solves %d evaluations %d residual %g force %g contacts %d limited %d\n", nameOf(way),
+                long(moment.before.step), r.report.solves, r.report.evaluations, r.report.residual,
+                r.state.tool_force.norm(), r.report.contact_count, r.report.limited);
   }
   const Moment m = momentOf(StepWay::ContactsExchanged);
-  StepPolicy keeps; keeps.contact_exchanges = 0;
+  StepPolicy keeps;
+  keeps.contact_exchanges = 0;
   for (const Result& r : {session().stepFrom(m), session().stepFrom(m, keeps)}) {
-    for (std::size_t k = 0; k < kStepWayCount; ++k) if (r.report.ways.of(StepWay(k))) std::printf("  %s %d\n", nameOf(StepWay(k)), r.report.ways.of(StepWay(k)));
-    std::printf("residual %g evaluations %d moved %g\n", r.report.residual, r.report.evaluations, farthestApart(r.state, m.before));
+    for (std::size_t k = 0; k < kStepWayCount; ++k)
+      if (r.report.ways.of(StepWay(k))) std::printf("  %s %d\n", nameOf(StepWay(k)), r.report.ways.of(StepWay(k)));
+    std::printf("residual %g evaluations %d moved %g\n", r.report.residual, r.report.evaluations,
+                farthestApart(r.state, m.before));
   }
 }
 

@@ -33,6 +33,20 @@ TEST(SelfContact, GradientIsDerivativeOfEnergy) {
   }
 }
 
+TEST(SelfContact, NormalForcesArePartsOfTheGradient) {
+  PressedPlates world;
+  world.evaluate();  // nothing has slid since detect()
+  std::vector<double> sum(world.at.size(), 0);
+  for (const SelfContact::Pair& pair : world.contact.pairs())
+    for (std::size_t k = 0; k < 4; ++k)
+      for (Eigen::Index c = 0; c < 3 && pair.node[k] >= 0; ++c)
+        sum[4 * static_cast<std::size_t>(pair.node[k]) + static_cast<std::size_t>(c)] -=
+            pair.weight[k] * SelfContact::normalForce(pair) * pair.normal[c];
+  const double largest = *std::max_element(sum.begin(), sum.end());
+  ASSERT_GT(largest, 1e-3);
+  for (std::size_t i = 0; i < sum.size(); ++i) EXPECT_NEAR(world.gradient[i], sum[i], 1e-5 * largest);
+}
+
 /// A valley along y whose sides rise by `slope`, and above it a roof turned over, with its point down.
 SurfaceMesh valley(double slope, double x, double z) {
   constexpr double kHalf = 10e-3;

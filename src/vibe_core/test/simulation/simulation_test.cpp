@@ -108,6 +108,41 @@ TEST(Simulation, ResetGoesBackToTheBeginning) {
   EXPECT_EQ(simulation.hash(), Simulation(ball(), settings).hash());
 }
 
+// Whatever belongs to the last step is that of no other state.
+TEST(Simulation, AnotherStateHasNoLastStep) {
+  Simulation simulation(ball(kRadius, "shell"));
+  const auto press = [&] {
+    for (int k = 0; k < 120; ++k) simulation.step(test::scopeAt(0.11));
+    ASSERT_FALSE(simulation.contacts().empty()) << "negative control: there is something to forget";
+    ASSERT_TRUE(simulation.toolImpedance());
+    ASSERT_GT(simulation.report().iterations, 0);
+    ASSERT_FALSE(simulation.report().tool_force.isZero());
+  };
+  const auto expectNothing = [&](const char* after) {
+    EXPECT_TRUE(simulation.contacts().empty()) << after;
+    EXPECT_FALSE(simulation.toolImpedance()) << after;
+    EXPECT_TRUE(simulation.events().empty()) << after;
+    EXPECT_EQ(simulation.report().iterations, 0) << after;
+    EXPECT_TRUE(simulation.report().tool_force.isZero()) << after;
+  };
+  expectNothing("construction");
+  simulation.warmUp();
+  expectNothing("warming up");
+  press();
+  const State pressed = simulation.state();
+  simulation.warmUp();
+  EXPECT_FALSE(simulation.contacts().empty()) << "those of the last step, not of the one that was forgotten";
+  simulation.replaceState(pressed);
+  expectNothing("another state");
+  simulation.step(test::scopeAt(0.11));
+  EXPECT_FALSE(simulation.contacts().empty());
+  simulation.reset();
+  expectNothing("a reset");
+  press();
+  simulation.replaceModel(ball(kRadius, "shell"));
+  expectNothing("another model");
+}
+
 TEST(Simulation, ASnapshotContinuesToTheBit) {
   const auto model = ball();
   const std::string file = ::testing::TempDir() + "vibe_simulation_test.bin";

@@ -149,7 +149,7 @@ class Simulation:
     def closed(self) -> bool:
         """Whether close() was called."""
     def contacts(self) -> dict:
-        """Forces of the tissue on the tool in the last step. A dictionary: point (n, 3) [m], normal (n, 3) out of the tool, zero for the grip of the helix, force (n, 3), mean over the step [N], all in world; link, kind: lists of n names. Empty with shape matching."""
+        """Forces of the tissue on the tool in the last step; empty before it, and after restore() and reset(). A dictionary of new arrays, with a row per contact, all in world: point (n, 3), of the wall at the end of the step [m]; normal (n, 3), unit, out of the tool, zero for the grip of the helix; gap (n,), from the tool to the face of the wall, below 0: squeezed by as much [m]; force (n, 3), mean over the step, whose sum is the force of wrench [N]; normal_force (n,) and tangential_force (n, 3), its parts [N]; shape (n,) int32, of the tool, -1: grip; triangle (n,) int32, -1: none; nodes (n, 3) int32, -1: fewer, and weights (n, 3), whose mean is point, none where the helix holds a patch; region, wall (n,) uint8, as those of Model. Beside them link and kind ('contact' or 'grip'), lists of n names."""
     @property
     def dose(self) -> ndarray:
         """View (particles,) float32: dose of the argon beam [J]; (0,) without marking."""
@@ -232,6 +232,8 @@ class Simulation:
     @property
     def strain(self) -> ndarray:
         """New array (particles,) float32: mean stretch in the wall relative to rest, minus 1."""
+    def thread_contacts(self) -> dict:
+        """What threads that pull do to the wall at their bites, with the tensions of the last step. A dictionary of new arrays: point (n, 3), world [m]; force (n, 3), on the wall, world [N]; thread, bite (n,) int32, numbers in threads() and of the bite."""
     def threads(self) -> list[dict]:
         """A dictionary per suture set: stage, technique, margin; bites (n, 3) [m], depth (n,) [m], time (n,) [s], full_thickness: n booleans; length (n-1,) [m] and tension (n-1,) [N] between them; drawn [m], cinch_tension [N], tear_outs."""
     @property
@@ -255,6 +257,8 @@ class Simulation:
     @property
     def vz(self) -> ndarray:
         """View (particles,): velocities [m/s]."""
+    def wall_contacts(self) -> dict:
+        """Where the wall presses on itself in the present state; looked for in this call only. A dictionary of new arrays: point (n, 3), half way between two points of the wall, world [m]; normal (n, 3), unit, from the second to the first; distance (n,), of the two on the middle of the wall [m]; normal_force (n,), without friction [N]; nodes (n, 4) int32, -1: fewer, and weights (n, 4): above 0 at the first point, below 0 at the second."""
     def warm_up(self) -> None:
         """Takes the time that the first step needs besides; changes no result."""
     @property

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
@@ -18,6 +20,27 @@ namespace vibe::sim {
 /// Queue of a topic of small messages: long, because a simulation that runs faster than the wall clock must not lose
 /// messages to a recorder that is busy for a moment.
 constexpr std::uint32_t kSmallQueue = 10000;
+
+/// How much of a topic a recording keeps. What a replay computes again is thinned or left out.
+struct RecordingRule {
+  std::string topic;  ///< without its namespace, or "type:PACKAGE/NAME" for all topics of a type
+  double period;      ///< kept is one message in this time [s]; 0: all; kNever: none
+  bool replayed;      ///< a replay writes all of its messages (replay --fill)
+};
+
+constexpr double kNever = -1;
+
+/// The same for a topic of the simulator, without its name.
+struct Kept {
+  double period = 0;      ///< see RecordingRule [s]
+  bool replayed = false;  ///< see RecordingRule
+};
+constexpr Kept kKeptWhole{0, false};
+constexpr Kept kLeftToReplay{kNever, true};
+/// One message in this time [s], enough to look at a session and to plot it without a replay.
+constexpr Kept thinnedTo(double period) {
+  return {period, true};
+}
 
 /// A bag that messages are written to, at a time that its owner sets.
 struct BagTarget {
@@ -57,23 +80,48 @@ class MessageSink {
   std::string topic_;
 };
 
-/// Makes sinks, in the graph or into a bag.
+/// Makes sinks, in the graph or into a bag, and knows of all that it has made whether somebody listens and what a
+/// recording keeps.
 class SinkSource {
  public:
+  SinkSource() = default;                                         ///< of sinks that lead nowhere
   SinkSource(const ros::NodeHandle& handle) : handle_(handle) {}  // NOLINT: a handle is enough
   /// @param target  lives as long as the sinks
   SinkSource(BagTarget& target) : target_(&target) {}  // NOLINT: so is a bag
 
-  bool isGraph() const { return target_ == nullptr; }
+  bool isGraph() const { return handle_.has_value(); }
 
   /// @param on_connect  called from the thread of ROS when somebody begins to listen; never for a bag
+  /// @param own         subscribers that are this program
   template <class M>
-  MessageSink advertise(const std::string& topic, std::uint32_t queue, bool latch = false,
-                        const std::function<void()>& on_connect = {}) {
+  MessageSink advertise(const std::string& topic, std::uint32_t queue, Kept kept = kKeptWhole, bool latch = false,
+                        const std::function<void()>& on_connect = {}, std::uint32_t own = 0) {
+    made_.push_back({make<M>(topic, queue, latch, on_connect), own});
+    if (kept.period != 0 || kept.replayed) rules_.push_back({topic, kept.period, kept.replayed});
+    return made_.back().sink;
+  }
+
+  /// Whether anybody else listens to any of them.
+  bool anyIsHeard() const {
+    return std::any_of(made_.begin(), made_.end(),
+                       [](const Made& made) { return made.sink.getNumSubscribers() > made.own; });
+  }
+  /// Of the topics that are not kept whole.
+  const std::vector<RecordingRule>& recordingRules() const { return rules_; }
+
+ private:
+  struct Made {
+    MessageSink sink;
+    std::uint32_t own;
+  };
+
+  template <class M>
+  MessageSink make(const std::string& topic, std::uint32_t queue, bool latch, const std::function<void()>& on_connect) {
     if (target_ != nullptr) {
       const std::string whole = topic[0] == '/' ? topic : target_->prefix + topic;
       return MessageSink(*target_, target_->wanted(whole) ? whole : "");
     }
+    if (!handle_) return {};
     ros::SubscriberStatusCallback connected;
     if (on_connect) connected = [on_connect](const ros::SingleSubscriberPublisher&) { on_connect(); };
     return MessageSink(
@@ -81,9 +129,10 @@ class SinkSource {
         ros_utils::advertiseFormer<M>(*handle_, topic, queue, latch));
   }
 
- private:
   std::optional<ros::NodeHandle> handle_;
   BagTarget* target_ = nullptr;
+  std::vector<Made> made_;
+  std::vector<RecordingRule> rules_;
 };
 
 }  // namespace vibe::sim

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
+#include <type_traits>
 
 #include <rosgraph_msgs/Clock.h>
 #include <std_msgs/String.h>
@@ -11,6 +11,7 @@
 #include <vibe_msgs/SkillMetrics.h>
 #include <vibe_msgs/StepResult.h>
 
+#include "conversions/contact_message.hpp"
 #include "conversions/conversions.hpp"
 #include "conversions/input_message.hpp"
 #include "conversions/procedure_message.hpp"
@@ -35,20 +36,42 @@ int hapticInterval(double step_period) {
   return static_cast<int>(std::ceil(1 / (kHapticRate * step_period) - 1e-6));
 }
 
-bool anyIsHeard(std::initializer_list<const MessageSink*> sinks) {
-  return std::any_of(sinks.begin(), sinks.end(), [](const MessageSink* sink) { return sink->getNumSubscribers() > 0; });
+// A topic whose message is formed of the simulation after every step, if somebody listens.
+template <class Make>
+StepTopic stepTopic(SinkSource& sinks, const char* topic, Kept kept, Make make) {
+  using Message = std::invoke_result_t<Make, const TimedSimulation&>;
+  const MessageSink sink = sinks.advertise<Message>(topic, kSmallQueue, kept);
+  return [sink, make](const TimedSimulation& simulation) {
+    if (sink.getNumSubscribers() > 0) sink.publish(make(simulation));
+  };
+}
+
+using Now = const TimedSimulation&;
+
+// What the tool is and feels. Another topic of this kind is a row here, and nothing else in this file.
+std::vector<StepTopic> toolTopics(SinkSource& sinks) {
+  return {
+      stepTopic(sinks, "scope/measured_cf", thinnedTo(0.1), [](Now s) { return makeWrench(s.state(), s.now()); }),
+      stepTopic(sinks, "scope/contacts", kLeftToReplay, makeToolContacts),
+      stepTopic(sinks, "scope/jacobian", kLeftToReplay,
+                [](Now s) { return makeJacobian(tipJacobian(s.model(), s.state())); }),
+      stepTopic(sinks, "scope/setpoint_js", kLeftToReplay, [](Now s) { return makeHandJoints(s.state(), s.now()); }),
+      stepTopic(sinks, "joint_states", thinnedTo(0.1),
+                [](Now s) { return makeJointState(s.model(), s.state(), s.now()); }),
+  };
 }
 
 }  // namespace
 
 ArmPublishers::ArmPublishers(SinkSource& sinks)
-    : scope_(sinks.advertise<sensor_msgs::JointState>("scope/measured_js", kSmallQueue)),
-      suturing_device_(sinks.advertise<sensor_msgs::JointState>("suturing_device/measured_js", kSmallQueue)),
-      jacobian_(sinks.advertise<std_msgs::Float64MultiArray>("scope/jacobian", kSmallQueue)),
-      wall_(sinks.advertise<geometry_msgs::PoseStamped>("wall/measured_cp", kSmallQueue)),
-      scope_state_(sinks.advertise<vibe_msgs::OperatingState>("scope/operating_state", kSmallQueue, true)),
-      suturing_device_state_(
-          sinks.advertise<vibe_msgs::OperatingState>("suturing_device/operating_state", kSmallQueue, true)) {}
+    // the simulator itself listens to the first, since devices of the release before publish there (Inputs)
+    : scope_(sinks.advertise<sensor_msgs::JointState>("scope/measured_js", kSmallQueue, kLeftToReplay, false, {}, 1)),
+      suturing_device_(
+          sinks.advertise<sensor_msgs::JointState>("suturing_device/measured_js", kSmallQueue, kLeftToReplay)),
+      wall_(sinks.advertise<geometry_msgs::PoseStamped>("wall/measured_cp", kSmallQueue, kLeftToReplay)),
+      scope_state_(sinks.advertise<vibe_msgs::OperatingState>("scope/operating_state", kSmallQueue, kKeptWhole, true)),
+      suturing_device_state_(sinks.advertise<vibe_msgs::OperatingState>("suturing_device/operating_state", kSmallQueue,
+                                                                        kKeptWhole, true)) {}
 
 void ArmPublishers::place(const TimedSimulation& simulation, bool continues, std::int64_t stamp) {
   const JointArray joints = toolJoints(simulation.state());
@@ -58,8 +81,6 @@ void ArmPublishers::place(const TimedSimulation& simulation, bool continues, std
   last_joints_ = joints;
   scope_.publish(makeMeasuredScope(simulation.state(), velocity, stamp));
   suturing_device_.publish(makeMeasuredSuturingDevice(simulation.state(), velocity, stamp));
-  if (jacobian_.getNumSubscribers() > 0)
-    jacobian_.publish(makeJacobian(tipJacobian(simulation.model(), simulation.state())));
   if (wall_.getNumSubscribers() == 0) return;
   if (const auto sight = lookAhead(simulation.model(), simulation.state())) wall_.publish(makeWallPose(*sight, stamp));
 }
@@ -80,40 +101,35 @@ void ArmPublishers::operatingState(const TimedSimulation& simulation, const RunS
   suturing_device_state_.publish(suturing_device);
 }
 
-bool ArmPublishers::hasListener() const {
-  // the simulator itself is one, since devices of the release before publish there (Inputs)
-  if (scope_.getNumSubscribers() > 1) return true;
-  return anyIsHeard({&suturing_device_, &jacobian_, &wall_, &scope_state_, &suturing_device_state_});
-}
-
 Publishers::Publishers(SinkSource sinks, bool with_clock)
-    : scope_pose_(sinks.advertise<geometry_msgs::PoseStamped>("scope/measured_cp", kSmallQueue)),
-      scope_twist_(sinks.advertise<geometry_msgs::TwistStamped>("scope/measured_cv", kSmallQueue)),
-      hand_pose_(sinks.advertise<geometry_msgs::PoseStamped>("scope/setpoint_cp", kSmallQueue)),
-      helix_pose_(sinks.advertise<geometry_msgs::PoseStamped>("suturing_device/helix/measured_cp", kSmallQueue)),
-      wrench_(sinks.advertise<geometry_msgs::WrenchStamped>("scope/measured_cf", kSmallQueue)),
-      joint_states_(sinks.advertise<sensor_msgs::JointState>("joint_states", kSmallQueue)),
-      hand_joints_(sinks.advertise<sensor_msgs::JointState>("scope/setpoint_js", kSmallQueue)),
-      topology_(sinks.advertise<vibe_msgs::TissueTopology>("tissue/topology", 1, true)),
-      particles_(sinks.advertise<sensor_msgs::PointCloud2>("tissue/particles", kCloudQueue, true)),
-      procedure_(sinks.advertise<vibe_msgs::ProcedureState>("procedure/state", kSmallQueue, true)),
-      skill_metrics_(sinks.advertise<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kSmallQueue, true)),
-      events_(sinks.advertise<vibe_msgs::ProcedureEvent>("procedure/events", kSmallQueue)),
-      sutures_(sinks.advertise<vibe_msgs::SutureArray>("sutures", kCloudQueue, true)),
-      applied_input_(sinks.advertise<vibe_msgs::StepInput>("applied_input", kSmallQueue, false,
+    : sinks_(std::move(sinks)),
+      scope_pose_(sinks_.advertise<geometry_msgs::PoseStamped>("scope/measured_cp", kSmallQueue, thinnedTo(0.1))),
+      scope_twist_(sinks_.advertise<geometry_msgs::TwistStamped>("scope/measured_cv", kSmallQueue, kLeftToReplay)),
+      hand_pose_(sinks_.advertise<geometry_msgs::PoseStamped>("scope/setpoint_cp", kSmallQueue, kLeftToReplay)),
+      helix_pose_(sinks_.advertise<geometry_msgs::PoseStamped>("suturing_device/helix/measured_cp", kSmallQueue,
+                                                               kLeftToReplay)),
+      topology_(sinks_.advertise<vibe_msgs::TissueTopology>("tissue/topology", 1, kKeptWhole, true)),
+      particles_(sinks_.advertise<sensor_msgs::PointCloud2>("tissue/particles", kCloudQueue, thinnedTo(2), true)),
+      procedure_(sinks_.advertise<vibe_msgs::ProcedureState>("procedure/state", kSmallQueue, kKeptWhole, true)),
+      skill_metrics_(
+          sinks_.advertise<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kSmallQueue, kKeptWhole, true)),
+      events_(sinks_.advertise<vibe_msgs::ProcedureEvent>("procedure/events", kSmallQueue)),
+      sutures_(sinks_.advertise<vibe_msgs::SutureArray>("sutures", kCloudQueue, thinnedTo(2), true)),
+      applied_input_(sinks_.advertise<vibe_msgs::StepInput>("applied_input", kSmallQueue, kKeptWhole, false,
+                                                            [this] { snapshot_asked_ = true; })),
+      solver_statistics_(sinks_.advertise<vibe_msgs::SolverStatistics>("solver_statistics", kSmallQueue)),
+      scene_(sinks_.advertise<std_msgs::String>("scene", 1, kKeptWhole, true)),
+      haptic_(sinks_.advertise<vibe_msgs::HapticParameters>("haptic/parameters", kSmallQueue, kLeftToReplay)),
+      pull_(sinks_.advertise<vibe_msgs::TissuePullState>("tissue/pull_state", kSmallQueue, thinnedTo(0.1))),
+      step_result_(sinks_.advertise<vibe_msgs::StepResult>("step_result", kSmallQueue, kLeftToReplay, true)),
+      session_info_(sinks_.advertise<vibe_msgs::SessionInfo>("session_info", kSmallQueue, kKeptWhole, true)),
+      snapshot_(sinks_.advertise<vibe_msgs::StateSnapshot>("snapshot", kCloudQueue, kKeptWhole, false,
                                                            [this] { snapshot_asked_ = true; })),
-      solver_statistics_(sinks.advertise<vibe_msgs::SolverStatistics>("solver_statistics", kSmallQueue)),
-      scene_(sinks.advertise<std_msgs::String>("scene", 1, true)),
-      haptic_(sinks.advertise<vibe_msgs::HapticParameters>("haptic/parameters", kSmallQueue)),
-      pull_(sinks.advertise<vibe_msgs::TissuePullState>("tissue/pull_state", kSmallQueue)),
-      step_result_(sinks.advertise<vibe_msgs::StepResult>("step_result", kSmallQueue, true)),
-      session_info_(sinks.advertise<vibe_msgs::SessionInfo>("session_info", kSmallQueue, true)),
-      snapshot_(sinks.advertise<vibe_msgs::StateSnapshot>("snapshot", kCloudQueue, false,
-                                                          [this] { snapshot_asked_ = true; })),
-      step_timing_(sinks.advertise<vibe_msgs::StepTiming>("step_timing", kSmallQueue)),
-      arms_(sinks) {
-  if (sinks.isGraph()) static_transforms_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>();
-  if (with_clock) clock_ = sinks.advertise<rosgraph_msgs::Clock>("/clock", kSmallQueue);
+      step_timing_(sinks_.advertise<vibe_msgs::StepTiming>("step_timing", kSmallQueue, kLeftToReplay)),
+      tool_(toolTopics(sinks_)),
+      arms_(sinks_) {
+  if (sinks_.isGraph()) static_transforms_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>();
+  if (with_clock) clock_ = sinks_.advertise<rosgraph_msgs::Clock>("/clock", kSmallQueue, thinnedTo(0.1));
 }
 
 void Publishers::announceModel(const TimedSimulation& simulation) {
@@ -216,15 +232,6 @@ void Publishers::warn(const std::string& text) {
   events_.publish(makeWarning(text, now_));
 }
 
-bool Publishers::hasListener() const {
-  return arms_.hasListener() ||
-         anyIsHeard({&scope_pose_,    &scope_twist_, &hand_pose_, &helix_pose_,    &wrench_,
-                     &joint_states_,  &hand_joints_, &topology_,  &particles_,     &procedure_,
-                     &skill_metrics_, &events_,      &sutures_,   &applied_input_, &solver_statistics_,
-                     &scene_,         &haptic_,      &pull_,      &step_result_,   &session_info_,
-                     &snapshot_,      &step_timing_, &clock_});
-}
-
 void Publishers::tool(const TimedSimulation& simulation, bool continues, std::int64_t stamp) {
   last_tool_ = stamp;
   const Model& model = simulation.model();
@@ -239,9 +246,7 @@ void Publishers::tool(const TimedSimulation& simulation, bool continues, std::in
     model.tool->forwardKinematics(simulation.state().joints, link_poses_);
     hand_pose_.publish(makePose(model.tool_base * link_poses_[model.tip_link], kWorldFrame, stamp));
   }
-  wrench_.publish(makeWrench(simulation.state(), stamp));
-  joint_states_.publish(makeJointState(model, simulation.state(), stamp));
-  hand_joints_.publish(makeHandJoints(simulation.state(), stamp));
+  for (const StepTopic& publish : tool_) publish(simulation);
   arms_.place(simulation, continues, stamp);
 }
 

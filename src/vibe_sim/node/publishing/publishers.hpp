@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,14 +29,16 @@ class ArmPublishers {
   void place(const TimedSimulation& simulation, bool continues, std::int64_t stamp);
   /// The operating states, where they have changed.
   void operatingState(const TimedSimulation& simulation, const RunStatus& status);
-  bool hasListener() const;
 
  private:
-  MessageSink scope_, suturing_device_, jacobian_, wall_, scope_state_, suturing_device_state_;
+  MessageSink scope_, suturing_device_, wall_, scope_state_, suturing_device_state_;
   JointArray last_joints_{};
   std::string last_state_;  // of both, to see a change
   std::int64_t last_state_stamp_ = 0;
 };
+
+/// Publishes on one topic what a step has changed.
+using StepTopic = std::function<void(const TimedSimulation&)>;
 
 /// Between warnings about the same [s].
 constexpr double kWarningPeriod = 1;
@@ -77,13 +80,17 @@ class Publishers {
   int takeWarnings() { return warnings_.exchange(0); }
 
   /// Whether any topic has a subscriber.
-  bool hasListener() const;
+  bool hasListener() const { return sinks_.anyIsHeard(); }
+  /// How much a recording keeps of the topics that it does not keep whole.
+  const std::vector<RecordingRule>& recordingRules() const { return sinks_.recordingRules(); }
   bool hasRecorder() const { return applied_input_.getNumSubscribers() > 0; }
 
  private:
-  MessageSink scope_pose_, scope_twist_, hand_pose_, helix_pose_, wrench_, joint_states_, hand_joints_, topology_,
-      particles_, procedure_, skill_metrics_, events_, sutures_, applied_input_, solver_statistics_, scene_, haptic_,
-      pull_, step_result_, session_info_, snapshot_, step_timing_, clock_;
+  SinkSource sinks_;
+  MessageSink scope_pose_, scope_twist_, hand_pose_, helix_pose_, topology_, particles_, procedure_, skill_metrics_,
+      events_, sutures_, applied_input_, solver_statistics_, scene_, haptic_, pull_, step_result_, session_info_,
+      snapshot_, step_timing_, clock_;
+  std::vector<StepTopic> tool_;  // one by one, of a scene with a tool
   ArmPublishers arms_;
   std::atomic<int> warnings_{0};
   std::unique_ptr<tf2_ros::StaticTransformBroadcaster> static_transforms_;  // null for a bag

@@ -9,6 +9,7 @@
 #include <rosbag/view.h>
 #include <vibe_msgs/StateSnapshot.h>
 
+#include "publishing/publishers.hpp"
 #include "vibe_core/files/foreign_content.hpp"
 #include "vibe_core/program/error.hpp"
 
@@ -252,32 +253,14 @@ std::string Recording::snapshot(const RecordedRun& run, std::uint64_t step) cons
               " cannot be read.");
 }
 
-// The periods keep enough to look at a session with rosbag play and to plot it without a replay.
 const std::vector<RecordingRule>& recordingRules() {
-  static const std::vector<RecordingRule> rules = {
-      {"tissue/particles", 2, true},
-      {"sutures", 2, true},
-      {"tissue/pull_state", 0.1, true},
-      {"scope/measured_cp", 0.1, true},
-      {"scope/measured_cf", 0.1, true},
-      {"joint_states", 0.1, true},
-      {"suturing_device/helix/measured_cp", kNever, true},
-      {"scope/measured_cv", kNever, true},
-      {"scope/setpoint_js", kNever, true},
-      {"scope/setpoint_cp", kNever, true},
-      {"scope/measured_js", kNever, true},
-      {"suturing_device/measured_js", kNever, true},
-      {"scope/jacobian", kNever, true},
-      {"wall/measured_cp", kNever, true},
-      {"haptic/parameters", kNever, true},
-      {"step_result", kNever, true},
-      {"step_timing", kNever, true},
-      {"/clock", 0.1, true},
-      {"type:tf2_msgs/TFMessage", kNever, false},
-      {"type:sensor_msgs/Image", kNever, false},
-      {"type:sensor_msgs/CompressedImage", kNever, false},
-      {"type:sensor_msgs/CameraInfo", kNever, false},
-  };
+  static const std::vector<RecordingRule> rules = [] {
+    std::vector<RecordingRule> all = Publishers(SinkSource(), true).recordingRules();
+    for (const char* type :
+         {"tf2_msgs/TFMessage", "sensor_msgs/Image", "sensor_msgs/CompressedImage", "sensor_msgs/CameraInfo"})
+      all.push_back({std::string("type:") + type, kNever, false});
+    return all;
+  }();
   return rules;
 }
 

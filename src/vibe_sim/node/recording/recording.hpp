@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "publishing/message_sink.hpp"
 #include "recording/recorded_sessions.hpp"
 
 namespace vibe::sim {
@@ -89,16 +90,8 @@ class Recording {
 /// @throws Error if a file is missing, empty, cut off or no bag, or of a version that this build does not read
 std::vector<RecordedSession> listSessions(const std::vector<std::string>& files);
 
-/// How much of a topic a recording keeps. What a replay computes again is thinned or left out.
-struct RecordingRule {
-  std::string topic;  ///< without its namespace, or "type:PACKAGE/NAME" for all topics of a type
-  double period;      ///< kept is one message in this time [s]; 0: all; kNever: none
-  bool replayed;      ///< a replay writes all of its messages (replay --fill)
-};
-
-constexpr double kNever = -1;
-
-/// Topics that no rule names are kept whole.
+/// Of the topics of the simulator, as Publishers has them, and of types that others publish. Topics that no rule names
+/// are kept whole.
 const std::vector<RecordingRule>& recordingRules();
 
 /// The rule of a topic, or null. A rule with a name is for the topics of simulators alone: those of others are theirs.

@@ -338,6 +338,9 @@ TEST_F(ReplayTest, AnotherModelIsNamedAlsoWhereASnapshotDoesNotFitIt) {
 
 TEST_F(ReplayTest, TopicsOfOthersAreNotThinned) {
   EXPECT_NE(recordingRule("/left/joint_states", "", {"/left/"}), nullptr);
+  ASSERT_NE(recordingRule("/scope/contacts", "", {"/"}), nullptr);
+  EXPECT_EQ(recordingRule("/scope/contacts", "", {"/"})->period, kNever);
+  EXPECT_EQ(recordingRule("/scene", "", {"/"}), nullptr) << "kept whole";
   EXPECT_EQ(recordingRule("/arm/joint_states", "", {"/", "/left/"}), nullptr);
   EXPECT_EQ(recordingRule("/robot/step_result", "", {"/"}), nullptr);
   EXPECT_NE(recordingRule("/clock", "", {"/left/"}), nullptr);

@@ -16,7 +16,7 @@ from node_test_support import EPOCH, SUTURING_DEVICE_JOINTS, PERIOD, SCOPE_JOINT
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, Joy, PointCloud2
 from vibe_msgs.msg import ProcedureEvent, ProcedureState, SkillMetrics, SolverStatistics, StepInput, StepResult, SutureArray
-from vibe_msgs.msg import TissuePull, TissuePullState, TissueTopology
+from vibe_msgs.msg import TissuePull, TissuePullState, TissueTopology, ToolContacts
 from vibe_msgs.srv import Reset, Step
 from vibe_testing.recorder import Recorder
 from vibe_testing.wait import wait_until
@@ -25,6 +25,7 @@ STREAMS = {
     "scope/measured_cp": (PoseStamped, "world"),
     "suturing_device/helix/measured_cp": (PoseStamped, "world"),
     "scope/measured_cf": (WrenchStamped, "scope_tip"),
+    "scope/contacts": (ToolContacts, "world"),
     "joint_states": (JointState, "scope_base"),
     "scope/setpoint_js": (JointState, "scope_base"),
     "tissue/particles": (PointCloud2, "stomach"),
@@ -210,6 +211,11 @@ class TopicsTest(unittest.TestCase):
         force = self.recorders["scope/measured_cf"].messages[-1].wrench.force
         self.assertLess(force.x, -0.1)
         self.assertLess(abs(force.y) + abs(force.z), 0.5 * abs(force.x))
+        contacts = self.recorders["scope/contacts"].messages[-1].contacts
+        total = [sum(getattr(c.force, axis) for c in contacts) for axis in "xyz"]
+        size = math.hypot(force.x, force.y, force.z)  # in the frame of the tip
+        self.assertAlmostEqual(math.hypot(*total), size, delta=1e-6 * size)
+        self.assertEqual({c.link for c in contacts} - {"helix"}, {"scope_tip"})
         self.assertIsNotNone(self.events.waits_for(lambda m: m.kind == ProcedureEvent.CONTACT_BEGIN))
 
     def test_particles_are_the_rest_shape_at_the_start(self):

@@ -10,6 +10,7 @@
 
 #include "vibe_core/solver/body_loads.hpp"
 #include "vibe_core/tool/tool_model.hpp"
+#include "vibe_core/tool_contact/tool_contact.hpp"
 
 namespace vibe {
 
@@ -38,22 +39,16 @@ enum class Activity {
   Disturb  ///< something outside acts: the tissue does not count as resting
 };
 
-/// The force between the tool and one point of the surface during a step.
-struct ToolTouch {
-  /// Grip: wall that the helix holds; Contact: wall against which a shape of the tool presses.
-  enum class Kind { Grip, Contact };
-  Kind kind = Kind::Contact;  ///< what the force comes from
-  SurfacePoint surface;       ///< where it acts, unless there is a `patch`
+/// A force between tool and tissue as a block hands it over: what StepReport::contacts keeps of it, and what the step
+/// needs beside that for its account and for the impedance of the tool.
+struct ToolTouch : ToolContact {
   /// Takes the place of `surface` where it is more than a point: the weighted mean of these particles. Owned by the
   /// block, as it is until its next prepare(); null: none.
   const AttachmentPoint* patch = nullptr;
   double compliance = 0;   ///< between the tool and the point [m/N]
-  int link = -1;           ///< of the tool
-  Eigen::Vector3d point;   ///< where the force acts at the end of the step, world [m]
   Eigen::Vector3d motion;  ///< of the tool at this point during the step [m]
   Eigen::Vector3d middle;  ///< where that point of the tool is half way, world [m]
-  Eigen::Vector3d force;   ///< tool on tissue, mean over the step [N]
-  double work = 0;         ///< of this force on the tissue over the step [J]
+  double work = 0;         ///< of the force on the tissue, which is -force, over the step [J]
   /// Unit directions in which the point follows the tool, the first direction_count of them: all three where it sticks,
   /// the normal where it slides. The impedance of the tool is computed from them.
   std::array<Eigen::Vector3d, 3> direction;

@@ -3,11 +3,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "vibe_core/clocks/step_stages.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
 #include "vibe_core/solver/step_ways.hpp"
 #include "vibe_core/tool/tool_model.hpp"
+#include "vibe_core/tool_contact/tool_contact.hpp"
 
 namespace vibe {
 
@@ -21,6 +24,7 @@ struct StepReport {
   Eigen::Vector3d tool_force = Eigen::Vector3d::Zero();   ///< tissue on tool, mean over the step, in world [N]
   Eigen::Vector3d tool_torque = Eigen::Vector3d::Zero();  ///< about scope_tip, mean over the step, in world [N m]
   Eigen::Vector3d grip_force = Eigen::Vector3d::Zero();   ///< part of tool_force that acts on the helix [N]
+  std::vector<ToolContact> contacts;                      ///< where tool_force acts, as their sum
   std::optional<ToolImpedance> tool_impedance;            ///< empty without contact, or if the solver computes none
   ToolDisplacement tool_displacement{};                   ///< in: if nothing acts on the tool; out: at the end
   std::array<double, kScopeJointCount> hand_effort{};     ///< of the hand on the joints, mean over the step [N], [N m]
@@ -40,6 +44,14 @@ struct StepReport {
   bool fallback = false;       ///< backward Euler, because one of the last did not arrive
   bool put_back = false;       ///< the state was not usable; its recovery to rest began
   int speed_limited = 0;       ///< how often the speed of a particle was limited
+
+  /// As before the first step; the list keeps its memory.
+  void clear() {
+    std::vector<ToolContact> kept = std::move(contacts);
+    kept.clear();
+    *this = StepReport();
+    contacts = std::move(kept);
+  }
 };
 
 /// Scratch memory of a solver; carries nothing from one step to the next.

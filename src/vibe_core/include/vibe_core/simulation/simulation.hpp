@@ -8,6 +8,7 @@
 
 #include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/constraints/wall_contacts.hpp"
 #include "vibe_core/events/event.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
 #include "vibe_core/input/step_input.hpp"
@@ -15,6 +16,7 @@
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 #include "vibe_core/simulation/stage_summary.hpp"
+#include "vibe_core/simulation/thread_contacts.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {
@@ -95,11 +97,20 @@ class Simulation {
   double time() const { return state_.time; }             ///< [s]
   std::int64_t stepCount() const { return state_.step; }  ///< since the initial state, through snapshots
   double stepPeriod() const { return model_->scene.step_period; }  ///< [s]
-  const std::vector<Event>& events() const { return events_; }     ///< of the last step
-  /// Impedance of the tissue at the tool in the last step; empty while nothing is touched, and with shape matching.
+  // of the last step: all empty before the first one, and after the state was replaced
+  /// What happened.
+  const std::vector<Event>& events() const { return events_; }
+  /// Impedance of the tissue at the tool; empty while nothing is touched, and with shape matching.
   const std::optional<ToolImpedance>& toolImpedance() const { return workspace_->toolImpedance(); }
-  /// Iterations, contacts and forces of the last step.
+  /// Iterations, contacts and forces.
   const StepReport& report() const { return workspace_->report(); }
+  /// Where the tool touches and holds the wall in the last step: the parts of the force on it.
+  const std::vector<ToolContact>& contacts() const { return report().contacts; }
+  /// Where the wall of the present state presses on itself. Looked for in every call, and costs nothing without one.
+  /// @returns valid until the next call
+  const std::vector<WallContact>& wallContacts();
+  /// What the threads of the present state do to the wall, likewise.
+  std::vector<ThreadContact> threadContacts() const { return vibe::threadContacts(state_); }
   /// Since the state was last replaced; zero without SimulationSettings::metrics.
   const SessionMetrics& metrics() const;
   /// Counts warnings of the program about its inputs among those of the metrics.
@@ -145,7 +156,9 @@ class Simulation {
   std::vector<Event> events_;
   StepTimer timer_;
   std::unique_ptr<StageSummary> stages_;
+  std::unique_ptr<WallContacts> walls_;  // null until somebody asks
 
+  void forgetStep();
   static std::unique_ptr<Workspace> workspaceFor(const Model& model, const SimulationSettings& settings);
 };
 

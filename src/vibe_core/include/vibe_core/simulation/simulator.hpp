@@ -28,10 +28,10 @@ class Workspace {
   Workspace& operator=(const Workspace&) = delete;
 
   SolverWorkspace& solverWorkspace() { return *solver_workspace_; }  ///< made by the solver of the model
-  /// Output of the last step beside the state: mechanical impedance of the tissue at the tool. Empty while nothing is
-  /// touched, and with solvers that do not estimate it (shape matching).
-  std::optional<ToolImpedance>& toolImpedance() { return tool_impedance_; }
-  /// Results of the last step beside the state.
+  /// Mechanical impedance of the tissue at the tool in the last step. Empty while nothing is touched, and with solvers
+  /// that do not estimate it (shape matching).
+  const std::optional<ToolImpedance>& toolImpedance() const { return report_.tool_impedance; }
+  /// Results of the last step beside the state: all that a workspace keeps of it.
   StepReport& report() { return report_; }
   MarkingScratch* marking() { return marking_.get(); }  ///< null in a scene without marking or scope
   int threads() const { return pool_.threads(); }       ///< as many as the constructor was given
@@ -46,7 +46,6 @@ class Workspace {
   ThreadPool pool_;
   std::unique_ptr<SolverWorkspace> solver_workspace_;
   std::unique_ptr<MarkingScratch> marking_;
-  std::optional<ToolImpedance> tool_impedance_;
   StepReport report_;
   std::unique_ptr<StageClock> stages_;  // null: not measured
 };

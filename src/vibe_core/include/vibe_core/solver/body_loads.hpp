@@ -114,6 +114,7 @@ struct ContactConstraint {
   double offset = 0;                                 ///< normal . x >= offset - compliance * normal force [m]
   double compliance = 0;                             ///< of the wall's thickness; 0: rigid [m/N]
   double friction = 0;                               ///< Coulomb coefficient [1]
+  double used_friction = 0;  ///< out: the coefficient that the step has used; 0 where there were too many contacts [1]
   Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  ///< where the point would be if it stuck to the tool [m]
   Eigen::Matrix<double, 3, kYieldDofs> yield =
       Eigen::Matrix<double, 3, kYieldDofs>::Zero();  ///< how far the anchor moves per coordinate in which the tool
