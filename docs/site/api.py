@@ -6,7 +6,8 @@ import xml.etree.ElementTree as ElementTree
 
 SPECIAL = str.maketrans({mark: "\\" + mark for mark in "\\`*_{}[]<>|$#~"})
 
-SHOWN = ("vibe_core", "vibe_hardware", "vibe_vision", "vibe_firmware", "vibe_graphics", "vibe_rviz_plugins", "vibe_ros_utils")
+SHOWN = ("vibe_core", "vibe_hardware", "vibe_vision", "vibe_firmware", "vibe_graphics", "vibe_operator", "vibe_rviz_plugins",
+         "vibe_ros_utils")
 NUMBER = re.compile(r"^(?!.*function|.*\(\*).*(\b(double|float)\b|Eigen|Vector)")
 UNIT = re.compile(r"\[|\bunit\b|\bshare\b|\bpart of\b|\b0 to \d|up to 1\b|quaternion|coefficient", re.IGNORECASE)
 
