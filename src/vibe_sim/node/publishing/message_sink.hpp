@@ -11,8 +11,6 @@
 #include <ros/publisher.h>
 #include <rosbag/bag.h>
 
-#include "vibe_ros_utils/former_names.hpp"
-
 namespace vibe::sim {
 
 /// Queue of a topic of small messages: long, because a simulation that runs faster than the wall clock must not lose
@@ -31,16 +29,13 @@ struct BagTarget {
 class MessageSink {
  public:
   MessageSink() = default;
-  /// @param former  the same under a former name, or empty
-  explicit MessageSink(ros::Publisher publisher, ros::Publisher former = {})
-      : publisher_(std::move(publisher)), former_(std::move(former)) {}
+  explicit MessageSink(ros::Publisher publisher) : publisher_(std::move(publisher)) {}
   MessageSink(BagTarget& target, std::string topic) : target_(&target), topic_(std::move(topic)) {}
 
   template <class M>
   void publish(const M& message) const {
     if (target_ == nullptr) {
       if (publisher_) publisher_.publish(message);
-      if (former_) former_.publish(message);
     } else if (!topic_.empty()) {
       target_->bag.write(topic_, target_->time, message);
     }
@@ -48,11 +43,11 @@ class MessageSink {
 
   std::uint32_t getNumSubscribers() const {
     if (target_ != nullptr) return topic_.empty() ? 0 : 1;
-    return (publisher_ ? publisher_.getNumSubscribers() : 0) + (former_ ? former_.getNumSubscribers() : 0);
+    return publisher_ ? publisher_.getNumSubscribers() : 0;
   }
 
  private:
-  ros::Publisher publisher_, former_;
+  ros::Publisher publisher_;
   BagTarget* target_ = nullptr;
   std::string topic_;
 };
@@ -77,8 +72,7 @@ class SinkSource {
     ros::SubscriberStatusCallback connected;
     if (on_connect) connected = [on_connect](const ros::SingleSubscriberPublisher&) { on_connect(); };
     return MessageSink(
-        handle_->advertise<M>(topic, queue, connected, ros::SubscriberStatusCallback(), ros::VoidConstPtr(), latch),
-        ros_utils::advertiseFormer<M>(*handle_, topic, queue, latch));
+        handle_->advertise<M>(topic, queue, connected, ros::SubscriberStatusCallback(), ros::VoidConstPtr(), latch));
   }
 
  private:

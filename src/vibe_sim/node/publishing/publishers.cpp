@@ -81,9 +81,7 @@ void ArmPublishers::operatingState(const TimedSimulation& simulation, const RunS
 }
 
 bool ArmPublishers::hasListener() const {
-  // the simulator itself is one, since devices of the release before publish there (Inputs)
-  if (scope_.getNumSubscribers() > 1) return true;
-  return anyIsHeard({&suturing_device_, &jacobian_, &wall_, &scope_state_, &suturing_device_state_});
+  return anyIsHeard({&scope_, &suturing_device_, &jacobian_, &wall_, &scope_state_, &suturing_device_state_});
 }
 
 Publishers::Publishers(SinkSource sinks, bool with_clock)
