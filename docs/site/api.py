@@ -6,7 +6,8 @@ import xml.etree.ElementTree as ElementTree
 
 SPECIAL = str.maketrans({mark: "\\" + mark for mark in "\\`*_{}[]<>|$#~"})
 
-SHOWN = ("vibe_core", "vibe_hardware", "vibe_vision", "vibe_firmware", "vibe_graphics", "vibe_rviz_plugins", "vibe_ros_utils")
+SHOWN = ("vibe_core", "vibe_hardware", "vibe_vision", "vibe_firmware", "vibe_graphics", "vibe_operator", "vibe_rviz_plugins",
+         "vibe_ros_utils")
 NUMBER = re.compile(r"^(?!.*function|.*\(\*|.*::\*).*(\b(double|float)\b|Eigen|Vector)")
 # A unit in brackets, or words for a number that has none; "0: left, 1: right" is a scale of its own
 UNIT = re.compile(r"\[|\bunit\b|\b0 to \d|up to 1\b|\bsum 1\b|(?<!\d)[01]: |\bpart of\b|\bper turn\b|"

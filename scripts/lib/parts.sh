@@ -4,7 +4,7 @@
 # `tests` needs all of them. A program that starts nodes of further parts names these (`parts()` in vibe_bringup).
 packagesOf() {
   case $1 in
-    session) echo vibe_cmake vibe_msgs vibe_core vibe_description vibe_ros_utils vibe_sim vibe_graphics vibe_endoscope vibe_rviz_plugins vibe_sessions vibe_bringup ;;
+    session) echo vibe_cmake vibe_msgs vibe_core vibe_description vibe_ros_utils vibe_sim vibe_graphics vibe_endoscope vibe_operator vibe_rviz_plugins vibe_sessions vibe_bringup ;;
     devices) echo vibe_firmware vibe_hardware ;;
     vision) echo vibe_vision vibe_vision_evidence ;;
     measurements) echo vibe_latency vibe_prototype vibe_testing vibe_benchmarks ;;

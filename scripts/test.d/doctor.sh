@@ -55,9 +55,9 @@ cat >master.py <<'PYTHON'
 import xmlrpc.server
 server = xmlrpc.server.SimpleXMLRPCServer(("localhost", 0), logRequests=False)
 state = [[["/applied_input", ["/sim_node"]], ["/scope/measured_cp", ["/sim_node"]],
-          ["/scope/measured_js", ["/sim_node"]], ["/scope/operating_state", ["/sim_node"]],
+          ["/scope/measured_js", ["/sim_node", "/old"]], ["/scope/operating_state", ["/sim_node"]],
           ["/PSM1/servo_cp", ["/client"]], ["/scope/move_cp", ["/client"]]],
-         [["/PSM1/measured_cp", ["/client"]], ["/scope/measured_js", ["/client", "/sim_node"]],
+         [["/PSM1/measured_cp", ["/client"]], ["/scope/measured_js", ["/client"]],
           ["/suturing_device/input/joint_states", ["/sim_node"]], ["/scope/operating_state", ["/client"]],
           ["/scope/servo_cp", ["/sim_node"]], ["/scope/move_cp", ["/sim_node"]], ["/PSM1/goal", ["/client"]]], []]
 server.register_function(lambda caller: [1, "", state], "getSystemState")
@@ -72,6 +72,7 @@ export ROS_MASTER_URI=http://localhost:$port
 check 'a graph is looked at' asks good.yaml
 kill "$master"
 check 'a client that listens where nobody sends' finds '/client listens to /PSM1/measured_cp, which nobody publishes; there is /scope/measured_cp'
-check 'the joints of the tool need no remapping' isQuietAbout '/scope/measured_js'
+check 'the joints of the tool need no remapping' isQuietAbout 'listens to /scope/measured_js'
+check 'a device of release 1.0.0' finds '/old publishes /scope/measured_js, .* let it publish /scope/input/joint_states'
 check 'a command that nobody receives' finds '/client sends /PSM1/servo_cp, .* there is /scope/servo_cp'
-check 'no other topic' isQuietAbout 'goal|operating_state|move_cp|suturing_device'
+check 'no other topic' isQuietAbout 'goal|operating_state|move_cp|suturing_device|/sim_node publishes'

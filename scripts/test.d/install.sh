@@ -37,6 +37,14 @@ runsAScene() {
 }
 check 'a scene and a script of the install space run' runsAScene
 
+# The page is drawn elsewhere.
+webNodeDrawsNothing() {
+  inSpace ldd "$space/lib/vibe_web/web_node" >"$scratch/libraries.txt"
+  cat "$scratch/libraries.txt"
+  grep -q 'libvibe_shapes.so => /' "$scratch/libraries.txt" && ! grep -E 'libQt|librviz|libOgre|not found' "$scratch/libraries.txt"
+}
+check 'the node of the page links no rviz, Qt or Ogre' webNodeDrawsNothing
+
 findsPlugins() {
   inSpace rospack plugins --attrib=plugin rviz | tee "$scratch/plugins.txt"
   grep -q "^vibe_rviz_plugins $space/" "$scratch/plugins.txt"

@@ -6,7 +6,6 @@
 #include "vibe_core/program/error.hpp"
 #include "vibe_hardware/hid/hidraw_bus.hpp"
 #include "vibe_hardware/hid/socket_bus.hpp"
-#include "vibe_ros_utils/former_names.hpp"
 #include "vibe_ros_utils/parameter_reader.hpp"
 
 namespace vibe::hardware {
@@ -84,7 +83,6 @@ HardwareNode::HardwareNode(ros::NodeHandle handle, const HardwareParameters& par
               callbacksOf(DeviceKind::Haptic)),
       input_(*input_bus_, DeviceKind::Input, joints_.calibration().devices[indexOf(DeviceKind::Input)], steadyTime,
              callbacksOf(DeviceKind::Input)) {
-  if (!joints_.calibration().remark.empty()) log(Severity::Warning, joints_.calibration().remark);
   if (joints_.calibration().suturing_device) suturing_device_.emplace(*joints_.calibration().suturing_device);
   advertise(handle);
   publishState();
@@ -125,7 +123,6 @@ void HardwareNode::advertise(ros::NodeHandle& handle) {
   if (suturing_device_) {
     suturing_device_publisher_ = handle.advertise<JointState>(kTracked, kDeviceQueue);
     suturing_device_subscriber_ = handle.subscribe(kTracked, 1, &HardwareNode::onSuturingDevice, this);
-    former_subscriber_ = handle.subscribe(ros_utils::formerInput(kTracked), 1, &HardwareNode::onFormerName, this);
   }
   updater_.setHardwareID("none");
   for (const DeviceKind kind : {DeviceKind::Haptic, DeviceKind::Input}) {
@@ -147,20 +144,20 @@ void HardwareNode::startThreads() {
   haptic_thread_ = std::make_unique<PollingThread>(
       [this] {
         haptic_.poll(kWait);
-        noteStatistics(DeviceKind::Haptic, haptic_.device());
+        storeStatistics(DeviceKind::Haptic, haptic_.device());
         return haptic_.device().connection() != nullptr;
       },
       failed);
   input_thread_ = std::make_unique<PollingThread>(
       [this] {
         input_.poll(kWait);
-        noteStatistics(DeviceKind::Input, input_);
+        storeStatistics(DeviceKind::Input, input_);
         return input_.connection() != nullptr;
       },
       failed);
 }
 
-void HardwareNode::noteStatistics(DeviceKind kind, const DeviceDriver& device) {
+void HardwareNode::storeStatistics(DeviceKind kind, const DeviceDriver& device) {
   const double now = steadyTime();
   if (now < next_statistics_[indexOf(kind)]) return;
   next_statistics_[indexOf(kind)] = now + kStatisticsPeriod;
@@ -250,11 +247,6 @@ void HardwareNode::onParameters(const vibe_msgs::HapticParameters& message) {
     ++rejected_;
     ROS_WARN_STREAM_THROTTLE(kWarningPeriod, "A message on haptic/parameters is ignored: " << error.what());
   }
-}
-
-void HardwareNode::onFormerName(const ros::MessageEvent<const sensor_msgs::JointState>& event) {
-  ros_utils::warnOfFormerInput(event.getPublisherName(), ros_utils::formerInput(kTracked));
-  onSuturingDevice(event);
 }
 
 void HardwareNode::onSuturingDevice(const ros::MessageEvent<const sensor_msgs::JointState>& event) {

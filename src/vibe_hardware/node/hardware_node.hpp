@@ -62,7 +62,7 @@ class HardwareNode {
   double next_statistics_[kDeviceKinds] = {};
 
   ros::Publisher scope_publisher_, button_publisher_, haptic_publisher_, state_publisher_, suturing_device_publisher_;
-  ros::Subscriber parameters_subscriber_, suturing_device_subscriber_, former_subscriber_;
+  ros::Subscriber parameters_subscriber_, suturing_device_subscriber_;
   diagnostic_updater::Updater updater_;
   std::array<DiagnosticMemory, kDeviceKinds> memory_;
   ros::WallTimer timer_;
@@ -71,7 +71,7 @@ class HardwareNode {
   DeviceDriver::Callbacks callbacksOf(DeviceKind kind);
   void advertise(ros::NodeHandle& handle);
   void startThreads();
-  void noteStatistics(DeviceKind kind, const DeviceDriver& device);
+  void storeStatistics(DeviceKind kind, const DeviceDriver& device);
   void onSample(DeviceKind kind, const DeviceSample& sample);
   void onLost(DeviceKind kind, double now);
   void watchSilence(DeviceKind kind);
@@ -81,7 +81,6 @@ class HardwareNode {
   void publishState();
   void onParameters(const vibe_msgs::HapticParameters& message);
   void onSuturingDevice(const ros::MessageEvent<const sensor_msgs::JointState>& event);
-  void onFormerName(const ros::MessageEvent<const sensor_msgs::JointState>& event);
 };
 
 }  // namespace vibe::hardware

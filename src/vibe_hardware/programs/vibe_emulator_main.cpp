@@ -170,7 +170,6 @@ class Session {
   static EmulatorSetup setupOf(const Options& options) {
     EmulatorSetup setup;
     setup.calibration = Calibration::load(options.config);
-    if (!setup.calibration.remark.empty()) std::fprintf(stderr, "%s\n", setup.calibration.remark.c_str());
     setup.serial = options.serial;
     setup.drive = options.drive == "torque" ? Drive::Torque : Drive::Voltage;
     return setup;

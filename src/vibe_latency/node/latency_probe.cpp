@@ -5,7 +5,6 @@
 
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_core/program/error.hpp"
-#include "vibe_ros_utils/former_names.hpp"
 #include "vibe_ros_utils/parameter_reader.hpp"
 #include "vibe_ros_utils/wall_clock.hpp"
 
@@ -22,14 +21,6 @@ std::size_t indexOf(const std::string& joint) {
   const auto found = std::find(kJointNames.begin(), kJointNames.end(), joint);
   if (found == kJointNames.end()) throw Error("Parameter ~joint is '" + joint + "'; set it to a joint of the scope.");
   return static_cast<std::size_t>(found - kJointNames.begin());
-}
-
-/// A parameter with a former name means the present one.
-void usePresentName(const char* parameter, const std::string& present, std::string& topic) {
-  if (topic == present) return;
-  ROS_WARN_STREAM("Parameter ~" << parameter << " is '" << topic << "', the former name of " << present
-                                << "; set it to that.");
-  topic = present;
 }
 
 }  // namespace
@@ -74,8 +65,6 @@ ProbeParameters readProbeParameters(const ros::NodeHandle& private_handle) {
   reader.read("joint", parameters.joint);
   reader.read("device", parameters.device);
   reader.read("state", parameters.state);
-  usePresentName("device", ros_utils::presentInput(parameters.device), parameters.device);
-  usePresentName("state", ros_utils::presentOutput(parameters.state), parameters.state);
   reader.read("screen", parameters.screen);
   reader.finish();
   indexOf(parameters.joint);

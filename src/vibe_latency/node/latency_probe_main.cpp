@@ -23,12 +23,12 @@ void run() {
   vibe::latency::LatencyProbe probe(handle, vibe::latency::readProbeParameters(ros::NodeHandle("~")));
   ros::AsyncSpinner spinner(1);
   spinner.start();
-  bool told = false;
+  bool announced = false;
   while (ros::ok() && vibe::ros_utils::stopSignal() == 0) {
     ros::WallDuration(kFlushPeriod).sleep();
     probe.flush();
-    if (!told && probe.seesLamp()) std::puts("latency_probe: ready");
-    told = told || probe.seesLamp();
+    if (!announced && probe.seesLamp()) std::puts("latency_probe: ready");
+    announced = announced || probe.seesLamp();
     std::fflush(stdout);
   }
   spinner.stop();

@@ -77,7 +77,7 @@ void ParameterReader::finish() const {
   }
 }
 
-void ParameterReader::tell() const {
+void ParameterReader::log() const {
   XmlRpcValue all;
   if (!handle_.getParam(handle_.getNamespace(), all) || all.getType() != XmlRpcValue::TypeStruct) return;
   std::ostringstream given;

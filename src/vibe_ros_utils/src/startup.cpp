@@ -19,15 +19,14 @@
 #include <sys/resource.h>
 
 #include "vibe_core/program/error.hpp"
-#include "vibe_ros_utils/former_names.hpp"
 
 namespace vibe::ros_utils {
 namespace {
 
-volatile std::sig_atomic_t noted_signal = 0;
+volatile std::sig_atomic_t received_signal = 0;
 
-void noteSignal(int number) {
-  noted_signal = number;
+void receiveSignal(int number) {
+  received_signal = number;
 }
 
 // Limits of a user are raised in limits.conf(5).
@@ -65,32 +64,31 @@ std::string logFolderFault() {
 void init(int& argc, char** argv, const std::string& name, std::uint32_t options) {
   const std::string fault = logFolderFault();
   if (!fault.empty()) throw Error(fault);
-  renameRemappings(argc, argv);
   ros::init(argc, argv, name, options);
 }
 
 void initWithGoodbye(int& argc, char** argv, const std::string& name, std::uint32_t options) {
   init(argc, argv, name, options | ros::init_options::NoSigintHandler);
-  for (const int number : {SIGINT, SIGTERM}) std::signal(number, noteSignal);
+  for (const int number : {SIGINT, SIGTERM}) std::signal(number, receiveSignal);
 }
 
 int stopSignal() {
-  return noted_signal;
+  return received_signal;
 }
 
 void waitForStop() {
-  while (ros::ok() && noted_signal == 0) ros::WallDuration(0.02).sleep();
+  while (ros::ok() && received_signal == 0) ros::WallDuration(0.02).sleep();
 }
 
 bool waitForMaster(double patience) {
   const ros::WallTime begin = ros::WallTime::now();
-  bool told = false;
+  bool announced = false;
   while (!ros::master::check()) {
-    if (noted_signal != 0) return false;
+    if (received_signal != 0) return false;
     if ((ros::WallTime::now() - begin).toSec() > patience)
       throw Error("No ROS master answers at " + ros::master::getURI() + "; start roscore, or set ROS_MASTER_URI.");
-    if (!told) std::fprintf(stderr, "Waiting for a ROS master at %s ...\n", ros::master::getURI().c_str());
-    told = true;
+    if (!announced) std::fprintf(stderr, "Waiting for a ROS master at %s ...\n", ros::master::getURI().c_str());
+    announced = true;
     ros::WallDuration(0.1).sleep();
   }
   return true;

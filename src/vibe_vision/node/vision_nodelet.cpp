@@ -5,7 +5,6 @@
 #include <memory>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "vibe_ros_utils/former_names.hpp"
 #include "vision_node.hpp"
 
 namespace vibe::vision {
@@ -16,7 +15,6 @@ class VisionNodelet : public nodelet::Nodelet {
 
   void onInit() override {
     try {
-      ros_utils::refuseFormerRemappings(getNodeHandle());
       const VisionParameters parameters = readVisionParameters(getPrivateNodeHandle());
       node_ = std::make_unique<VisionNode>(getNodeHandle(), getPrivateNodeHandle(), getName(), parameters);
     } catch (const std::exception& error) {

@@ -7,7 +7,6 @@
 #include <sensor_msgs/image_encodings.h>
 
 #include "vibe_core/clocks/step_timer.hpp"
-#include "vibe_ros_utils/former_names.hpp"
 #include "vibe_vision/record/annotation.hpp"
 #include "vision_messages.hpp"
 
@@ -42,20 +41,15 @@ cv::Mat drawDebugImage(const VisionConfig& config, const Frame& frame, const Mea
 namespace {
 
 constexpr std::uint32_t kQueue = 10;
-const char* const kTracking = "suturing_device/tracking";
-const char* const kPredicted = "suturing_device/predicted_js";
 
 }  // namespace
 
 VisionPublisher::VisionPublisher(ros::NodeHandle handle, const VisionConfig& config, const VisionParameters& parameters)
     : config_(config), parameters_(parameters), transport_(handle) {
   measured_ = handle.advertise<sensor_msgs::JointState>("suturing_device/input/joint_states", kQueue);
-  if (parameters.lead > 0) {
-    predicted_ = handle.advertise<sensor_msgs::JointState>(kPredicted, kQueue);
-    former_predicted_ = ros_utils::advertiseFormer<sensor_msgs::JointState>(handle, kPredicted, kQueue);
-  }
-  tracking_ = handle.advertise<vibe_msgs::InstrumentTrackArray>(kTracking, kQueue);
-  former_tracking_ = ros_utils::advertiseFormer<vibe_msgs::InstrumentTrackArray>(handle, kTracking, kQueue);
+  if (parameters.lead > 0)
+    predicted_ = handle.advertise<sensor_msgs::JointState>("suturing_device/predicted_js", kQueue);
+  tracking_ = handle.advertise<vibe_msgs::InstrumentTrackArray>("suturing_device/tracking", kQueue);
   doubts_ = handle.advertise<vibe_msgs::InstrumentDoubts>("suturing_device/doubts", kQueue);
   if (parameters.publish_images) debug_ = transport_.advertise("debug_image", 1);
   if (parameters.fromTopic()) return;  // the camera's node publishes the other two
@@ -81,10 +75,8 @@ void VisionPublisher::publishJoints(const FrameResult& result) {
                                               : makeMeasuredJoints(config_, stamp, result.samples);
   if (measured) measured_.publish(*measured);
   if (!predicted_) return;
-  const auto predicted = makePredictedJoints(config_, stamp, parameters_.lead, result.samples);
-  if (!predicted) return;
-  predicted_.publish(*predicted);
-  former_predicted_.publish(*predicted);
+  if (const auto predicted = makePredictedJoints(config_, stamp, parameters_.lead, result.samples))
+    predicted_.publish(*predicted);
 }
 
 double VisionPublisher::publishTracks(const FrameResult& result) {
@@ -93,7 +85,6 @@ double VisionPublisher::publishTracks(const FrameResult& result) {
   const vibe_msgs::InstrumentTrackArray tracks =
       makeTracks(config_, result.frame, result.measurements, result.samples, parameters_.frame_id, times);
   tracking_.publish(tracks);
-  former_tracking_.publish(tracks);
   doubts_.publish(makeDoubts(config_, result.frame, result.measurements, parameters_.frame_id));
   return times.publish;
 }

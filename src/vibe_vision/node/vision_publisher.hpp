@@ -36,7 +36,6 @@ class VisionPublisher {
   VisionParameters parameters_;
   image_transport::ImageTransport transport_;
   ros::Publisher measured_, predicted_, tracking_, doubts_, camera_info_;
-  ros::Publisher former_predicted_, former_tracking_;  // by their former names; empty: not published
   image_transport::Publisher image_, debug_;
   std::vector<double> held_;  // positions of all joints as published last, for hold_lost
   double next_debug_ = 0;     // when the next debug image is due, steady clock [s]

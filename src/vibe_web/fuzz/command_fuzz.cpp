@@ -40,7 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const web::ClientId client = 1 + bytes[at] % 3;
     if (command && command->kind == web::Command::Kind::Take) seat.take(client, kGrant, now);
     if (command && command->kind == web::Command::Kind::GiveBack) seat.leave(client);
-    if (command && command->kind == web::Command::Kind::Drive && seat.hear(client, *command, now))
+    if (command && command->kind == web::Command::Kind::Drive && seat.receive(client, *command, now))
       require(client == seat.holder() && command->grant == kGrant);
     now += 0.1;
     seat.tick(now);

@@ -38,9 +38,9 @@ OperatorDrive::OperatorDrive(ros::NodeHandle& handle)
       replay_(handle.advertise<vibe_msgs::ReplayCommand>("replay/command", 10)),
       last_(steadyNow()) {}
 
-void OperatorDrive::hear(ClientId client, const Command& command) {
+void OperatorDrive::receive(ClientId client, const Command& command) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  heard_.emplace_back(client, command);
+  received_.emplace_back(client, command);
 }
 
 void OperatorDrive::leave(ClientId client) {
@@ -49,14 +49,14 @@ void OperatorDrive::leave(ClientId client) {
 }
 
 void OperatorDrive::tick(WebServer& server) {
-  std::vector<std::pair<ClientId, Command>> heard;
+  std::vector<std::pair<ClientId, Command>> received;
   std::vector<ClientId> left;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    heard.swap(heard_);
+    received.swap(received_);
     left.swap(left_);
   }
-  for (const auto& [client, command] : heard) obey(client, command, server);
+  for (const auto& [client, command] : received) obey(client, command, server);
   for (const ClientId client : left) seat_.leave(client);
   const double now = steadyNow();
   seat_.tick(now);
@@ -66,7 +66,7 @@ void OperatorDrive::tick(WebServer& server) {
   ticked_ = now;
   if (started_ && seat_.holder() == 0) drive_.stop(), started_ = false;
   drive_.tick();
-  tell(server);
+  publish(server);
 }
 
 void OperatorDrive::obey(ClientId client, const Command& command, WebServer& server) {
@@ -77,7 +77,7 @@ void OperatorDrive::obey(ClientId client, const Command& command, WebServer& ser
       seat_.leave(client);
       return;
     case Command::Kind::Drive:
-      if (!seat_.hear(client, command, steadyNow()))
+      if (!seat_.receive(client, command, steadyNow()))
         server.send(
             client, Kind::Refusal,
             textMessage(Kind::Refusal, "A drive message does not count: it is old, or this page does not drive."));
@@ -122,14 +122,14 @@ void OperatorDrive::move(double seconds) {
     if (wanted.count(key) == 0) drive_.keyUp(key), down_.erase(key);
   for (const int key : wanted)
     if (down_.insert(key).second) drive_.keyDown(key);
-  const rviz_plugins::DriveSpeeds speeds;
+  const operating::DriveSpeeds speeds;
   for (std::size_t joint = 0; joint < kAxes; ++joint)
     if (seat_.axes()[joint] != 0)
       drive_.displace(static_cast<int>(joint), seat_.axes()[joint] * speeds.keys[joint] * seconds);
 }
 
-void OperatorDrive::tell(WebServer& server) {
-  const rviz_plugins::DriveView view = drive_.view();
+void OperatorDrive::publish(WebServer& server) {
+  const operating::DriveView view = drive_.view();
   json joints = json::array();
   for (const double joint : view.joints) joints.push_back(numberOrNull(joint));
   const std::string now = text({{"seat", seat_.holder() != 0 ? seats_ : 0},
@@ -140,8 +140,8 @@ void OperatorDrive::tell(WebServer& server) {
                                 {"gear", static_cast<int>(view.gear)},
                                 {"buttons", view.buttons},
                                 {"joints", joints}});
-  if (now == told_) return;
-  told_ = now;
+  if (now == published_) return;
+  published_ = now;
   server.publish(Kind::Operator, textMessage(Kind::Operator, now));
 }
 

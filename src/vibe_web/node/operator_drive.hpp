@@ -9,7 +9,7 @@
 
 #include "operator/operator_seat.hpp"
 #include "server/web_server.hpp"
-#include "vibe_rviz_plugins/driving/manual_drive.hpp"
+#include "vibe_operator/driving/manual_drive.hpp"
 
 namespace vibe::web {
 
@@ -19,7 +19,7 @@ class OperatorDrive {
   explicit OperatorDrive(ros::NodeHandle& handle);
 
   // For the server, from its thread: taken up by tick().
-  void hear(ClientId client, const Command& command);
+  void receive(ClientId client, const Command& command);
   void leave(ClientId client);
 
   /// A hundred times a second, in the thread of the node.
@@ -32,20 +32,20 @@ class OperatorDrive {
   void takeSeat(ClientId client, WebServer& server);
   void replay(const Command& command);
   void move(double seconds);
-  void tell(WebServer& server);
+  void publish(WebServer& server);
 
-  std::mutex mutex_;  // of what was heard and not taken up
-  std::vector<std::pair<ClientId, Command>> heard_;
+  std::mutex mutex_;  // of what was received and not taken up
+  std::vector<std::pair<ClientId, Command>> received_;
   std::vector<ClientId> left_;
 
   OperatorSeat seat_;
-  rviz_plugins::ManualDrive drive_;
+  operating::ManualDrive drive_;
   ros::Publisher replay_;
   std::set<int> down_;  // keys that drive_ knows of
   bool started_ = false;
   std::uint32_t seats_ = 0;  // how often the seat was taken
   double last_ = 0, ticked_ = 0;
-  std::string told_;
+  std::string published_;
 };
 
 }  // namespace vibe::web

@@ -10,8 +10,8 @@
 #include "vibe_graphics/geometry/endoscope_optics.hpp"
 #include "vibe_graphics/geometry/mucosa_map.hpp"
 #include "vibe_graphics/geometry/mucosa_pattern.hpp"
+#include "vibe_operator/drive/scope_drive.hpp"
 #include "vibe_ros_utils/mesh_address.hpp"
-#include "vibe_rviz_plugins/drive/scope_drive.hpp"
 
 namespace vibe::web {
 
@@ -134,16 +134,16 @@ json lensText() {
 }
 
 json keyText() {
-  using Binding = rviz_plugins::KeyBinding;
+  using Binding = operating::KeyBinding;
   json keys = json::array(), rows = json::array();
-  for (const Binding& key : rviz_plugins::keyBindings()) {
+  for (const Binding& key : operating::keyBindings()) {
     const char* kind = key.kind == Binding::Kind::Joint    ? "joint"
                        : key.kind == Binding::Kind::Button ? "button"
                        : key.kind == Binding::Kind::Gear   ? "gear"
                                                            : "slow";
     keys.push_back({{"key", key.key}, {"kind", kind}, {"index", key.index}, {"sign", key.sign}});
   }
-  for (const rviz_plugins::KeyRow& row : rviz_plugins::keyRows()) {
+  for (const operating::KeyRow& row : operating::keyRows()) {
     json caps = json::array();
     for (const auto& cap : row.caps) caps.push_back({{"key", cap.key}, {"label", cap.label}});
     rows.push_back({{"caps", caps}, {"text", row.text}});

@@ -108,7 +108,7 @@ void SessionStream::publishScene() {
 void SessionStream::takeTopology(const vibe_msgs::TissueTopology& message) {
   graphics::TissueMesh mesh;
   const std::string wrong = graphics::readTopology(message, mesh);
-  if (!wrong.empty()) return complain(wrong);
+  if (!wrong.empty()) return warn(wrong);
   organ_ = std::make_unique<Organ>(std::move(mesh));
   has_frame_ = false;
   frame_ = {};
@@ -129,7 +129,7 @@ void SessionStream::publishFrame() {
   if (!unseen_ || !organ_ || server_.clients() == 0) return;
   const std::string wrong = graphics::readParticles(*unseen_, organ_->mesh, frame_);
   unseen_ = nullptr;
-  if (!wrong.empty()) return complain(wrong);
+  if (!wrong.empty()) return warn(wrong);
   organ_->look.see(frame_);
   has_frame_ = true;
   content_.revision = frame_.revision;
@@ -179,7 +179,7 @@ void SessionStream::publishSutures() {
   sutures_changed_ = false;
   graphics::SutureDrawing drawing;
   const std::string wrong = graphics::readSutures(*sutures_, drawing);
-  if (!wrong.empty()) return complain(wrong);
+  if (!wrong.empty()) return warn(wrong);
   server_.publish(Kind::Sutures, encodeSutures(drawing));
   publishThreads(drawing);
   if (organ_) organ_->bleeding.setWounds(drawing, {});
@@ -216,9 +216,9 @@ void SessionStream::publishWall() {
   server_.publish(Kind::Blood, std::move(shape));
 }
 
-void SessionStream::complain(const std::string& sentence) {
-  if (sentence == complaint_) return;
-  complaint_ = sentence;
+void SessionStream::warn(const std::string& sentence) {
+  if (sentence == last_warning_) return;
+  last_warning_ = sentence;
   ROS_WARN("%s", sentence.c_str());
 }
 

@@ -43,7 +43,7 @@ class SessionStream {
   void publishSutures();
   void publishThreads(const graphics::SutureDrawing& drawing);
   void publishWall();
-  void complain(const std::string& sentence);
+  void warn(const std::string& sentence);
 
   struct Organ;  // a topology, and what follows from it
 
@@ -59,7 +59,7 @@ class SessionStream {
   vibe_msgs::SutureArray::ConstPtr sutures_;
   EventList events_;
   Bytes threads_;  // as last sent
-  std::string complaint_, state_text_;
+  std::string last_warning_, state_text_;
   bool has_frame_ = false, events_changed_ = true, sutures_changed_ = false;
   std::size_t thread_points_ = 0;  // of the threads as last sent
   int ticks_ = 0, threads_due_ = 0, blood_due_ = 0;

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "vibe_rviz_plugins/messages/reference_values.hpp"
-#include "vibe_rviz_plugins/messages/table_rows.hpp"
+#include "vibe_operator/messages/reference_values.hpp"
+#include "vibe_operator/messages/table_rows.hpp"
 
 namespace vibe::web {
 
@@ -13,20 +13,20 @@ using nlohmann::json;
 
 namespace {
 
-json measureText(const rviz_plugins::ShownMeasure& measure, const rviz_plugins::SessionMessages& session) {
+json measureText(const operating::ShownMeasure& measure, const operating::SessionMessages& session) {
   const double value = measure.value(session);
-  const rviz_plugins::Rating rating = rviz_plugins::rate(measure, value, session.state.phase == "done");
+  const operating::Rating rating = operating::rate(measure, value, session.state.phase == "done");
   return {{"label", measure.label},
           {"unit", measure.unit},
           {"decimals", measure.decimals},
           {"value", std::isfinite(value) ? json(value) : json(nullptr)},
-          {"range", rviz_plugins::rangeText(measure)},
-          {"rating", rviz_plugins::ratingText(rating)},
-          {"outside", rating == rviz_plugins::Rating::Outside},
-          {"explained", rviz_plugins::explain(measure)}};
+          {"range", operating::rangeText(measure)},
+          {"rating", operating::ratingText(rating)},
+          {"outside", rating == operating::Rating::Outside},
+          {"explained", operating::explain(measure)}};
 }
 
-json setText(const rviz_plugins::SutureRow& row) {
+json setText(const operating::SutureRow& row) {
   return {{"set", row.set},     {"bites", row.bites},     {"technique", row.technique},
           {"stage", row.stage}, {"tension", row.tension}, {"warns", row.warns},
           {"help", row.help}};
@@ -62,10 +62,10 @@ std::string stateText(const vibe_msgs::ProcedureState& state, const vibe_msgs::S
                {"measures", json::array()},
                {"sets", json::array()}};
   if (skill != nullptr)
-    for (const auto& measure : rviz_plugins::measures())
+    for (const auto& measure : operating::measures())
       text["measures"].push_back(measureText(measure, {state, *skill, sutures}));
   if (sutures != nullptr)
-    for (const auto& row : rviz_plugins::sutureRows(*sutures)) text["sets"].push_back(setText(row));
+    for (const auto& row : operating::sutureRows(*sutures)) text["sets"].push_back(setText(row));
   return dumped(text);
 }
 
@@ -83,10 +83,9 @@ std::string replayText(const vibe_msgs::ReplayStatus& status) {
 }
 
 void EventList::add(const vibe_msgs::ProcedureEvent& event) {
-  if (!rviz_plugins::isListed(event)) return;
-  entries_.push_back({++last_, event.header.stamp.toSec(),
-                      rviz_plugins::severityName(rviz_plugins::severityOf(event.kind)), rviz_plugins::eventText(event),
-                      event.kind});
+  if (!operating::isListed(event)) return;
+  entries_.push_back({++last_, event.header.stamp.toSec(), operating::severityName(operating::severityOf(event.kind)),
+                      operating::eventText(event), event.kind});
   if (entries_.size() > kKept) entries_.pop_front();
 }
 

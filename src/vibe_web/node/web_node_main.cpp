@@ -34,7 +34,7 @@ void run(const web::ServerOptions& options) {
   ros::NodeHandle handle;
   web::OperatorDrive drive(handle);
   web::WebServer server(
-      options, [&](web::ClientId client, const web::Command& command) { drive.hear(client, command); },
+      options, [&](web::ClientId client, const web::Command& command) { drive.receive(client, command); },
       [&](web::ClientId client) { drive.leave(client); });
   std::string description;
   handle.getParam("robot_description", description);

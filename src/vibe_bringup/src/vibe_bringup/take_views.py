@@ -24,7 +24,7 @@ from .run import defaults, trainee
 from .rviz_window import PATIENCE, wait_for
 from .session import Interrupted, carry_out, interruptible
 from .take_pictures import PictureSession
-from .views import SESSIONS, VIEWS
+from .view_list import SESSIONS, VIEWS
 
 COLUMNS = 5  # of the sheet
 

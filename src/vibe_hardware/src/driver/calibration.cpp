@@ -41,7 +41,6 @@ class CalibrationReader {
 namespace {
 
 const std::vector<std::string> kDeviceNames{"haptic", "input"};
-const char* const kFormerKey = "overstitch";  // of suturing_device, until the next release
 constexpr double kMinScale = 1e-6, kMaxScale = 1e3;
 
 bool isLength(int joint) {
@@ -102,14 +101,14 @@ std::vector<YamlField> CalibrationReader::mapOf(const YamlField& field, const st
 }
 
 Calibration CalibrationReader::read() {
-  const std::vector<YamlField> fields = mapOf(
-      source_.root(), {"devices", "joints", "homing", "buttons", "suturing_device", kFormerKey}, {"devices", "joints"});
+  const std::vector<YamlField> fields =
+      mapOf(source_.root(), {"devices", "joints", "homing", "buttons", "suturing_device"}, {"devices", "joints"});
   // homing needs the joints, wherever they stand in the file
   for (const YamlField& field : fields) {
     if (field.key == "devices") readDevices(field);
     if (field.key == "joints") readJoints(field);
     if (field.key == "buttons") readButtons(field);
-    if (field.key == "suturing_device" || field.key == kFormerKey) readSuturingDevice(field);
+    if (field.key == "suturing_device") readSuturingDevice(field);
   }
   for (const YamlField& field : fields) {
     if (field.key == "homing") readHoming(field);
@@ -225,11 +224,6 @@ DeviceButton CalibrationReader::readButton(const YamlField& field) const {
 
 void CalibrationReader::readSuturingDevice(const YamlField& field) {
   const std::vector<std::string> names = jointNames(kScopeJointCount, kJointCount);
-  if (calibration_.suturing_device) source_.fail(field, "is there by both of its names; keep suturing_device");
-  if (field.key == kFormerKey)
-    calibration_.remark = source_.place() + ":" + std::to_string(field.line) + ": the key '" + kFormerKey +
-                          "' is the former name of suturing_device and is read in this release for the last time; "
-                          "rename it.";
   calibration_.suturing_device.emplace();
   for (const YamlField& entry : mapOf(field, names, names)) {
     const int index = indexOf(names, entry.key);

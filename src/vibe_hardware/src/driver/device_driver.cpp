@@ -81,7 +81,7 @@ void DeviceDriver::search() {
   try {
     connect(*info);
   } catch (const DeviceGone& gone) {  // while it was opened
-    noteFailure(*info, gone.what());
+    countFailure(*info, gone.what());
   } catch (const std::exception& error) {
     setUnusable("The " + std::string(deviceName(kind_)) + " at " + identify(*info) + " cannot be used. " +
                 error.what());
@@ -99,7 +99,7 @@ std::optional<HidInfo> DeviceDriver::find() {
     return std::nullopt;
   }
   if (matching.empty()) {
-    noteAbsence();
+    setAbsent();
     return std::nullopt;
   }
   if (matching.size() > 1) {
@@ -122,7 +122,7 @@ std::vector<HidInfo> DeviceDriver::listMatching() {
   return matching;
 }
 
-void DeviceDriver::noteAbsence() {
+void DeviceDriver::setAbsent() {
   state_ = LinkState::Absent;
   problem_.clear();
   failures_ = 0;
@@ -151,7 +151,7 @@ void DeviceDriver::connect(const HidInfo& info) {
   callbacks_.connected(*connection_);
 }
 
-void DeviceDriver::noteFailure(const HidInfo& info, const std::string& reason) {
+void DeviceDriver::countFailure(const HidInfo& info, const std::string& reason) {
   connection_.reset();
   failures_ = info.path == failed_path_ ? failures_ + 1 : 1;
   failed_path_ = info.path;

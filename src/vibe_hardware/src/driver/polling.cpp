@@ -36,17 +36,17 @@ PollingThread::~PollingThread() {
 }
 
 bool SilenceWatch::arrived(double now) {
-  const bool ends_silence = told_;
+  const bool ends_silence = reported_;
   last_ = now;
   watching_ = true;
-  told_ = false;
+  reported_ = false;
   return ends_silence;
 }
 
 bool SilenceWatch::expired(double now) {
   if (!watching_ || now - last_ < kLimit) return false;
   watching_ = false;
-  told_ = true;
+  reported_ = true;
   return true;
 }
 

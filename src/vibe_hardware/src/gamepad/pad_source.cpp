@@ -45,7 +45,7 @@ std::string PadLink::poll(double now) {
   if (pad_->update(now)) return "";
   const PadInfo info = pad_->info();
   pad_.reset();
-  told_ = true;
+  reported_ = true;
   last_try_ = now;
   const std::string what = info.is_recording ? "The recording of the gamepad '" + info.name + "' has ended"
                                              : "The gamepad '" + info.name + "' is gone";
@@ -60,11 +60,11 @@ std::string PadLink::look(double now) {
   pad_ = open_(why);
   if (pad_) {
     ++connections_;
-    told_ = false;
+    reported_ = false;
     return "Found the gamepad '" + pad_->info().name + "' at " + pad_->info().path + ".";
   }
-  if (told_) return "";
-  told_ = true;
+  if (reported_) return "";
+  reported_ = true;
   return why + " Waiting for it.";
 }
 

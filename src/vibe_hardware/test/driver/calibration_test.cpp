@@ -63,14 +63,6 @@ TEST(Calibration, TheShippedOneIsRead) {
   EXPECT_DOUBLE_EQ((*c.suturing_device)[2].upper, 0.018);
 }
 
-TEST(Calibration, TheFormerNameOfASectionIsReadWithARemark) {
-  const Calibration c = Calibration::parse(with("\nsuturing_device:", "\noverstitch:"), "devices.yaml");
-  EXPECT_TRUE(c.suturing_device);
-  EXPECT_NE(c.remark.find("the key 'overstitch' is the former name of suturing_device"), std::string::npos) << c.remark;
-  EXPECT_EQ(Calibration::parse(shipped(), "").remark, "");
-  EXPECT_NE(errorOf(shipped() + "\noverstitch: {}\n").find("is there by both of its names"), std::string::npos);
-}
-
 TEST(Calibration, DirectionSerialAndMissingSections) {
   const Calibration c =
       Calibration::parse(with("scale: 1, limits: [-180", "scale: 2, direction: -1, limits: [-180"), "");

@@ -220,16 +220,6 @@ class HardwareTest(unittest.TestCase):
         silent = len(self.suturing_device.messages)
         self.assertTrue(wait_until(lambda: len(self.suturing_device.messages) > silent + 10, 3))
         self.assertEqual(tuple(self.suturing_device.messages[-1].position), (0.01, 2, 0.005))
-        former = rospy.Publisher("overstitch/measured_js", JointState, queue_size=1)
-        self.assertTrue(wait_until(lambda: former.get_num_connections() > 0))
-        for _ in range(2):
-            message.header.stamp = rospy.Time.now()
-            former.publish(message)
-        self.assertTrue(self.node.says("publishes overstitch/measured_js, the former name"), self.node.output())
-        message.position[0] = 0.02
-        former.publish(message)
-        self.assertIsNotNone(self.suturing_device.waits_for(lambda m: m.position[0] == 0.02))
-        self.assertEqual(self.node.count("former name"), 1)
 
     def test_a_node_that_ends_releases_the_buttons(self):
         self.start()

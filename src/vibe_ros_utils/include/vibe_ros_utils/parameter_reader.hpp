@@ -30,7 +30,7 @@ class ParameterReader {
 
   /// Says in the log which private parameters are set: those of an earlier run stay at the master until somebody
   /// deletes them.
-  void tell() const;
+  void log() const;
 
  private:
   ros::NodeHandle handle_;

@@ -84,7 +84,7 @@ void TopicDisplay::reset() {
   forget();
   if (ready_) clear();
   placed_.reset();
-  said_.reset();
+  report_.reset();
   if (isEnabled()) subscribe();
 }
 
@@ -99,17 +99,17 @@ void TopicDisplay::fixedFrameChanged() {
 
 void TopicDisplay::update(float, float) {
   if (!ready_) return;
-  if (const std::optional<MessageReport> report = readLatest()) say(*report);
+  if (const std::optional<MessageReport> report = readLatest()) showStatus(*report);
   const std_msgs::Header* header = shownHeader();
   if (header == nullptr) return;
   place(*header);
   if (draw()) context_->queueRender();
 }
 
-void TopicDisplay::say(const MessageReport& report) {
-  if (said_ && said_->usable == report.usable && said_->text == report.text) return;
+void TopicDisplay::showStatus(const MessageReport& report) {
+  if (report_ && report_->usable == report.usable && report_->text == report.text) return;
   setStatusStd(report.usable ? StatusProperty::Ok : StatusProperty::Error, kStatusMessage, report.text);
-  said_ = report;
+  report_ = report;
 }
 
 // Called for every picture: the frame of the message may move in the fixed frame while no message comes.

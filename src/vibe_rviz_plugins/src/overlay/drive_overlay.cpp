@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "messages/button_bank.hpp"
-#include "messages/number_text.hpp"
-#include "vibe_rviz_plugins/messages/reference_values.hpp"
+#include "vibe_operator/messages/button_bank.hpp"
+#include "vibe_operator/messages/number_text.hpp"
+#include "vibe_operator/messages/reference_values.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {
@@ -81,15 +81,15 @@ bool isDown(const DriveHud& hud, int key) {
 
 /// Keys that have chosen something stay lit.
 bool isChosen(const DriveHud& hud, int key) {
-  const KeyBinding* binding = findBinding(key);
+  const operating::KeyBinding* binding = operating::findBinding(key);
   if (binding == nullptr) return false;
-  if (binding->kind == KeyBinding::Kind::Gear) return static_cast<int>(hud.gear) == binding->index;
-  return binding->kind == KeyBinding::Kind::Button && hud.buttons[static_cast<std::size_t>(binding->index)];
+  if (binding->kind == operating::KeyBinding::Kind::Gear) return static_cast<int>(hud.gear) == binding->index;
+  return binding->kind == operating::KeyBinding::Kind::Button && hud.buttons[static_cast<std::size_t>(binding->index)];
 }
 
-void drawKeyRow(const DriveHud& hud, const KeyRow& row, double y, Plate& plate) {
+void drawKeyRow(const DriveHud& hud, const operating::KeyRow& row, double y, Plate& plate) {
   double x = kPlateMargin;
-  for (const KeyRow::Cap& cap : row.caps) {
+  for (const operating::KeyRow::Cap& cap : row.caps) {
     const bool lit = isDown(hud, cap.key) || isChosen(hud, cap.key);
     const QString label = toQt(cap.label);
     const double width = std::max(kCapSize - 1, plate.widthOf(label) + 6);
@@ -107,13 +107,13 @@ struct JointRow {
   const char* suffix;
 };
 constexpr double kDegree = 0.017453292519943295, kTurn = 6.283185307179586;
-constexpr std::array<JointRow, kJointCount> kJointRows = {{{"Insertion", 1e-3, " mm"},
-                                                           {"Rotation", kDegree, "°"},
-                                                           {"Up, down", kDegree, "°"},
-                                                           {"Left, right", kDegree, "°"},
-                                                           {"Helix out", 1e-3, " mm"},
-                                                           {"Helix turns", kTurn, ""},
-                                                           {"Arm closed", 1e-3, " mm"}}};
+constexpr std::array<JointRow, operating::kJointCount> kJointRows = {{{"Insertion", 1e-3, " mm"},
+                                                                      {"Rotation", kDegree, "°"},
+                                                                      {"Up, down", kDegree, "°"},
+                                                                      {"Left, right", kDegree, "°"},
+                                                                      {"Helix out", 1e-3, " mm"},
+                                                                      {"Helix turns", kTurn, ""},
+                                                                      {"Arm closed", 1e-3, " mm"}}};
 
 constexpr double kNameWidth = 68, kBarLeft = kPlateMargin + kNameWidth, kBarWidth = 34;
 
@@ -132,32 +132,33 @@ void drawBar(double from, double to, double y, const QColor& colour, Plate& plat
 
 /// The bar of a joint begins at 0 if 0 is inside of its range, so that both directions can be told apart.
 void drawJoint(const DriveHud& hud, std::size_t joint, double y, Plate& plate) {
-  const JointLimit& limit = hud.limits[joint];
+  const operating::JointLimit& limit = hud.limits[joint];
   const JointRow& row = kJointRows[joint];
   const double range = limit.upper - limit.lower;
   const auto share = [&](double value) { return range > 0 ? (value - limit.lower) / range : 0; };
-  const int decimals = static_cast<int>(joint) == HelixRotation || static_cast<int>(joint) == NeedleDriver ? 1 : 0;
-  const std::string number = numberText(hud.joints[joint] / row.unit, decimals);
-  drawRow(row.name, toQt(number) + (number == kNoValue ? "" : row.suffix), y, plate);
+  const int decimals =
+      static_cast<int>(joint) == operating::HelixRotation || static_cast<int>(joint) == operating::NeedleDriver ? 1 : 0;
+  const std::string number = operating::numberText(hud.joints[joint] / row.unit, decimals);
+  drawRow(row.name, toQt(number) + (number == operating::kNoValue ? "" : row.suffix), y, plate);
   const double zero = std::clamp(0.0, limit.lower, limit.upper);
   const bool known = std::isfinite(hud.joints[joint]);
   drawBar(share(zero), share(known ? hud.joints[joint] : zero), y, known ? kBarFill : kTrack, plate);
 }
 
 QColor colourOfForce(double force) {
-  return force > kHighForce ? kBad : force > kPullingForce.high ? kWarning : kGood;
+  return force > kHighForce ? kBad : force > operating::kPullingForce.high ? kWarning : kGood;
 }
 
 void drawForce(double force, double y, Plate& plate) {
   const bool known = std::isfinite(force);
-  drawRow("Force", known ? toQt(quantityText(force, 1, "N")) : "-", y, plate);
-  drawBar(0, known ? force / kPullingForce.bar_end : 0, y, known ? colourOfForce(force) : kTrack, plate);
+  drawRow("Force", known ? toQt(operating::quantityText(force, 1, "N")) : "-", y, plate);
+  drawBar(0, known ? force / operating::kPullingForce.bar_end : 0, y, known ? colourOfForce(force) : kTrack, plate);
 }
 
 void drawPressure(double pressure, double y, Plate& plate) {
   constexpr double kBarEnd = 25;  // as in the panel [mmHg]
   const double value = pressure / kMillimetresOfMercury;
-  drawRow("Gas", std::isfinite(value) ? toQt(quantityText(value, 1, "mmHg")) : "-", y, plate);
+  drawRow("Gas", std::isfinite(value) ? toQt(operating::quantityText(value, 1, "mmHg")) : "-", y, plate);
   if (std::isfinite(value)) drawBar(0, value / kBarEnd, y, kBarFill, plate);
 }
 
@@ -181,12 +182,13 @@ void drawButtons(const DriveHud& hud, double y, Plate& plate) {
 }  // namespace
 
 QImage drawnKeys(const DriveHud& hud, double scale) {
-  const auto& rows = keyRows();
-  const auto gaps = std::count_if(rows.begin(), rows.end(), [](const KeyRow& row) { return row.ends_group; });
+  const auto& rows = operating::keyRows();
+  const auto gaps =
+      std::count_if(rows.begin(), rows.end(), [](const operating::KeyRow& row) { return row.ends_group; });
   const double height = kRow * static_cast<double>(rows.size()) + kGap * static_cast<double>(gaps);
   Plate plate(kPanelWidth, 2 * kPlateMargin - 4 + height, scale, kPlate);
   double y = kPlateMargin - 2;
-  for (const KeyRow& row : rows) {
+  for (const operating::KeyRow& row : rows) {
     drawKeyRow(hud, row, y, plate);
     y += row.ends_group ? kRow + kGap : kRow;
   }
@@ -194,7 +196,7 @@ QImage drawnKeys(const DriveHud& hud, double scale) {
 }
 
 QImage drawnState(const DriveHud& hud, double scale) {
-  constexpr double kRows = kJointCount + 7;  // two bars, three texts, two rows of buttons
+  constexpr double kRows = operating::kJointCount + 7;  // two bars, three texts, two rows of buttons
   Plate plate(kStateWidth, 2 * (kPlateMargin + kGap) - 2 + kRow * kRows, scale, kPlate);
   double y = kPlateMargin - 2;
   for (std::size_t joint = 0; joint < hud.joints.size(); ++joint, y += kRow) drawJoint(hud, joint, y, plate);

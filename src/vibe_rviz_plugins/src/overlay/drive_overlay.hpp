@@ -5,23 +5,23 @@
 #include <set>
 #include <string>
 
-#include "vibe_rviz_plugins/drive/drive_keys.hpp"
-#include "vibe_rviz_plugins/drive/scope_drive.hpp"
+#include "vibe_operator/drive/drive_keys.hpp"
+#include "vibe_operator/drive/scope_drive.hpp"
 
 namespace vibe::rviz_plugins {
 
 /// What the overlay of the tool 'Drive scope' shows.
 struct DriveHud {
   std::set<int> keys_down;  ///< Qt::Key; their caps light up
-  DriveGear gear = DriveGear::Normal;
-  Joints joints{};  ///< NaN: unknown
-  JointLimits limits{};
+  operating::DriveGear gear = operating::DriveGear::Normal;
+  operating::Joints joints{};  ///< NaN: unknown
+  operating::JointLimits limits{};
   std::array<bool, 6> buttons{};                               ///< in the order of scope/buttons
   double force = std::numeric_limits<double>::quiet_NaN();     ///< of the tissue on the tool [N]; NaN: unknown
   double pressure = std::numeric_limits<double>::quiet_NaN();  ///< gauge [Pa]; NaN: unknown
   std::string tissue, needle, bites;  ///< what the tool does, where the needle is, how many bites: a few words each
   std::string trouble;                ///< why nothing moves; empty if all is well
-  FirstStep step;                     ///< shown if there is no trouble
+  operating::FirstStep step;          ///< shown if there is no trouble
 };
 
 // Images with transparent parts. `scale` 1 suits a view of 640 x 480 pixels.

@@ -6,8 +6,8 @@
 #include <QSpinBox>
 #include <QTimer>
 
-#include "messages/number_text.hpp"
 #include "panels/panel_style.hpp"
+#include "vibe_operator/messages/number_text.hpp"
 
 namespace vibe::rviz_plugins {
 
@@ -32,20 +32,21 @@ CommandBox::CommandBox(Actions actions, QWidget* parent)
   auto* grid = new QGridLayout(this);
   grid->setContentsMargins(0, 0, 0, 0);
   grid->addWidget(control_, 0, 0, 1, kButtonColumns);
-  for (int button = 0; button < kCommandCount; ++button) {
+  for (int button = 0; button < operating::kCommandCount; ++button) {
     makeButton(button);
     grid->addWidget(buttons_[static_cast<std::size_t>(button)], 1 + button / kButtonColumns, button % kButtonColumns);
   }
   // below the buttons and at least two lines high, so that a changing sentence does not move the buttons
   sentence_->setMinimumHeight(2 * sentence_->fontMetrics().lineSpacing());
   sentence_->setAlignment(Qt::AlignTop);
-  grid->addWidget(sentence_, 1 + (kCommandCount + kButtonColumns - 1) / kButtonColumns, 0, 1, kButtonColumns);
+  grid->addWidget(sentence_, 1 + (operating::kCommandCount + kButtonColumns - 1) / kButtonColumns, 0, 1,
+                  kButtonColumns);
   // clicked, not toggled: reacts to the user only, not to display()
   QObject::connect(control_, &QPushButton::clicked, this, [this](bool on) { actions_.control(on); });
 }
 
 void CommandBox::makeButton(int button) {
-  const Command& command = commands()[static_cast<std::size_t>(button)];
+  const operating::Command& command = operating::commands()[static_cast<std::size_t>(button)];
   auto* widget = new QPushButton(lamp(false, palette()), toQt(command.label));
   widget->setObjectName(toQt(command.label));
   widget->setToolTip(toQt(command.help));
@@ -55,7 +56,7 @@ void CommandBox::makeButton(int button) {
   buttons_[static_cast<std::size_t>(button)] = widget;
 }
 
-void CommandBox::display(bool in_control, const std::array<std::int32_t, kCommandCount>& down,
+void CommandBox::display(bool in_control, const std::array<std::int32_t, operating::kCommandCount>& down,
                          const std::string& sentence) {
   control_->setChecked(in_control);
   control_->setText(in_control ? "Give control back" : "Take control");
@@ -141,8 +142,9 @@ void SteppingBox::displayWaiting(const std::string& service, double seconds) {
   enableAll();
   stop_waiting_->setVisible(seconds > kSlowCall);
   answer_->setPalette(palette());
-  answer_->setText(toQt("Waiting for " + service +
-                        (seconds > kSlowCall ? ": no answer for " + quantityText(seconds, 0, "s") + "." : ".")));
+  answer_->setText(
+      toQt("Waiting for " + service +
+           (seconds > kSlowCall ? ": no answer for " + operating::quantityText(seconds, 0, "s") + "." : ".")));
 }
 
 void SteppingBox::displayAnswer(bool success, const std::string& sentence) {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "messages/button_bank.hpp"
+#include "vibe_operator/messages/button_bank.hpp"
 
 class QLabel;
 class QPushButton;
@@ -26,14 +26,15 @@ class CommandBox : public QWidget {
 
   /// @param down      buttons pressed by the publisher in control
   /// @param sentence  who is in control
-  void display(bool in_control, const std::array<std::int32_t, kCommandCount>& down, const std::string& sentence);
+  void display(bool in_control, const std::array<std::int32_t, operating::kCommandCount>& down,
+               const std::string& sentence);
 
  private:
   Actions actions_;
   QPushButton* control_;
   QLabel* sentence_;
-  std::array<QPushButton*, kCommandCount> buttons_{};
-  std::array<std::int32_t, kCommandCount> shown_{};
+  std::array<QPushButton*, operating::kCommandCount> buttons_{};
+  std::array<std::int32_t, operating::kCommandCount> shown_{};
   bool shown_control_ = false;
 
   void makeButton(int button);

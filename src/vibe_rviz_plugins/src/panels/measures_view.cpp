@@ -5,10 +5,10 @@
 #include <QPainter>
 #include <limits>
 
-#include "messages/number_text.hpp"
-#include "messages/procedure_text.hpp"
 #include "panels/panel_style.hpp"
-#include "vibe_rviz_plugins/messages/reference_values.hpp"
+#include "vibe_operator/messages/number_text.hpp"
+#include "vibe_operator/messages/procedure_text.hpp"
+#include "vibe_operator/messages/reference_values.hpp"
 
 namespace vibe::rviz_plugins {
 
@@ -23,10 +23,10 @@ RangeBar::RangeBar(QWidget* parent) : QWidget(parent) {
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
 }
 
-void RangeBar::display(const BarShape& shape, Rating rating) {
+void RangeBar::display(const operating::BarShape& shape, operating::Rating rating) {
   shape_ = shape;
   rating_ = rating;
-  setAccessibleName(QString::fromStdString(ratingText(rating)));
+  setAccessibleName(QString::fromStdString(operating::ratingText(rating)));
   update();
 }
 
@@ -53,12 +53,13 @@ void RangeBar::paintEvent(QPaintEvent*) {
 void RangeBar::paintMark(QPainter& painter, double x, double y) const {
   const QColor colour = colourOf(rating_, palette());
   painter.setPen(QPen(palette().color(QPalette::WindowText), 1));
-  painter.setBrush(rating_ == Rating::Within || rating_ == Rating::Outside ? QBrush(colour)
-                                                                           : palette().brush(QPalette::Window));
+  painter.setBrush(rating_ == operating::Rating::Within || rating_ == operating::Rating::Outside
+                       ? QBrush(colour)
+                       : palette().brush(QPalette::Window));
   if (shape_.beyond) {
     const double tip = shape_.value > 0.5 ? kMark : -kMark;
     painter.drawPolygon(QVector<QPointF>{{x - tip, y - kMark}, {x + tip, y}, {x - tip, y + kMark}});
-  } else if (rating_ == Rating::Outside) {
+  } else if (rating_ == operating::Rating::Outside) {
     painter.drawPolygon(QVector<QPointF>{{x, y - kMark}, {x + kMark, y + kMark}, {x - kMark, y + kMark}});
   } else {
     painter.drawEllipse(QPointF(x, y), kMark - 1, kMark - 1);
@@ -72,11 +73,11 @@ MeasuresView::MeasuresView(QWidget* parent) : QWidget(parent) {
   grid->setVerticalSpacing(2);
   grid->setHorizontalSpacing(6);
   grid->setColumnStretch(2, 1);
-  for (const ShownMeasure& measure : measures()) {
+  for (const operating::ShownMeasure& measure : operating::measures()) {
     const int line = grid->rowCount();
-    const QString help = toQt(explain(measure));
+    const QString help = toQt(operating::explain(measure));
     auto* name = new QLabel(toQt(measure.label));
-    Row row{new QLabel(kNoValue), nullptr};
+    Row row{new QLabel(operating::kNoValue), nullptr};
     row.value->setObjectName(toQt(measure.label));
     row.value->setTextFormat(Qt::PlainText);
     grid->addWidget(name, line, 0);
@@ -94,15 +95,15 @@ MeasuresView::MeasuresView(QWidget* parent) : QWidget(parent) {
 
 void MeasuresView::display(const PanelMessages& messages) {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const ShownMeasure& measure = measures()[i];
+    const operating::ShownMeasure& measure = operating::measures()[i];
     double value = std::numeric_limits<double>::quiet_NaN();
     if (messages.state && messages.skill)
       value = measure.value({*messages.state, *messages.skill, messages.sutures.get()});
-    rows_[i].value->setText(toQt(quantityText(value, measure.decimals, measure.unit)));
+    rows_[i].value->setText(toQt(operating::quantityText(value, measure.decimals, measure.unit)));
     if (!rows_[i].bar) continue;
-    const Rating rating = rate(measure, value, messages.state && messages.state->phase == "done");
-    rows_[i].bar->display(barShape(measure, value), rating);
-    rows_[i].bar->setToolTip(toQt(explain(measure) + "\nNow: " + ratingText(rating) + "."));
+    const operating::Rating rating = operating::rate(measure, value, messages.state && messages.state->phase == "done");
+    rows_[i].bar->display(operating::barShape(measure, value), rating);
+    rows_[i].bar->setToolTip(toQt(operating::explain(measure) + "\nNow: " + operating::ratingText(rating) + "."));
   }
 }
 
@@ -130,14 +131,16 @@ SolverStatisticsView::~SolverStatisticsView() = default;
 
 void SolverStatisticsView::display(const PanelMessages& messages, const Freshness& freshness) {
   static const vibe_msgs::SolverStatistics kNothing;
-  for (const NamedText& row :
-       solverStatisticsRows(messages.solver_statistics ? *messages.solver_statistics : kNothing)) {
-    rows_->set(toQt(row.name), messages.solver_statistics ? toQt(row.value) : kNoValue, toQt(row.help));
+  for (const operating::NamedText& row :
+       operating::solverStatisticsRows(messages.solver_statistics ? *messages.solver_statistics : kNothing)) {
+    rows_->set(toQt(row.name), messages.solver_statistics ? toQt(row.value) : operating::kNoValue, toQt(row.help));
     rows_->mark(toQt(row.name), messages.solver_statistics && row.warns);
   }
   const bool known = static_cast<bool>(messages.state);
-  rows_->set("Last message", known ? toQt(quantityText(freshness.age, 2, "s") + " ago") : kNoValue, kAgeHelp);
-  rows_->set("Delay", known ? toQt(quantityText(1e3 * freshness.delay, 0, "ms")) : kNoValue, kDelayHelp);
+  rows_->set("Last message",
+             known ? toQt(operating::quantityText(freshness.age, 2, "s") + " ago") : operating::kNoValue, kAgeHelp);
+  rows_->set("Delay", known ? toQt(operating::quantityText(1e3 * freshness.delay, 0, "ms")) : operating::kNoValue,
+             kDelayHelp);
 }
 
 }  // namespace vibe::rviz_plugins

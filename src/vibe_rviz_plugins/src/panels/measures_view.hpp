@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "panels/panel_messages.hpp"
-#include "vibe_rviz_plugins/messages/reference_values.hpp"
+#include "vibe_operator/messages/reference_values.hpp"
 
 class QLabel;
 
@@ -17,7 +17,7 @@ class RangeBar : public QWidget {
  public:
   explicit RangeBar(QWidget* parent = nullptr);
 
-  void display(const BarShape& shape, Rating rating);
+  void display(const operating::BarShape& shape, operating::Rating rating);
   QSize sizeHint() const override { return {90, 16}; }
   QSize minimumSizeHint() const override { return {40, 16}; }
 
@@ -25,8 +25,8 @@ class RangeBar : public QWidget {
   void paintEvent(QPaintEvent* event) override;
 
  private:
-  BarShape shape_;
-  Rating rating_ = Rating::NoValue;
+  operating::BarShape shape_;
+  operating::Rating rating_ = operating::Rating::NoValue;
 
   void paintMark(QPainter& painter, double x, double y) const;
 };

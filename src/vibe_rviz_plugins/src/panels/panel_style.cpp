@@ -76,38 +76,38 @@ QColor quietColour(const QPalette& palette) {
   return isDark(palette) ? QColor(160, 160, 160) : QColor(110, 110, 110);
 }
 
-QColor colourOf(EventSeverity severity, const QPalette& palette) {
+QColor colourOf(operating::EventSeverity severity, const QPalette& palette) {
   switch (severity) {
-    case EventSeverity::Success:
+    case operating::EventSeverity::Success:
       return goodColour(palette);
-    case EventSeverity::Warning:
+    case operating::EventSeverity::Warning:
       return warningColour(palette);
-    case EventSeverity::Bleeding:
-    case EventSeverity::Harm:
+    case operating::EventSeverity::Bleeding:
+    case operating::EventSeverity::Harm:
       return dangerColour(palette);
-    case EventSeverity::Note:
+    case operating::EventSeverity::Note:
       break;
   }
   return palette.color(QPalette::Text);
 }
 
-QColor colourOf(Rating rating, const QPalette& palette) {
-  if (rating == Rating::Within) return goodColour(palette);
-  return rating == Rating::Outside ? warningColour(palette) : quietColour(palette);
+QColor colourOf(operating::Rating rating, const QPalette& palette) {
+  if (rating == operating::Rating::Within) return goodColour(palette);
+  return rating == operating::Rating::Outside ? warningColour(palette) : quietColour(palette);
 }
 
-QIcon symbolOf(EventSeverity severity, const QPalette& palette) {
+QIcon symbolOf(operating::EventSeverity severity, const QPalette& palette) {
   const QColor colour = colourOf(severity, palette);
   switch (severity) {
-    case EventSeverity::Success:
+    case operating::EventSeverity::Success:
       return drawn(colour, drawTick);
-    case EventSeverity::Warning:
+    case operating::EventSeverity::Warning:
       return drawn(colour, drawTriangle);
-    case EventSeverity::Bleeding:
+    case operating::EventSeverity::Bleeding:
       return drawn(colour, drawDrop);
-    case EventSeverity::Harm:
+    case operating::EventSeverity::Harm:
       return drawn(colour, drawCross);
-    case EventSeverity::Note:
+    case operating::EventSeverity::Note:
       break;
   }
   return drawn(quietColour(palette), [](QPainter& painter) { painter.drawEllipse(10, 10, 12, 12); });

@@ -6,8 +6,8 @@
 #include <QString>
 #include <map>
 
-#include "vibe_rviz_plugins/messages/reference_values.hpp"
-#include "vibe_rviz_plugins/messages/table_rows.hpp"
+#include "vibe_operator/messages/reference_values.hpp"
+#include "vibe_operator/messages/table_rows.hpp"
 
 class QGridLayout;
 class QLabel;
@@ -23,11 +23,11 @@ QColor warningColour(const QPalette& palette);
 QColor dangerColour(const QPalette& palette);
 QColor quietColour(const QPalette& palette);
 
-QColor colourOf(EventSeverity severity, const QPalette& palette);
-QColor colourOf(Rating rating, const QPalette& palette);
+QColor colourOf(operating::EventSeverity severity, const QPalette& palette);
+QColor colourOf(operating::Rating rating, const QPalette& palette);
 
 /// Circle: note; tick: success; triangle: warning; drop: bleeding; cross in a square: harm.
-QIcon symbolOf(EventSeverity severity, const QPalette& palette);
+QIcon symbolOf(operating::EventSeverity severity, const QPalette& palette);
 
 /// A lamp, filled while it is on.
 QIcon lamp(bool on, const QPalette& palette);

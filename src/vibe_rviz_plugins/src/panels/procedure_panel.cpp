@@ -8,13 +8,13 @@
 
 #include <pluginlib/class_list_macros.hpp>
 
-#include "messages/procedure_text.hpp"
 #include "panels/control_boxes.hpp"
 #include "panels/measures_view.hpp"
 #include "panels/panel_style.hpp"
 #include "panels/procedure_tables.hpp"
 #include "panels/record_box.hpp"
 #include "panels/status_summary.hpp"
+#include "vibe_operator/messages/procedure_text.hpp"
 
 namespace vibe::rviz_plugins {
 
@@ -109,7 +109,7 @@ QWidget* ProcedureWidget::makeContent() {
 CommandBox* ProcedureWidget::makeCommands() {
   CommandBox::Actions actions;
   actions.control = [this](bool on) {
-    sender_.setControl(on, steadySeconds());
+    sender_.setControl(on, operating::steadySeconds());
     refresh();
   };
   actions.press = [this](int button) {
@@ -145,7 +145,7 @@ void ProcedureWidget::start() {
 }
 
 void ProcedureWidget::setNamespace(const QString& name) {
-  wrong_namespace_ = checkNamespace(name.toStdString());
+  wrong_namespace_ = operating::checkNamespace(name.toStdString());
   if (!wrong_namespace_.empty()) return;
   name_space_ = name;
   name_space_edit_->setText(name);
@@ -156,9 +156,9 @@ void ProcedureWidget::setNamespace(const QString& name) {
   refresh();
 }
 
-Moment ProcedureWidget::moment() const {
-  Moment now;
-  now.wall = steadySeconds();
+operating::Moment ProcedureWidget::moment() const {
+  operating::Moment now;
+  now.wall = operating::steadySeconds();
   now.stamp = ros::Time::now().toSec();
   if (const auto& state = subscriptions_.messages().state) {
     now.step_period = state->step_period;
@@ -176,7 +176,7 @@ void ProcedureWidget::callService(const std::string& service, const std::functio
   const std::string name = fullName(service);
   if (!call(name)) return;
   waited_for_ = name;
-  waits_since_ = steadySeconds();
+  waits_since_ = operating::steadySeconds();
   gives_up_ = false;
   stepping_->displayWaiting(name, 0);
 }
@@ -188,7 +188,7 @@ void ProcedureWidget::takeAnswer(const ServiceCaller::Answer& answer) {
 }
 
 void ProcedureWidget::refresh() {
-  const double now = steadySeconds();
+  const double now = operating::steadySeconds();
   displayStatus(now);
   const PanelMessages& messages = subscriptions_.messages();
   commands_->display(sender_.inControl() || sender_.isTakingControl(), sender_.down(), sender_.sentence(now));
@@ -196,15 +196,15 @@ void ProcedureWidget::refresh() {
   if (!waited_for_.empty()) stepping_->displayWaiting(waited_for_, now - waits_since_);
   recording_->refresh();
   summary_->display(messages);
-  sutures_->display(messages.sutures ? sutureRows(*messages.sutures, messages.progress.get())
-                                     : std::vector<SutureRow>());
-  trainee_->setText(toQt(messages.progress ? traineeText(*messages.progress) : "no trainee with goals"));
+  sutures_->display(messages.sutures ? operating::sutureRows(*messages.sutures, messages.progress.get())
+                                     : std::vector<operating::SutureRow>());
+  trainee_->setText(toQt(messages.progress ? operating::traineeText(*messages.progress) : "no trainee with goals"));
   measures_->display(messages);
   solver_statistics_->display(messages, subscriptions_.freshness(now));
 }
 
 void ProcedureWidget::displayStatus(double now) {
-  const std::string sentence = wrong_namespace_.empty() ? subscriptions_.complaint(now) : wrong_namespace_;
+  const std::string sentence = wrong_namespace_.empty() ? subscriptions_.problem(now) : wrong_namespace_;
   QPalette colours = palette();
   colours.setColor(QPalette::WindowText, warningColour(colours));
   status_->setPalette(colours);

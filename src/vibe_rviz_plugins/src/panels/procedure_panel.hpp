@@ -5,9 +5,9 @@
 #ifndef Q_MOC_RUN
 #include <rviz/panel.h>
 
-#include "driving/button_sender.hpp"
 #include "panels/procedure_subscriptions.hpp"
 #include "panels/service_caller.hpp"
+#include "vibe_operator/driving/button_sender.hpp"
 #endif
 
 class QLabel;
@@ -65,13 +65,13 @@ class ProcedureWidget : public QWidget {
   bool gives_up_ = false;
   std::string wrong_namespace_;
   ProcedureSubscriptions subscriptions_;
-  ButtonSender sender_{"procedure_panel"};
+  operating::ButtonSender sender_{"procedure_panel"};
   ServiceCaller caller_;  // last: its thread ends before anything else goes
 
   QWidget* makeContent();
   CommandBox* makeCommands();
   SteppingBox* makeStepping();
-  Moment moment() const;
+  operating::Moment moment() const;
   std::string fullName(const std::string& service) const;
   void callService(const std::string& service, const std::function<bool(const std::string&)>& call);
   void takeAnswer(const ServiceCaller::Answer& answer);

@@ -22,7 +22,7 @@ void ProcedureSubscriptions::listen(const std::string& name_space) {
 template <class Message>
 void ProcedureSubscriptions::take(boost::shared_ptr<const Message>& place,
                                   const boost::shared_ptr<const Message>& message) {
-  simulator_.heard(steadySeconds());
+  simulator_.received(operating::steadySeconds());
   place = message;
 }
 
@@ -31,13 +31,13 @@ void ProcedureSubscriptions::subscribeAll(ros::NodeHandle& handle) {
   const auto add = [this](const ros::Subscriber& subscriber) { subscribers_.push_back(subscriber); };
   add(handle.subscribe<vibe_msgs::ProcedureState>("procedure/state", 1, [this](const auto& message) {
     take(messages_.state, message);
-    if (!messages_.force) noteArrival(message->header.stamp);
+    if (!messages_.force) recordArrival(message->header.stamp);
   }));
   add(handle.subscribe<vibe_msgs::SkillMetrics>("procedure/skill_metrics", 1,
                                                 [this](const auto& message) { take(messages_.skill, message); }));
   add(handle.subscribe<geometry_msgs::WrenchStamped>("scope/measured_cf", 1, [this](const auto& message) {
     take(messages_.force, message);
-    noteArrival(message->header.stamp);
+    recordArrival(message->header.stamp);
   }));
   add(handle.subscribe<vibe_msgs::SutureArray>("sutures", 1,
                                                [this](const auto& message) { take(messages_.sutures, message); }));
@@ -47,13 +47,13 @@ void ProcedureSubscriptions::subscribeAll(ros::NodeHandle& handle) {
   add(handle.subscribe<vibe_msgs::SolverStatistics>(
       "solver_statistics", 1, [this](const auto& message) { take(messages_.solver_statistics, message); }));
   add(handle.subscribe<ProcedureEvent>("procedure/events", kEventQueue, [this](const auto& message) {
-    simulator_.heard(steadySeconds());
+    simulator_.received(operating::steadySeconds());
     handle_event_(*message);
   }));
 }
 
-void ProcedureSubscriptions::noteArrival(const ros::Time& stamp) {
-  last_moving_ = steadySeconds();
+void ProcedureSubscriptions::recordArrival(const ros::Time& stamp) {
+  last_moving_ = operating::steadySeconds();
   if (!ros::Time::isSimTime()) delay_.add((ros::Time::now() - stamp).toSec(), last_moving_);
 }
 

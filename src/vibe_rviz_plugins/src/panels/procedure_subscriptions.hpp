@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "messages/session_watch.hpp"
 #include "panels/panel_messages.hpp"
+#include "vibe_operator/messages/session_watch.hpp"
 
 namespace vibe::rviz_plugins {
 
@@ -24,7 +24,7 @@ class ProcedureSubscriptions {
   const PanelMessages& messages() const { return messages_; }
   Freshness freshness(double now) const;
   /// One sentence while there is no simulator; empty if all is well.
-  std::string complaint(double now) const { return simulator_.complaint(state_topic_, now); }
+  std::string problem(double now) const { return simulator_.problem(state_topic_, now); }
   /// Stamp that counts as the beginning of the session's time [s].
   double origin() const;
 
@@ -33,14 +33,14 @@ class ProcedureSubscriptions {
   std::vector<ros::Subscriber> subscribers_;
   PanelMessages messages_;
   std::string state_topic_;
-  SimulatorWatch simulator_;
-  MaxOfWindow delay_;
+  operating::SimulatorWatch simulator_;
+  operating::MaxOfWindow delay_;
   double last_moving_ = 0;  // arrival of the last force or state [s]
 
   template <class Message>
   void take(boost::shared_ptr<const Message>& place, const boost::shared_ptr<const Message>& message);
   void subscribeAll(ros::NodeHandle& handle);
-  void noteArrival(const ros::Time& stamp);
+  void recordArrival(const ros::Time& stamp);
 };
 
 }  // namespace vibe::rviz_plugins

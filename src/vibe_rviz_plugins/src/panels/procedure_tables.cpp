@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "messages/number_text.hpp"
 #include "panels/panel_style.hpp"
-#include "vibe_rviz_plugins/messages/table_rows.hpp"
+#include "vibe_operator/messages/number_text.hpp"
+#include "vibe_operator/messages/table_rows.hpp"
 
 namespace vibe::rviz_plugins {
 
@@ -16,7 +16,7 @@ constexpr int kLinesShown = 8;
 
 std::string timeText(const vibe_msgs::ProcedureEvent& event, double origin) {
   const double time = event.header.stamp.toSec() - origin;
-  return time >= 0 ? durationText(time) + "  " : std::string();
+  return time >= 0 ? operating::durationText(time) + "  " : std::string();
 }
 
 }  // namespace
@@ -33,15 +33,15 @@ EventList::EventList(QWidget* parent) : QListWidget(parent) {
 }
 
 void EventList::add(const vibe_msgs::ProcedureEvent& event, double origin) {
-  if (!isListed(event)) return;
-  const EventSeverity severity = severityOf(event.kind);
-  const std::string sentence = eventText(event);
-  if (severity == EventSeverity::Note && sentence == newest_ && count() > 0)
+  if (!operating::isListed(event)) return;
+  const operating::EventSeverity severity = operating::severityOf(event.kind);
+  const std::string sentence = operating::eventText(event);
+  if (severity == operating::EventSeverity::Note && sentence == newest_ && count() > 0)
     delete takeItem(0);  // it comes again and again
   newest_ = sentence;
   auto* entry = new QListWidgetItem(symbolOf(severity, palette()), toQt(timeText(event, origin) + sentence));
   entry->setForeground(colourOf(severity, palette()));
-  entry->setToolTip(toQt(severityName(severity)));
+  entry->setToolTip(toQt(operating::severityName(severity)));
   insertItem(0, entry);
   while (count() > kMax) delete takeItem(count() - 1);
 }
@@ -97,7 +97,7 @@ SutureTable::SutureTable(QWidget* parent) : QTableWidget(0, static_cast<int>(kTa
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
 }
 
-void SutureTable::display(const std::vector<SutureRow>& rows) {
+void SutureTable::display(const std::vector<operating::SutureRow>& rows) {
   const int count = static_cast<int>(rows.size());
   const bool changed = count != rowCount();
   if (changed) setRowCount(count);
@@ -107,7 +107,7 @@ void SutureTable::display(const std::vector<SutureRow>& rows) {
   scrollToBottom();
 }
 
-void SutureTable::displayRow(int row, const SutureRow& content) {
+void SutureTable::displayRow(int row, const operating::SutureRow& content) {
   const std::array<std::string, 7> texts = {content.set,     content.bites, content.planned, content.technique,
                                             content.printed, content.stage, content.tension};
   for (int column = 0; column < columnCount(); ++column) {

@@ -6,7 +6,7 @@
 
 #include <vibe_msgs/ProcedureEvent.h>
 
-#include "vibe_rviz_plugins/messages/table_rows.hpp"
+#include "vibe_operator/messages/table_rows.hpp"
 
 namespace vibe::rviz_plugins {
 
@@ -32,12 +32,12 @@ class SutureTable : public QTableWidget {
  public:
   explicit SutureTable(QWidget* parent = nullptr);
 
-  void display(const std::vector<SutureRow>& rows);
+  void display(const std::vector<operating::SutureRow>& rows);
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override { return sizeHint(); }
 
  private:
-  void displayRow(int row, const SutureRow& content);
+  void displayRow(int row, const operating::SutureRow& content);
 };
 
 }  // namespace vibe::rviz_plugins

@@ -11,11 +11,11 @@
 #include <cmath>
 #include <limits>
 
-#include "messages/number_text.hpp"
-#include "messages/procedure_text.hpp"
 #include "panels/measures_view.hpp"
 #include "panels/panel_style.hpp"
-#include "vibe_rviz_plugins/messages/reference_values.hpp"
+#include "vibe_operator/messages/number_text.hpp"
+#include "vibe_operator/messages/procedure_text.hpp"
+#include "vibe_operator/messages/reference_values.hpp"
 
 namespace vibe::rviz_plugins {
 
@@ -32,29 +32,29 @@ QFont bold(QFont font) {
   return font;
 }
 
-double widthOf(const PhaseStep& step, const QFont& face) {
+double widthOf(const operating::PhaseStep& step, const QFont& face) {
   return QFontMetrics(bold(face)).horizontalAdvance(QString::fromStdString(step.name)) + 2 * kSideMargin;
 }
 
 }  // namespace
 
-PhaseStrip::PhaseStrip(QWidget* parent) : QWidget(parent), steps_(phaseSteps("")) {
+PhaseStrip::PhaseStrip(QWidget* parent) : QWidget(parent), steps_(operating::phaseSteps("")) {
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
   setToolTip("Phase of the procedure; it follows from what is done.");
 }
 
-void PhaseStrip::display(const std::array<PhaseStep, kPhaseCount>& steps) {
+void PhaseStrip::display(const std::array<operating::PhaseStep, operating::kPhaseCount>& steps) {
   steps_ = steps;
   QString present = "Phase unknown";
-  for (const PhaseStep& step : steps_)
-    if (step.kind == StepKind::Present) present = "Phase: " + QString::fromStdString(step.name);
+  for (const operating::PhaseStep& step : steps_)
+    if (step.kind == operating::StepKind::Present) present = "Phase: " + QString::fromStdString(step.name);
   setAccessibleName(present);
   update();
 }
 
 double PhaseStrip::minWidth(const QFont& face) const {
-  double width = kGap * (kPhaseCount - 1);
-  for (const PhaseStep& step : steps_) width += widthOf(step, face);
+  double width = kGap * (operating::kPhaseCount - 1);
+  for (const operating::PhaseStep& step : steps_) width += widthOf(step, face);
   return width;
 }
 
@@ -77,23 +77,23 @@ void PhaseStrip::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
   const QFont face = fittingFont();
-  const double extra = (width() - minWidth(face)) / kPhaseCount;
+  const double extra = (width() - minWidth(face)) / operating::kPhaseCount;
   double left = 0;
-  for (const PhaseStep& step : steps_) {
+  for (const operating::PhaseStep& step : steps_) {
     const double width = widthOf(step, face) + extra;
-    painter.setFont(step.kind == StepKind::Present ? bold(face) : face);
+    painter.setFont(step.kind == operating::StepKind::Present ? bold(face) : face);
     paintStep(painter, QRectF(left + 1, 1, width - 2, height() - 2), step);
     left += width + kGap;
   }
 }
 
-void PhaseStrip::paintStep(QPainter& painter, const QRectF& place, const PhaseStep& step) const {
-  const bool present = step.kind == StepKind::Present;
+void PhaseStrip::paintStep(QPainter& painter, const QRectF& place, const operating::PhaseStep& step) const {
+  const bool present = step.kind == operating::StepKind::Present;
   const QColor quiet = quietColour(palette());
   painter.setPen(QPen(present ? palette().color(QPalette::Text) : quiet, present ? 2 : 1));
   painter.setBrush(present ? palette().brush(QPalette::Highlight) : QBrush(Qt::NoBrush));
   painter.drawRoundedRect(place, kRound, kRound);
-  if (step.kind == StepKind::Before) {
+  if (step.kind == operating::StepKind::Before) {
     // a line below what is behind
     painter.setPen(QPen(goodColour(palette()), 3));
     painter.drawLine(place.bottomLeft() + QPointF(kRound, -2), place.bottomRight() + QPointF(-kRound, -2));
@@ -119,10 +119,10 @@ double forceNow(const geometry_msgs::WrenchStamped& wrench) {
 }
 
 QString forceText(double force) {
-  const QString number = toQt(quantityText(force, 1, "N"));
+  const QString number = toQt(operating::quantityText(force, 1, "N"));
   if (!std::isfinite(force)) return number;
   if (force == 0) return number + ", no contact";
-  return number + (force > kPullingForce.high ? ": too hard, seldom above 5 N" : ", gentle enough");
+  return number + (force > operating::kPullingForce.high ? ": too hard, seldom above 5 N" : ", gentle enough");
 }
 
 }  // namespace
@@ -144,8 +144,8 @@ StatusSummary::StatusSummary(QWidget* parent)
   rows_->add("Tool", "What the tool does to the organ at the moment, and where the needle is.");
   rows_->add("Bites", "In the set at work, and in all sets.");
   rows_->add("Bleeding", "Bites that bleed now, and the blood lost so far. Completing a set stops what bleeds in it.");
-  rows_->add("Pull", toQt(explain(kPullingForce)));
-  force_bar_->setToolTip(toQt(explain(kPullingForce)));
+  rows_->add("Pull", toQt(operating::explain(operating::kPullingForce)));
+  force_bar_->setToolTip(toQt(operating::explain(operating::kPullingForce)));
   grid->addWidget(force_bar_, grid->rowCount(), 1);
   rows_->add("Marks", "Marks that hang together are one zone; by wall.");
   rows_->add("Burns", "Zones with a burn scar or worse, and those where the muscularis is at risk.");
@@ -163,44 +163,44 @@ void StatusSummary::display(const PanelMessages& messages) {
 void StatusSummary::displayState(const PanelMessages& messages) {
   if (!messages.state) {
     header_->setText("No session");
-    phases_->display(phaseSteps(""));
-    for (const char* name : {"Tool", "Bites"}) rows_->set(name, kNoValue);
+    phases_->display(operating::phaseSteps(""));
+    for (const char* name : {"Tool", "Bites"}) rows_->set(name, operating::kNoValue);
     return;
   }
   const vibe_msgs::ProcedureState& state = *messages.state;
-  header_->setText(
-      toQt(state.scene + ", " + durationText(timeNow(messages)) + (state.paused ? ", PAUSED" : ", running")));
-  phases_->display(phaseSteps(state.phase));
-  rows_->set("Tool", toQt(toolText(state)));
-  rows_->set("Bites", toQt(bitesText(state, messages.sutures.get())));
+  header_->setText(toQt(state.scene + ", " + operating::durationText(timeNow(messages)) +
+                        (state.paused ? ", PAUSED" : ", running")));
+  phases_->display(operating::phaseSteps(state.phase));
+  rows_->set("Tool", toQt(operating::toolText(state)));
+  rows_->set("Bites", toQt(operating::bitesText(state, messages.sutures.get())));
   rows_->mark("Bites", state.tear_outs > 0);
 }
 
 void StatusSummary::displaySkill(const PanelMessages& messages) {
   const vibe_msgs::SkillMetrics* skill = messages.skill.get();
-  rows_->set("Marks", skill ? toQt(marksText(*skill)) : QString(kNoValue));
-  rows_->set("Burns", skill ? toQt(burnsText(*skill)) : QString(kNoValue));
+  rows_->set("Marks", skill ? toQt(operating::marksText(*skill)) : QString(operating::kNoValue));
+  rows_->set("Burns", skill ? toQt(operating::burnsText(*skill)) : QString(operating::kNoValue));
   rows_->mark("Burns", skill && skill->deep_burn_zones > 0);
 }
 
 void StatusSummary::displayBleeding(const PanelMessages& messages) {
   if (!messages.sutures) {
-    rows_->set("Bleeding", kNoValue);
+    rows_->set("Bleeding", operating::kNoValue);
     rows_->mark("Bleeding", false);
     return;
   }
-  const BleedingSummary bleeding = summariseBleeding(*messages.sutures);
-  const std::string lost = " (" + quantityText(1e6 * bleeding.lost, 1, "mL") + " lost)";
-  rows_->set("Bleeding", toQt(bleedingText(bleeding) + (bleeding.lost > 0 ? lost : std::string())));
+  const operating::BleedingSummary bleeding = operating::summariseBleeding(*messages.sutures);
+  const std::string lost = " (" + operating::quantityText(1e6 * bleeding.lost, 1, "mL") + " lost)";
+  rows_->set("Bleeding", toQt(operating::bleedingText(bleeding) + (bleeding.lost > 0 ? lost : std::string())));
   rows_->mark("Bleeding", bleeding.brisk + bleeding.mild > 0);
 }
 
 void StatusSummary::displayForce(const PanelMessages& messages) {
   const double force = messages.force ? forceNow(*messages.force) : std::numeric_limits<double>::quiet_NaN();
-  const Rating rating = rate(kPullingForce, force, false);
+  const operating::Rating rating = operating::rate(operating::kPullingForce, force, false);
   rows_->set("Pull", forceText(force));
-  rows_->mark("Pull", rating == Rating::Outside);
-  force_bar_->display(barShape(kPullingForce, force), rating);
+  rows_->mark("Pull", rating == operating::Rating::Outside);
+  force_bar_->display(operating::barShape(operating::kPullingForce, force), rating);
 }
 
 }  // namespace vibe::rviz_plugins

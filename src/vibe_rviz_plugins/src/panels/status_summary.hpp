@@ -3,8 +3,8 @@
 #include <QWidget>
 #include <memory>
 
-#include "messages/procedure_text.hpp"
 #include "panels/panel_messages.hpp"
+#include "vibe_operator/messages/procedure_text.hpp"
 
 class QLabel;
 
@@ -16,7 +16,7 @@ class PhaseStrip : public QWidget {
  public:
   explicit PhaseStrip(QWidget* parent = nullptr);
 
-  void display(const std::array<PhaseStep, kPhaseCount>& steps);
+  void display(const std::array<operating::PhaseStep, operating::kPhaseCount>& steps);
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override;
 
@@ -24,11 +24,11 @@ class PhaseStrip : public QWidget {
   void paintEvent(QPaintEvent* event) override;
 
  private:
-  std::array<PhaseStep, kPhaseCount> steps_;
+  std::array<operating::PhaseStep, operating::kPhaseCount> steps_;
 
   double minWidth(const QFont& face) const;  // without clipping [px]
   QFont fittingFont() const;                 // smaller where there is no room for the whole
-  void paintStep(QPainter& painter, const QRectF& place, const PhaseStep& step) const;
+  void paintStep(QPainter& painter, const QRectF& place, const operating::PhaseStep& step) const;
 };
 
 class RangeBar;

@@ -15,11 +15,17 @@
 #include <QTimer>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "messages/session_watch.hpp"
 #include "overlay/legend.hpp"
+#include "vibe_operator/messages/session_watch.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {
+
+// the keys of Qt are passed on as they are
+static_assert(operating::keys::kSpace == Qt::Key_Space && operating::keys::kEscape == Qt::Key_Escape &&
+              operating::keys::kShift == Qt::Key_Shift && operating::keys::kLeft == Qt::Key_Left &&
+              operating::keys::kUp == Qt::Key_Up && operating::keys::kRight == Qt::Key_Right &&
+              operating::keys::kDown == Qt::Key_Down && 'A' == Qt::Key_A && '1' == Qt::Key_1);
 
 constexpr double kOverlayPeriod = 0.1;                                                           // [s]
 constexpr int kButtonPeriod = 100;                                                               // [ms]
@@ -94,7 +100,7 @@ void DriveScopeTool::load(const rviz::Config& config) {
 void DriveScopeTool::changeSpeeds() {
   const auto value = [](const rviz::FloatProperty* property) { return static_cast<double>(property->getFloat()); };
   const double tip = value(speeds_[2]) * kDegree;
-  DriveSpeeds speeds;
+  operating::DriveSpeeds speeds;
   speeds.keys = {
       value(speeds_[0]) * kMillimetre, value(speeds_[1]) * kDegree,    tip, tip, value(speeds_[3]) * kMillimetre,
       value(speeds_[4]) * kTurn,       value(speeds_[5]) * kMillimetre};
@@ -148,7 +154,7 @@ bool DriveScopeTool::eventFilter(QObject* watched, QEvent* event) {
 bool DriveScopeTool::isOurs(const QKeyEvent& event) const {
   if ((event.modifiers() & (Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier)) != 0) return false;
   const int key = event.key();
-  return findBinding(key) != nullptr || key == Qt::Key_H || key == Qt::Key_F1 || key == Qt::Key_V;
+  return operating::findBinding(key) != nullptr || key == Qt::Key_H || key == Qt::Key_F1 || key == Qt::Key_V;
 }
 
 /// @return whether rviz must not see the event
@@ -183,13 +189,13 @@ void DriveScopeTool::tickButtons() {
 int DriveScopeTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
   if (event.wheel_delta != 0) {
     const double notches = event.wheel_delta / kNotch;
-    drive_.displace(Insertion, notches * kMillimetre * static_cast<double>(wheel_->getFloat()));
+    drive_.displace(operating::Insertion, notches * kMillimetre * static_cast<double>(wheel_->getFloat()));
     return Render;
   }
   if (event.left() && event.type == QEvent::MouseMove) {
     const double by = kDegree * static_cast<double>(bend_->getFloat());
-    drive_.displace(TipUpDown, by * (event.last_y - event.y));
-    drive_.displace(TipLeftRight, by * (event.last_x - event.x));
+    drive_.displace(operating::TipUpDown, by * (event.last_y - event.y));
+    drive_.displace(operating::TipLeftRight, by * (event.last_x - event.x));
     return Render;
   }
   const bool of_view = event.middle() || event.right() || event.acting_button != Qt::NoButton;
@@ -200,7 +206,7 @@ int DriveScopeTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
 }
 
 void DriveScopeTool::update(float, float) {
-  const double now = steadySeconds();
+  const double now = operating::steadySeconds();
   if (now - drawn_ < kOverlayPeriod) return;
   drawn_ = now;
   const DriveHud hud = hudOf(drive_.view());
@@ -208,7 +214,7 @@ void DriveScopeTool::update(float, float) {
   setStatus(hud.trouble.empty() ? kHowTo : QString::fromStdString(hud.trouble));
 }
 
-DriveHud DriveScopeTool::hudOf(const DriveView& view) const {
+DriveHud DriveScopeTool::hudOf(const operating::DriveView& view) const {
   DriveHud hud;
   hud.keys_down = view.keys_down;
   hud.gear = view.gear;

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "overlay/drive_overlay.hpp"
-#include "vibe_rviz_plugins/driving/manual_drive.hpp"
+#include "vibe_operator/driving/manual_drive.hpp"
 #endif
 
 class QTimer;
@@ -53,7 +53,7 @@ class DriveScopeTool : public rviz::Tool {
   bool handleKey(const QKeyEvent& event);
   bool isOurs(const QKeyEvent& event) const;
   void showNextView();
-  DriveHud hudOf(const DriveView& view) const;
+  DriveHud hudOf(const operating::DriveView& view) const;
   void draw(const DriveHud& hud);
   void hideOverlay();
 
@@ -62,7 +62,7 @@ class DriveScopeTool : public rviz::Tool {
   std::array<rviz::FloatProperty*, 6> speeds_{};
   rviz::FloatProperty *slow_, *fast_, *bend_, *wheel_;
 
-  ManualDrive drive_;
+  operating::ManualDrive drive_;
   QTimer* button_timer_;
   std::unique_ptr<Legend> banner_, keys_, state_;
   int view_ = 0;              // the saved view that was chosen last

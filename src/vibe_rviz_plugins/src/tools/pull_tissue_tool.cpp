@@ -67,7 +67,7 @@ void PullTissueTool::onInitialize() {
 void PullTissueTool::activate() {
   active_ = true;
   connect();
-  sayHowTo();
+  showHowTo();
 }
 
 void PullTissueTool::deactivate() {
@@ -95,7 +95,7 @@ void PullTissueTool::connect() {
     state_subscriber_ = handle_.subscribe(prefix + "tissue/pull_state", 10, &PullTissueTool::takeState, this);
   } catch (const ros::Exception& error) {
     topology_trouble_ = "The namespace '" + name + "' of the tool is invalid; change it in Tool Properties.";
-    say(topology_trouble_);
+    showStatus(topology_trouble_);
   }
 }
 
@@ -111,14 +111,14 @@ void PullTissueTool::disconnect() {
 void PullTissueTool::takeTopology(const vibe_msgs::TissueTopology::ConstPtr& message) {
   letGo();  // the particle numbers have changed
   topology_trouble_ = graphics::readTopology(*message, mesh_);
-  if (!topology_trouble_.empty()) say(topology_trouble_);
+  if (!topology_trouble_.empty()) showStatus(topology_trouble_);
 }
 
 void PullTissueTool::takeState(const vibe_msgs::TissuePullState::ConstPtr& message) {
   if (!hold_) return;
-  PullState state;
-  const std::string wrong = readPullState(*message, state);
-  if (!wrong.empty()) return say(wrong);
+  operating::PullState state;
+  const std::string wrong = operating::readPullState(*message, state);
+  if (!wrong.empty()) return showStatus(wrong);
   if (state.particle != hold_->particle) return;
   if (!hold_->answered) hold_->place = state.position;  // the centre of the patch, so that a click alone does not pull
   hold_->answered = true;
@@ -130,8 +130,8 @@ void PullTissueTool::update(float, float) {
   if (!hold_) return;
   send(hold_->particle, hold_->target());
   if ((ros::WallTime::now() - hold_->since).toSec() < kAnswerTimeout) return;
-  say("The simulator does not answer on " + state_subscriber_.getTopic() +
-      "; is it paused, or is the tissue fixed there?");
+  showStatus("The simulator does not answer on " + state_subscriber_.getTopic() +
+             "; is it paused, or is the tissue fixed there?");
 }
 
 // Empty if there is tissue to hold, otherwise the reason why not.
@@ -147,7 +147,7 @@ bool PullTissueTool::framePose(Eigen::Isometry3d& pose) {
   FramePose found;
   const std::string wrong = lookUpFrame(*context_, mesh_.frame_id, ros::Time(), found);
   if (!wrong.empty()) {
-    say(wrong);
+    showStatus(wrong);
     return false;
   }
   visual_->setPose(found.position, found.orientation);
@@ -156,7 +156,8 @@ bool PullTissueTool::framePose(Eigen::Isometry3d& pose) {
   return true;
 }
 
-MouseRay PullTissueTool::rayOf(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame, int below) const {
+operating::MouseRay PullTissueTool::rayOf(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame,
+                                          int below) const {
   const Ogre::Ray ray = viewRay(event, event.x, event.y + below);
   const Eigen::Isometry3d inverse = frame.inverse();
   return {inverse * toEigen(ray.getOrigin()), (inverse.linear() * toEigen(ray.getDirection())).normalized()};
@@ -184,7 +185,7 @@ int PullTissueTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
   const bool of_view = event.middle() || event.right() || event.acting_button != Qt::NoButton || event.wheel_delta != 0;
   if (!of_view || event.left() || event.panel->getViewController() == nullptr) return 0;
   event.panel->getViewController()->handleMouseEvent(event);
-  sayHowTo();  // replaces the status text that the view has just set
+  showHowTo();  // replaces the status text that the view has just set
   return Render;
 }
 
@@ -192,10 +193,10 @@ void PullTissueTool::take(const rviz::ViewportMouseEvent& event) {
   letGo();
   Eigen::Isometry3d frame;
   const std::string trouble = findTissue();
-  if (!trouble.empty()) return say(trouble);
+  if (!trouble.empty()) return showStatus(trouble);
   if (!framePose(frame)) return;
-  const auto hit = firstHit(rayOf(event, frame), tissue_.positions, mesh_.particle_triangles);
-  if (!hit) return say("There is no tissue under the mouse; press the left button on the tissue.");
+  const auto hit = operating::firstHit(rayOf(event, frame), tissue_.positions, mesh_.particle_triangles);
+  if (!hit) return showStatus("There is no tissue under the mouse; press the left button on the tissue.");
   Hold hold;
   hold.particle = static_cast<int>(hit->particle);
   const float* place = &tissue_.positions[3 * static_cast<std::size_t>(hit->particle)];
@@ -205,14 +206,14 @@ void PullTissueTool::take(const rviz::ViewportMouseEvent& event) {
   hold_ = hold;
   send(hold.particle, hold.target());
   visual_->showPull(hold.place, hold.target());
-  sayHowTo();
+  showHowTo();
 }
 
 void PullTissueTool::drag(rviz::ViewportMouseEvent& event) {
   Eigen::Isometry3d frame;
   if (!framePose(frame)) return;
   const Eigen::Vector3d along = viewDirection(event, frame);
-  const auto under = meetPlane(rayOf(event, frame), hold_->cursor, along);
+  const auto under = operating::meetPlane(rayOf(event, frame), hold_->cursor, along);
   if (!under) return;
   const bool deeper = event.wheel_delta != 0 || event.shift();
   if (!deeper) {
@@ -220,10 +221,11 @@ void PullTissueTool::drag(rviz::ViewportMouseEvent& event) {
     hold_->cursor = *under;
     return;
   }
-  const Eigen::Vector3d pixel = meetPlane(rayOf(event, frame, 1), hold_->cursor, along).value_or(*under) - *under;
+  const Eigen::Vector3d pixel =
+      operating::meetPlane(rayOf(event, frame, 1), hold_->cursor, along).value_or(*under) - *under;
   const double way = event.wheel_delta != 0 ? kWheelStep * event.wheel_delta : pixel.norm() * (event.last_y - event.y);
   hold_->drag += way * along;
-  hold_->cursor = meetPlane(rayOf(event, frame), hold_->cursor + way * along, along).value_or(hold_->cursor);
+  hold_->cursor = operating::meetPlane(rayOf(event, frame), hold_->cursor + way * along, along).value_or(hold_->cursor);
 }
 
 void PullTissueTool::letGo() {
@@ -231,7 +233,7 @@ void PullTissueTool::letGo() {
   send(-1, Eigen::Vector3d::Zero());
   hold_.reset();
   if (visual_) visual_->hide();
-  if (active_) sayHowTo();
+  if (active_) showHowTo();
 }
 
 void PullTissueTool::send(int particle, const Eigen::Vector3d& target) {
@@ -253,16 +255,17 @@ void PullTissueTool::draw(const Eigen::Vector3d& place, const Eigen::Vector3d& f
   std::snprintf(text, sizeof text,
                 "%.2f N at particle %d. Wheel or Shift: towards you or away. Release the button to let go.",
                 force.norm(), hold_->particle);
-  say(text);
+  showStatus(text);
   context_->queueRender();
 }
 
-void PullTissueTool::say(const std::string& text) {
+void PullTissueTool::showStatus(const std::string& text) {
   setStatus(QString::fromStdString(text));
 }
 
-void PullTissueTool::sayHowTo() {
-  say("Left button: hold and pull the tissue. Wheel or Shift: towards you or away. Middle and right button: move the "
+void PullTissueTool::showHowTo() {
+  showStatus(
+      "Left button: hold and pull the tissue. Wheel or Shift: towards you or away. Middle and right button: move the "
       "view.");
 }
 

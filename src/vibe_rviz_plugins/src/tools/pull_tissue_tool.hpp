@@ -11,9 +11,9 @@
 #include <optional>
 #include <string>
 
-#include "drive/mouse_ray.hpp"
-#include "messages/command_messages.hpp"
 #include "vibe_graphics/geometry/tissue_mesh.hpp"
+#include "vibe_operator/drive/mouse_ray.hpp"
+#include "vibe_operator/messages/command_messages.hpp"
 #endif
 
 namespace rviz {
@@ -63,14 +63,14 @@ class PullTissueTool : public rviz::Tool {
   std::string findTissue();
   bool framePose(Eigen::Isometry3d& pose);
   /// Ray through the mouse, or this number of pixels below it.
-  MouseRay rayOf(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame, int below = 0) const;
+  operating::MouseRay rayOf(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame, int below = 0) const;
   Eigen::Vector3d viewDirection(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame) const;
   void take(const rviz::ViewportMouseEvent& event);
   void drag(rviz::ViewportMouseEvent& event);
   void letGo();
   void send(int particle, const Eigen::Vector3d& target);
-  void say(const std::string& text);
-  void sayHowTo();
+  void showStatus(const std::string& text);
+  void showHowTo();
   void draw(const Eigen::Vector3d& place, const Eigen::Vector3d& force);
 
   rviz::StringProperty* namespace_;

@@ -86,12 +86,12 @@ void EndoscopeViewController::updateScope() {
   FramePose pose;
   const std::string wrong = lookUpFrame(*context_, frame_->getFrameStd(), ros::Time(), pose);
   if (!wrong.empty()) {
-    tell(QString::fromStdString(wrong));
+    showStatus(QString::fromStdString(wrong));
     return;
   }
   camera_->setPosition(pose.position);
   camera_->setOrientation(pose.orientation * graphics::opticalToOgre());
-  if (!broken_) tell("");
+  if (!broken_) showStatus("");
 }
 
 void EndoscopeViewController::bendPicture() {
@@ -102,7 +102,7 @@ void EndoscopeViewController::bendPicture() {
     context_->queueRender();
   } catch (const std::exception& error) {  // std::runtime_error and Ogre::Exception
     broken_ = true;
-    tell(error.what());
+    showStatus(error.what());
   }
 }
 
@@ -114,7 +114,7 @@ void EndoscopeViewController::expose(float passed) {
   picture_->setGain(level ? exposure_.gain() : graphics::AutoExposure::kFixedGain);
 }
 
-void EndoscopeViewController::tell(const QString& text) {
+void EndoscopeViewController::showStatus(const QString& text) {
   const bool changed = status_->getString() != text;
   if (changed) status_->setString(text);
   // other messages replace the status line of rviz, so a fault is repeated

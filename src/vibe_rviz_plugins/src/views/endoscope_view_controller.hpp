@@ -38,7 +38,7 @@ class EndoscopeViewController : public rviz::ViewController {
   void updateScope();
   void bendPicture();
   void expose(float passed);
-  void tell(const QString& text);
+  void showStatus(const QString& text);
 
   rviz::TfFrameProperty* frame_;
   rviz::FloatProperty* field_of_view_;

@@ -89,15 +89,15 @@ TEST_F(DriveOverlayTest, PressedKeysLightUp) {
   DriveHud hud = exampleHud();
   const QImage before = drawnKeys(hud, 1);
   EXPECT_EQ(difference(before, drawnKeys(hud, 1)), 0);
-  for (const KeyBinding& binding : keyBindings()) {
-    if (binding.kind == KeyBinding::Kind::Gear) continue;  // stays lit while it is chosen
+  for (const operating::KeyBinding& binding : operating::keyBindings()) {
+    if (binding.kind == operating::KeyBinding::Kind::Gear) continue;  // stays lit while it is chosen
     hud.keys_down = {binding.key};
     EXPECT_GT(difference(before, drawnKeys(hud, 1)), 1e-4) << "key " << binding.key;
   }
   hud.keys_down.clear();
-  hud.gear = DriveGear::Fast;
+  hud.gear = operating::DriveGear::Fast;
   EXPECT_GT(difference(before, drawnKeys(hud, 1)), 1e-4) << "gear";
-  hud.gear = DriveGear::Normal;
+  hud.gear = operating::DriveGear::Normal;
   hud.keys_down = {Qt::Key_M};
   EXPECT_EQ(difference(before, drawnKeys(hud, 1)), 0) << "a key that drives nothing";
 }

@@ -12,7 +12,7 @@
 #include "panels/panel_style.hpp"
 #include "panels/procedure_tables.hpp"
 #include "panels/status_summary.hpp"
-#include "vibe_rviz_plugins/messages/reference_values.hpp"
+#include "vibe_operator/messages/reference_values.hpp"
 
 namespace vibe::rviz_plugins::widgets_test {
 namespace {
@@ -111,7 +111,7 @@ TEST_F(Widgets, nothingKnownIsNoZero) {
     EXPECT_EQ(textOf(view, name), "\u2013") << name;
   MeasuresView measures_view;
   measures_view.display({});
-  for (const ShownMeasure& measure : measures())
+  for (const operating::ShownMeasure& measure : operating::measures())
     EXPECT_EQ(textOf(measures_view, QString::fromStdString(measure.label)), "\u2013") << measure.label;
 }
 
@@ -129,28 +129,28 @@ TEST_F(Widgets, scenesAreNoMarkup) {
 TEST_F(Widgets, theStripShowsThePhase) {
   PhaseStrip strip;
   strip.resize(300, 24);
-  strip.display(phaseSteps("mark"));
+  strip.display(operating::phaseSteps("mark"));
   EXPECT_EQ(strip.accessibleName(), "Phase: mark");
   const QImage mark = pictureOf(strip);
-  strip.display(phaseSteps("pull"));
+  strip.display(operating::phaseSteps("pull"));
   EXPECT_NE(pictureOf(strip), mark);
-  strip.display(phaseSteps("mark"));
+  strip.display(operating::phaseSteps("mark"));
   EXPECT_EQ(pictureOf(strip), mark);
   EXPECT_LT(strip.minimumSizeHint().width(), 280) << "does not fit into a narrow dock";
 }
 
 TEST_F(Widgets, setsAreRows) {
   SutureTable table;
-  table.display(sutureRows(*session().sutures));
+  table.display(operating::sutureRows(*session().sutures));
   ASSERT_EQ(table.rowCount(), 2);
   EXPECT_EQ(table.item(0, 1)->text(), "7");
   EXPECT_EQ(table.item(0, 5)->text(), "cinched");
   EXPECT_EQ(table.item(1, 5)->text(), "open");
   const int two = table.sizeHint().height();
-  table.display(std::vector<SutureRow>(5));
+  table.display(std::vector<operating::SutureRow>(5));
   EXPECT_GT(table.sizeHint().height(), two);
   const int five = table.sizeHint().height();
-  table.display(std::vector<SutureRow>(1000));
+  table.display(std::vector<operating::SutureRow>(1000));
   EXPECT_LT(table.sizeHint().height(), 3 * five) << "many sets scroll";
   table.display({});
   EXPECT_EQ(table.rowCount(), 0);
@@ -166,14 +166,14 @@ TEST_F(Widgets, aSetShowsWhatWasPlannedAndWhatBothRulesSay) {
   progress.goals[0].pattern = "u";
   SutureTable table;
   table.resize(320, 120);
-  table.display(sutureRows(sutures, &progress));
+  table.display(operating::sutureRows(sutures, &progress));
   const std::vector<std::string> wanted = {"1", "7", "U", "U 99%", "other", "cinched"};
   for (std::size_t column = 0; column < wanted.size(); ++column)
     EXPECT_EQ(table.item(0, static_cast<int>(column))->text().toStdString(), wanted[column]);
   EXPECT_FALSE(table.item(0, 2)->font().bold());
   const QImage as_planned = pictureOf(table);
   progress.goals[0].pattern = "z";
-  table.display(sutureRows(sutures, &progress));
+  table.display(operating::sutureRows(sutures, &progress));
   EXPECT_TRUE(table.item(0, 2)->font().bold()) << "another technique than planned";
   EXPECT_NE(pictureOf(table), as_planned);
   // nothing is cut off in a dock of the usual width
@@ -197,21 +197,22 @@ TEST_F(Widgets, measuresNameTheirSources) {
 TEST_F(Widgets, aBarTellsByShapeToo) {
   RangeBar bar;
   bar.resize(100, 16);
-  const auto grey = [&bar](Rating rating, double value) {
-    bar.display(barShape(kPullingForce, value), rating);
+  const auto grey = [&bar](operating::Rating rating, double value) {
+    bar.display(operating::barShape(operating::kPullingForce, value), rating);
     return pictureOf(bar).convertToFormat(QImage::Format_Alpha8);
   };
-  const QImage within = grey(Rating::Within, 4);
-  EXPECT_NE(within, grey(Rating::Outside, 4)) << "colour alone tells them apart";
-  EXPECT_EQ(within, grey(Rating::Within, 4));
-  EXPECT_NE(within, grey(Rating::Within, 2));
+  const QImage within = grey(operating::Rating::Within, 4);
+  EXPECT_NE(within, grey(operating::Rating::Outside, 4)) << "colour alone tells them apart";
+  EXPECT_EQ(within, grey(operating::Rating::Within, 4));
+  EXPECT_NE(within, grey(operating::Rating::Within, 2));
 }
 
 TEST_F(Widgets, symbolsDifferByShape) {
   const QPalette palette;
   std::vector<QImage> shapes;
-  for (const EventSeverity severity : {EventSeverity::Note, EventSeverity::Success, EventSeverity::Warning,
-                                       EventSeverity::Bleeding, EventSeverity::Harm})
+  for (const operating::EventSeverity severity :
+       {operating::EventSeverity::Note, operating::EventSeverity::Success, operating::EventSeverity::Warning,
+        operating::EventSeverity::Bleeding, operating::EventSeverity::Harm})
     shapes.push_back(symbolOf(severity, palette).pixmap(32, 32).toImage().convertToFormat(QImage::Format_Alpha8));
   for (std::size_t i = 0; i < shapes.size(); ++i)
     for (std::size_t k = 0; k < i; ++k) EXPECT_NE(shapes[i], shapes[k]) << i << " and " << k;
@@ -270,7 +271,8 @@ TEST_F(Widgets, buttonsTellWhatWasPressed) {
   box.findChild<QPushButton*>("control")->click();
   EXPECT_EQ(control, std::vector<bool>{true});
   box.display(true, {}, "You have control.");
-  for (const Command& command : commands()) box.findChild<QPushButton*>(QString::fromStdString(command.label))->click();
+  for (const operating::Command& command : operating::commands())
+    box.findChild<QPushButton*>(QString::fromStdString(command.label))->click();
   EXPECT_EQ(pressed, (std::vector<int>{0, 1, 2, 3, 4, 5}));
   EXPECT_EQ(released, pressed);
   EXPECT_EQ(control.size(), 1u) << "display() is not the user";

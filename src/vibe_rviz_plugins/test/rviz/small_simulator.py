@@ -31,7 +31,6 @@ class SmallSimulator:
             rospy.Subscriber("/scope/servo_jp", JointState, self.take, queue_size=100),
             rospy.Subscriber("/scope/input/joint_states", JointState, self.take, queue_size=100),
             rospy.Subscriber("/suturing_device/input/joint_states", JointState, self.take, queue_size=100),
-            rospy.Subscriber("/scope/measured_js", JointState, self.take_former, queue_size=100),
         ]
         self.last_state = 0.0
         self.ends = threading.Event()
@@ -47,11 +46,6 @@ class SmallSimulator:
     def take(self, message):
         if self.runs:
             self.command.update(zip(message.name, message.position))
-
-    def take_former(self, message):
-        """A driver of the release before; the joints of a tool have efforts."""
-        if not message.effort:
-            self.take(message)
 
     def follow(self):
         for name, goal in list(self.command.items()):

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "input/input_queue.hpp"
 #include "input/tip_velocity.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
 #include "vibe_core/state/state.hpp"
@@ -80,16 +79,23 @@ std::string applyValues(const InputSample& sample, const Model& model, StepInput
   return "";
 }
 
+std::string secondsText(std::int64_t ns) {
+  return std::to_string(ns / 1'000'000'000) + " s";
+}
+
 /// @return a sentence if there was a pull
 std::string letGo(StepInput& input) {
   if (input.pull_particle < 0) return "";
   input.pull_particle = -1;
   input.pull_target.setZero();
-  return "The hand on tissue/pull has been silent for 2 s and lets go; send its target again while it holds.";
+  return "The hand on tissue/pull has been silent for " + secondsText(kPullTimeout) +
+         " and lets go; send its target again while it holds.";
 }
 
-/// @return a sentence if anything was pressed
-std::string releaseButtons(StepInput& input) {
+}  // namespace
+
+std::string releaseSilentButtons(const DueInput& due, StepInput& input) {
+  if (!due.isSilent(InputChannel::Buttons, kButtonTimeout)) return "";
   std::string names;
   for (int b = 0; b < kButtonCount; ++b) {
     if (!input.buttons[b]) continue;
@@ -97,12 +103,10 @@ std::string releaseButtons(StepInput& input) {
     input.buttons[b] = 0;
   }
   if (names.empty()) return "";
-  return "No message has come on scope/buttons for 1 s, so the scope stays where it is and these buttons are "
-         "released: " +
-         names + "; send pressed buttons at 10 Hz.";
+  return "No message has come on scope/buttons for " + secondsText(kButtonTimeout) +
+         ", so the scope stays where it is and these buttons are released: " + names +
+         "; send pressed buttons at 10 Hz.";
 }
-
-}  // namespace
 
 JointMove::JointMove(const JointArray& start, const JointArray& goal, int first, int count,
                      const std::array<JointLimits, kJointCount>& limits, std::int64_t begin)
@@ -121,24 +125,22 @@ void JointMove::apply(std::int64_t stamp, JointArray& joints) const {
   for (int j = first_; j < first_ + count_; ++j) joints[j] = start_[j] + leastJerk(s) * way_[j];
 }
 
-std::vector<std::string> InputInterpreter::apply(std::int64_t stamp, InputQueue& queue, const Model& model,
-                                                 StepInput& input, bool real_time,
-                                                 const std::optional<JointArray>& hand) {
-  if (stamp < queue.now()) endMoves();
-  const double dt = 1e-9 * static_cast<double>(stamp - queue.now());
+std::vector<std::string> InputInterpreter::interpret(const DueInput& due, const Model& model, StepInput& input,
+                                                     const std::optional<JointArray>& hand) {
+  if (due.stamp < due.since) endMoves();
+  const double dt = 1e-9 * static_cast<double>(due.stamp - due.since);
   const JointArray start = hand.value_or(input.joints);
   std::vector<std::string> sentences;
   const auto say = [&sentences](std::string sentence) {
     if (!sentence.empty()) sentences.push_back(std::move(sentence));
   };
-  queue.takeDue(stamp, [&](const InputSample& sample) { say(applySample(sample, stamp, model, start, input)); });
-  applyMoves(stamp, input.joints);
+  for (const InputSample& sample : due.samples) say(applySample(sample, due.stamp, model, start, input));
+  applyMoves(due.stamp, input.joints);
   if (twist_ && model.tool) {
     const JointArray joints = afterTwist(model, start, *twist_, std::clamp(dt, 0.0, kLongestStep));
     std::copy_n(joints.begin(), kScopeJointCount, input.joints.begin());
   }
-  if (queue.isSilent(InputChannel::Pull, kPullTimeout)) say(letGo(input));
-  if (real_time && queue.isSilent(InputChannel::Buttons, kButtonTimeout)) say(releaseButtons(input));
+  if (due.isSilent(InputChannel::Pull, kPullTimeout)) say(letGo(input));
   return sentences;
 }
 

@@ -5,14 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "input/input_queue.hpp"
 #include "input/input_sample.hpp"
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/tool/tool_model.hpp"
 
 namespace vibe::sim {
-
-class InputQueue;
 
 /// A motion of some joints from where they are to a goal, all in the same time: the path of least jerk from rest to
 /// rest (Flash and Hogan 1985), as fast as the limits of the slowest joint allow. A function of time only.
@@ -42,20 +41,22 @@ constexpr std::int64_t kPullTimeout = 2'000'000'000;
 /// the simulator's time].
 constexpr std::int64_t kButtonTimeout = 1'000'000'000;
 
+/// Releases all buttons if none has had a message for kButtonTimeout, where time passes as it does for who presses
+/// them.
+/// @return one sentence that names those that were pressed; empty: none
+std::string releaseSilentButtons(const DueInput& due, StepInput& input);
+
 /// Knows what samples mean to a model: makes the input of a step of those that are due, and keeps moves that are under
 /// way. Belongs to the thread that steps.
 class InputInterpreter {
  public:
-  /// Applies to `input` everything that is due at `stamp`, see InputQueue::takeDue(); the last valid values stay in
-  /// force. Targets of the tip become joints by the tool's inverse kinematics; a pull without a message for
-  /// kPullTimeout ends. A move ends at its goal, when another sample for its joints is applied, or when the clock is
-  /// set back; a velocity of the tip ends in the last two ways.
-  /// @param real_time  release buttons without a message for kButtonTimeout; false where time does not pass as it does
-  ///                   for the publishers
-  /// @param hand       where the hand is, from where a move begins; empty: where `input` says
-  /// @return one sentence per sample that the model cannot use and per input that has fallen silent
-  std::vector<std::string> apply(std::int64_t stamp, InputQueue& queue, const Model& model, StepInput& input,
-                                 bool real_time = true, const std::optional<JointArray>& hand = {});
+  /// Applies to `input` what is due; the last valid values stay in force. Targets of the tip become joints by the
+  /// tool's inverse kinematics; a pull without a message for kPullTimeout ends. A move ends at its goal, when another
+  /// sample for its joints is applied, or when the clock is set back; a velocity of the tip ends in the last two ways.
+  /// @param hand  where the hand is, from where a move begins; empty: where `input` says
+  /// @return one sentence per sample that the model cannot use, and one if a pull has fallen silent
+  std::vector<std::string> interpret(const DueInput& due, const Model& model, StepInput& input,
+                                     const std::optional<JointArray>& hand = {});
 
   /// Whether a move of the scope or of the suturing device is under way.
   bool moves(InputChannel channel) const { return moves_[static_cast<std::size_t>(channel)].has_value(); }

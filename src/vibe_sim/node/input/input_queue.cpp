@@ -4,7 +4,16 @@
 
 namespace vibe::sim {
 
-InputQueue::InputQueue() = default;
+namespace {
+
+// More at once, as after a stall, cost a little memory once.
+constexpr std::size_t kUsuallyDue = 256;
+
+}  // namespace
+
+InputQueue::InputQueue() {
+  due_.samples.reserve(kUsuallyDue);
+}
 
 bool InputQueue::push(const InputSample& sample) {
   const auto channel = static_cast<std::size_t>(sample.channel);
@@ -72,9 +81,22 @@ void InputQueue::setBack(std::int64_t stamp) {
   applied_until_ = stamp;
 }
 
-bool InputQueue::isSilent(InputChannel channel, std::int64_t timeout) const {
-  const Queue& queue = queues_[static_cast<std::size_t>(channel)];
-  return queue.waiting.empty() && applied_until_ - queue.last_due > timeout;
+const DueInput& InputQueue::takeDue(std::int64_t stamp) {
+  collect();
+  due_.since = applied_until_;
+  due_.stamp = stamp;
+  due_.samples.clear();
+  if (stamp < applied_until_) setBack(stamp);
+  for (std::size_t channel = 0; channel < queues_.size(); ++channel) {
+    Queue& queue = queues_[channel];
+    while (!queue.waiting.empty() && queue.waiting.front().stamp <= stamp) {
+      due_.samples.push_back(queue.waiting.front());
+      dropFirst(queue, stamp);
+    }
+    due_.silence[channel] = queue.waiting.empty() ? stamp - queue.last_due : 0;
+  }
+  applied_until_ = stamp;
+  return due_;
 }
 
 void InputQueue::clear() {

@@ -5,11 +5,23 @@
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cstdint>
 #include <string>
-#include <utility>
+#include <vector>
 
 #include "input/input_sample.hpp"
 
 namespace vibe::sim {
+
+/// What is due at a step.
+struct DueInput {
+  std::int64_t since = 0, stamp = 0;  ///< of the step before, 0: none; of this step [ns]
+  std::vector<InputSample> samples;   ///< channel by channel, each in the order of stamps
+  /// How long no sample of a channel was due; 0 while one waits: who has promised a later sample is not silent [ns].
+  std::array<std::int64_t, kInputChannelCount> silence{};
+
+  bool isSilent(InputChannel channel, std::int64_t timeout) const {
+    return silence[static_cast<std::size_t>(channel)] > timeout;
+  }
+};
 
 /// Holds what has arrived until the step for which it is due. What a sample means is the InputInterpreter's.
 ///
@@ -38,16 +50,10 @@ class InputQueue {
   /// Names of the channels for which that is not so, for a message.
   std::string missingAt(std::int64_t stamp);
 
-  /// Takes out everything that is due at `stamp`: channel by channel, each in the order of stamps; samples from the
-  /// past count as of now, in the order of arrival. A `stamp` before the last one means that the clock was set back:
-  /// what waits is due at once.
-  /// @param take  is called with each sample
-  template <typename Take>
-  void takeDue(std::int64_t stamp, Take take);
-
-  /// Whether no sample of the channel was due in a time [ns] up to now(), and none waits: one that has promised a later
-  /// sample is not silent.
-  bool isSilent(InputChannel channel, std::int64_t timeout) const;
+  /// Takes out everything that is due at `stamp`; samples from the past count as of now, in the order of arrival. A
+  /// `stamp` before the last one means that the clock was set back: what waits is due at once.
+  /// @return valid until the next call
+  const DueInput& takeDue(std::int64_t stamp);
 
   /// Forgets everything, e.g. because time starts again.
   void clear();
@@ -71,23 +77,11 @@ class InputQueue {
 
   // of the thread that steps
   std::array<Queue, kInputChannelCount> queues_;
+  DueInput due_;
 
   void insert(const InputSample& sample);
   void dropFirst(Queue& queue, std::int64_t stamp);
   void setBack(std::int64_t stamp);
 };
-
-template <typename Take>
-void InputQueue::takeDue(std::int64_t stamp, Take take) {
-  collect();
-  if (stamp < applied_until_) setBack(stamp);
-  for (Queue& queue : queues_) {
-    while (!queue.waiting.empty() && queue.waiting.front().stamp <= stamp) {
-      take(std::as_const(queue.waiting.front()));
-      dropFirst(queue, stamp);
-    }
-  }
-  applied_until_ = stamp;
-}
 
 }  // namespace vibe::sim

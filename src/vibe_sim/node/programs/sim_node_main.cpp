@@ -65,7 +65,7 @@ int run() {
   // Not only for people: the first log message makes roscpp register a parameter at the master, and if that were the
   // message about our own shutdown, the master would take us for the newest node of this name and stop the real one.
   ROS_INFO_STREAM("Simulating '" << model->scene.name << "' with " << model->particle_count << " particles.");
-  vibe::ros_utils::ParameterReader(ros::NodeHandle("~")).tell();
+  vibe::ros_utils::ParameterReader(ros::NodeHandle("~")).log();
   sim::InputQueue queue;
   sim::Publishers publishers(handle, parameters.time_source == sim::TimeSource::Sim);
   sim::SimulationThread thread(parameters, made, queue, publishers);

@@ -13,8 +13,6 @@
 #include <ros/publisher.h>
 #include <rosbag/bag.h>
 
-#include "vibe_ros_utils/former_names.hpp"
-
 namespace vibe::sim {
 
 /// Queue of a topic of small messages: long, because a simulation that runs faster than the wall clock must not lose
@@ -54,16 +52,13 @@ struct BagTarget {
 class MessageSink {
  public:
   MessageSink() = default;
-  /// @param former  the same under a former name, or empty
-  explicit MessageSink(ros::Publisher publisher, ros::Publisher former = {})
-      : publisher_(std::move(publisher)), former_(std::move(former)) {}
+  explicit MessageSink(ros::Publisher publisher) : publisher_(std::move(publisher)) {}
   MessageSink(BagTarget& target, std::string topic) : target_(&target), topic_(std::move(topic)) {}
 
   template <class M>
   void publish(const M& message) const {
     if (target_ == nullptr) {
       if (publisher_) publisher_.publish(message);
-      if (former_) former_.publish(message);
     } else if (!topic_.empty()) {
       target_->bag.write(topic_, target_->time, message);
     }
@@ -71,11 +66,11 @@ class MessageSink {
 
   std::uint32_t getNumSubscribers() const {
     if (target_ != nullptr) return topic_.empty() ? 0 : 1;
-    return (publisher_ ? publisher_.getNumSubscribers() : 0) + (former_ ? former_.getNumSubscribers() : 0);
+    return publisher_ ? publisher_.getNumSubscribers() : 0;
   }
 
  private:
-  ros::Publisher publisher_, former_;
+  ros::Publisher publisher_;
   BagTarget* target_ = nullptr;
   std::string topic_;
 };
@@ -92,29 +87,23 @@ class SinkSource {
   bool isGraph() const { return handle_.has_value(); }
 
   /// @param on_connect  called from the thread of ROS when somebody begins to listen; never for a bag
-  /// @param own         subscribers that are this program
   template <class M>
   MessageSink advertise(const std::string& topic, std::uint32_t queue, Kept kept = kKeptWhole, bool latch = false,
-                        const std::function<void()>& on_connect = {}, std::uint32_t own = 0) {
-    made_.push_back({make<M>(topic, queue, latch, on_connect), own});
+                        const std::function<void()>& on_connect = {}) {
+    made_.push_back(make<M>(topic, queue, latch, on_connect));
     if (kept.period != 0 || kept.replayed) rules_.push_back({topic, kept.period, kept.replayed});
-    return made_.back().sink;
+    return made_.back();
   }
 
-  /// Whether anybody else listens to any of them.
+  /// Whether anybody listens to any of them.
   bool anyIsHeard() const {
     return std::any_of(made_.begin(), made_.end(),
-                       [](const Made& made) { return made.sink.getNumSubscribers() > made.own; });
+                       [](const MessageSink& sink) { return sink.getNumSubscribers() > 0; });
   }
   /// Of the topics that are not kept whole.
   const std::vector<RecordingRule>& recordingRules() const { return rules_; }
 
  private:
-  struct Made {
-    MessageSink sink;
-    std::uint32_t own;
-  };
-
   template <class M>
   MessageSink make(const std::string& topic, std::uint32_t queue, bool latch, const std::function<void()>& on_connect) {
     if (target_ != nullptr) {
@@ -125,13 +114,12 @@ class SinkSource {
     ros::SubscriberStatusCallback connected;
     if (on_connect) connected = [on_connect](const ros::SingleSubscriberPublisher&) { on_connect(); };
     return MessageSink(
-        handle_->advertise<M>(topic, queue, connected, ros::SubscriberStatusCallback(), ros::VoidConstPtr(), latch),
-        ros_utils::advertiseFormer<M>(*handle_, topic, queue, latch));
+        handle_->advertise<M>(topic, queue, connected, ros::SubscriberStatusCallback(), ros::VoidConstPtr(), latch));
   }
 
   std::optional<ros::NodeHandle> handle_;
   BagTarget* target_ = nullptr;
-  std::vector<Made> made_;
+  std::vector<MessageSink> made_;
   std::vector<RecordingRule> rules_;
 };
 

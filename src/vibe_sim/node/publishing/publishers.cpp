@@ -64,8 +64,7 @@ std::vector<StepTopic> toolTopics(SinkSource& sinks) {
 }  // namespace
 
 ArmPublishers::ArmPublishers(SinkSource& sinks)
-    // the simulator itself listens to the first, since devices of the release before publish there (Inputs)
-    : scope_(sinks.advertise<sensor_msgs::JointState>("scope/measured_js", kSmallQueue, kLeftToReplay, false, {}, 1)),
+    : scope_(sinks.advertise<sensor_msgs::JointState>("scope/measured_js", kSmallQueue, kLeftToReplay)),
       suturing_device_(
           sinks.advertise<sensor_msgs::JointState>("suturing_device/measured_js", kSmallQueue, kLeftToReplay)),
       wall_(sinks.advertise<geometry_msgs::PoseStamped>("wall/measured_cp", kSmallQueue, kLeftToReplay)),

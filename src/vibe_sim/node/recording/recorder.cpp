@@ -12,7 +12,6 @@
 #include "recording/bag_name.hpp"
 #include "recording/recording.hpp"
 #include "vibe_core/program/error.hpp"
-#include "vibe_ros_utils/former_names.hpp"
 
 namespace vibe::sim {
 
@@ -116,7 +115,7 @@ void Recorder::subscribe(const ros::master::TopicInfo& topic) {
   const RecordingRule* rule =
       depth_ == RecordingDepth::Everything ? nullptr : recordingRule(topic.name, topic.datatype, simulators_);
   ros::Subscriber& subscriber = subscribers_[topic.name];
-  if ((rule != nullptr && rule->period == kNever) || ros_utils::isFormerOutput(topic.name)) return;
+  if (rule != nullptr && rule->period == kNever) return;
   if (rule != nullptr) thinned_[topic.name].period = rule->period;
   ros::SubscribeOptions options;
   options.topic = topic.name;

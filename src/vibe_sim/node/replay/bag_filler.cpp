@@ -10,7 +10,6 @@
 #include "recording/bag_name.hpp"
 #include "recording/recording.hpp"
 #include "vibe_core/program/error.hpp"
-#include "vibe_ros_utils/former_names.hpp"
 
 namespace vibe::sim {
 
@@ -19,17 +18,6 @@ namespace {
 bool isReplayed(const std::string& topic, const std::string& prefix) {
   const RecordingRule* rule = recordingRule(topic, "", {prefix});
   return rule != nullptr && rule->replayed;
-}
-
-/// The whole name that a recorded topic has in this release.
-std::string presentName(const rosbag::MessageInstance& message, const std::string& prefix) {
-  const std::string topic = message.getTopic();
-  if (topic.compare(0, prefix.size(), prefix) != 0) return topic;
-  const std::string name = topic.substr(prefix.size()), input = ros_utils::presentInput(name);
-  if (input == name) return prefix + ros_utils::presentOutput(name);
-  const auto joints = message.instantiate<sensor_msgs::JointState>();
-  const bool is_feedback = joints && name == "scope/measured_js" && !ros_utils::isFormerInput(*joints);
-  return prefix + (is_feedback ? name : input);
 }
 
 bool hasClock(const Recording& recording) {
@@ -156,7 +144,7 @@ void BagFiller::finish(const TimedSimulation& simulation) {
   try {
     const auto all = recording_.view([](const rosbag::ConnectionInfo*) { return true; });
     for (const rosbag::MessageInstance& message : *all) {
-      const std::string topic = presentName(message, recording_.prefix());
+      const std::string topic = message.getTopic();
       if (!isReplayed(topic, recording_.prefix()) && filter_.has(message))
         bag_->write(topic, message.getTime(), message);
     }

@@ -1,15 +1,8 @@
 #include "simulator/inputs.hpp"
 
-#include <ros/names.h>
-#include <ros/this_node.h>
-
-#include <algorithm>
-#include <type_traits>
-
 #include "conversions/input_message.hpp"
 #include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/program/error.hpp"
-#include "vibe_ros_utils/former_names.hpp"
 
 namespace vibe::sim {
 
@@ -18,23 +11,7 @@ namespace {
 constexpr double kOwnerPatience = 2;   // a source that is silent for longer has given the topic up [s]
 constexpr double kOrphanPeriod = 0.1;  // between looks whether the source of a velocity is still there [s]
 const char* const kVelocity = "scope/servo_cv";
-constexpr std::uint32_t kInputQueue = 10000;        // none may be lost in lock-step; the queue bounds what really waits
-const std::string kFeedback = "scope/measured_js";  // of this node; in the release before the topic of devices
-
-/// Whether a message by a former name is meant as an input.
-template <typename Message>
-bool isInput(const std::string& former, const ros::MessageEvent<const Message>& event) {
-  if constexpr (std::is_same_v<Message, sensor_msgs::JointState>) {
-    if (former != kFeedback) return true;
-    if (event.getPublisherName() == ros::this_node::getName()) return false;
-    if (ros_utils::isFormerInput(*event.getMessage())) return true;
-    ROS_WARN_STREAM_ONCE("A message on " << former << " from " << event.getPublisherName()
-                                         << " is ignored: it has efforts, as the joints of a simulated scope have; "
-                                            "a device publishes scope/input/joint_states.");
-    return false;
-  }
-  return true;
-}
+constexpr std::uint32_t kInputQueue = 10000;  // none may be lost in lock-step; the queue bounds what really waits
 
 }  // namespace
 
@@ -48,26 +25,27 @@ Inputs::Inputs(const ros::NodeHandle& handle, InputQueue& queue, Publishers& pub
       arrived_(std::move(arrived)) {
   using sensor_msgs::JointState;
   handle_.setCallbackQueue(&callbacks_);
-  listen<JointState>("scope/input/joint_states", [](const JointState& message) {
+  subscribe<JointState>("scope/input/joint_states", [](const JointState& message) {
     return readJoints(message, InputChannel::Scope, JointSource::Measured);
   });
-  listen<JointState>("scope/servo_jp", [](const JointState& message) {
+  subscribe<JointState>("scope/servo_jp", [](const JointState& message) {
     return readJoints(message, InputChannel::Scope, JointSource::Commanded);
   });
-  listen<geometry_msgs::PoseStamped>("scope/servo_cp", readTipTarget);
-  listen<geometry_msgs::TwistStamped>(kVelocity, readTipVelocity);
-  listen<JointState>("suturing_device/input/joint_states", [](const JointState& message) {
+  subscribe<geometry_msgs::PoseStamped>("scope/servo_cp", readTipTarget);
+  subscribe<geometry_msgs::TwistStamped>(kVelocity, readTipVelocity);
+  subscribe<JointState>("suturing_device/input/joint_states", [](const JointState& message) {
     return readJoints(message, InputChannel::SuturingDevice, JointSource::Measured);
   });
-  listen<JointState>("suturing_device/servo_jp", [](const JointState& message) {
+  subscribe<JointState>("suturing_device/servo_jp", [](const JointState& message) {
     return readJoints(message, InputChannel::SuturingDevice, JointSource::Commanded);
   });
-  listen<JointState>("scope/move_jp", [](const JointState& message) { return readMove(message, InputChannel::Scope); });
-  listen<geometry_msgs::PoseStamped>("scope/move_cp", readTipMove);
-  listen<JointState>("suturing_device/move_jp",
-                     [](const JointState& message) { return readMove(message, InputChannel::SuturingDevice); });
-  listen<sensor_msgs::Joy>("scope/buttons", readButtons);
-  listen<vibe_msgs::TissuePull>("tissue/pull", readPull);
+  subscribe<JointState>("scope/move_jp",
+                        [](const JointState& message) { return readMove(message, InputChannel::Scope); });
+  subscribe<geometry_msgs::PoseStamped>("scope/move_cp", readTipMove);
+  subscribe<JointState>("suturing_device/move_jp",
+                        [](const JointState& message) { return readMove(message, InputChannel::SuturingDevice); });
+  subscribe<sensor_msgs::Joy>("scope/buttons", readButtons);
+  subscribe<vibe_msgs::TissuePull>("tissue/pull", readPull);
   orphan_timer_ = handle_.createWallTimer(ros::WallDuration(kOrphanPeriod), &Inputs::stopOrphan, this);
   spinner_ = std::make_unique<ros::AsyncSpinner>(1, &callbacks_);
   spinner_->start();
@@ -78,39 +56,14 @@ Inputs::~Inputs() {
 }
 
 template <typename Message>
-void Inputs::listen(const std::string& name, std::function<InputSample(const Message&)> read) {
-  topics_[name].subscriber =
-      subscribe<Message>(name, [this, name, read](const ros::MessageEvent<const Message>& event) {
-        receive(name, event.getPublisherName(), [&] { return read(*event.getMessage()); });
-      });
-  listenToFormer<Message>(name, read);
-}
-
-template <typename Message>
-ros::Subscriber Inputs::subscribe(const std::string& name,
-                                  std::function<void(const ros::MessageEvent<const Message>&)> take) {
+void Inputs::subscribe(const std::string& name, std::function<InputSample(const Message&)> read) {
+  using Event = const ros::MessageEvent<const Message>&;
   ros::SubscribeOptions options;
-  options.template initByFullCallbackType<const ros::MessageEvent<const Message>&>(name, kInputQueue, take);
-  options.transport_hints = ros::TransportHints().tcpNoDelay();
-  return handle_.subscribe(options);
-}
-
-template <typename Message>
-void Inputs::listenToFormer(const std::string& name, std::function<InputSample(const Message&)> read) {
-  const std::string former = ros_utils::formerInput(name);
-  if (former.empty()) return;
-  const auto take = [this, name, former, read](const ros::MessageEvent<const Message>& event) {
-    if (!isInput(former, event)) return;
-    ros_utils::warnOfFormerInput(event.getPublisherName(), former);
+  options.template initByFullCallbackType<Event>(name, kInputQueue, [this, name, read](Event event) {
     receive(name, event.getPublisherName(), [&] { return read(*event.getMessage()); });
-  };
-  topics_[name].former = subscribe<Message>(former, take);
-}
-
-std::uint32_t Inputs::Topic::publishers() const {
-  const std::uint32_t own = former && former.getTopic() == ros::names::resolve(kFeedback) ? 1 : 0;
-  const std::uint32_t all = subscriber.getNumPublishers() + former.getNumPublishers();
-  return all - std::min(own, all);
+  });
+  options.transport_hints = ros::TransportHints().tcpNoDelay();
+  topics_[name].subscriber = handle_.subscribe(options);
 }
 
 void Inputs::receive(const std::string& name, const std::string& publisher, const std::function<InputSample()>& read) {
@@ -139,7 +92,7 @@ void Inputs::take(const std::string& name, Topic& topic, const std::string& publ
 
 bool Inputs::obeys(const std::string& name, Topic& topic, const std::string& publisher) {
   const double now = steadyTime();
-  const bool owned = !topic.owner.empty() && topic.owner != publisher && topic.publishers() > 1 &&
+  const bool owned = !topic.owner.empty() && topic.owner != publisher && topic.subscriber.getNumPublishers() > 1 &&
                      now - topic.last_message < kOwnerPatience;
   if (owned) {
     warnThrottled(topic, "Two nodes publish " + name + ": " + topic.owner + " is obeyed and " + publisher +
@@ -151,7 +104,7 @@ bool Inputs::obeys(const std::string& name, Topic& topic, const std::string& pub
 
 void Inputs::stopOrphan(const ros::WallTimerEvent&) {
   Topic& topic = topics_.at(kVelocity);
-  if (topic.owner.empty() || topic.publishers() > 0) return;
+  if (topic.owner.empty() || topic.subscriber.getNumPublishers() > 0) return;
   topic.owner.clear();
   InputSample stop;
   stop.target = ScopeTarget::VelocityInWorld;

@@ -35,12 +35,9 @@ class Inputs {
   /// A topic has one source at a time: two that disagree would make the scope jump between two positions.
   struct Topic {
     ros::Subscriber subscriber;
-    ros::Subscriber former;      // the same topic by its former name; empty if it had none
     std::string owner;           // name of the node that is obeyed: the last one of which a message was taken
     double last_message = 0;     // of the owner, steady time [s]
     double last_warning = -1e9;  // steady time [s]
-
-    std::uint32_t publishers() const;
   };
 
   ros::NodeHandle handle_;
@@ -55,12 +52,7 @@ class Inputs {
   std::unique_ptr<ros::AsyncSpinner> spinner_;
 
   template <typename Message>
-  void listen(const std::string& name, std::function<InputSample(const Message&)> read);
-  template <typename Message>
-  ros::Subscriber subscribe(const std::string& name, std::function<void(const ros::MessageEvent<const Message>&)> take);
-  /// By its former name, if it had another.
-  template <typename Message>
-  void listenToFormer(const std::string& name, std::function<InputSample(const Message&)> read);
+  void subscribe(const std::string& name, std::function<InputSample(const Message&)> read);
   void receive(const std::string& name, const std::string& publisher, const std::function<InputSample()>& read);
   bool obeys(const std::string& name, Topic& topic, const std::string& publisher);
   void take(const std::string& name, Topic& topic, const std::string& publisher, const InputSample& sample);

@@ -2,10 +2,7 @@
 
 #include <ros/param.h>
 
-#include <ros/console.h>
-
 #include "vibe_core/program/error.hpp"
-#include "vibe_ros_utils/former_names.hpp"
 #include "vibe_ros_utils/parameter_reader.hpp"
 
 namespace vibe::sim {
@@ -24,10 +21,6 @@ std::optional<InputChannel> readFollow(ros_utils::ParameterReader& reader) {
   std::string topic;
   reader.read("follow", topic);
   if (topic.empty()) return std::nullopt;
-  if (const std::string present = ros_utils::presentInput(topic); present != topic) {
-    ROS_WARN_STREAM("Parameter ~follow is '" << topic << "', the former name of " << present << "; set it to that.");
-    topic = present;
-  }
   for (const InputChannel channel : {InputChannel::Scope, InputChannel::SuturingDevice})
     if (topic == toString(channel)) return channel;
   throw Error("Parameter ~follow is '" + topic +

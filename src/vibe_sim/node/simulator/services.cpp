@@ -8,14 +8,11 @@
 #include <vibe_msgs/StateCommand.h>
 #include <vibe_msgs/Step.h>
 
-#include "vibe_ros_utils/former_names.hpp"
-
 namespace vibe::sim {
 
 namespace {
 
 constexpr std::uint32_t kCommandQueue = 10;
-using Event = ros::MessageEvent<const vibe_msgs::StateCommand>;
 
 // Both tools are always powered and homed, and there is one pause, that of the simulation.
 void obeyStateCommand(SimulationThread& thread, const std::string& topic, const std::string& command) {
@@ -46,13 +43,11 @@ void Services::offer(const std::string& name, Work work) {
 
 Services::Services(const ros::NodeHandle& handle, SimulationThread& thread) : handle_(handle) {
   handle_.setCallbackQueue(&queue_);
-  const std::string device = "suturing_device/state_command", former = ros_utils::formerInput(device);
-  for (const std::string& topic : {std::string("scope/state_command"), device, former})
+  for (const char* const topic : {"scope/state_command", "suturing_device/state_command"})
     commands_.push_back(handle_.subscribe<vibe_msgs::StateCommand>(
-        topic, kCommandQueue, boost::function<void(const Event&)>([&thread, topic, former](const Event& event) {
-          if (topic == former) ros_utils::warnOfFormerInput(event.getPublisherName(), former);
-          obeyStateCommand(thread, topic, event.getMessage()->string);
-        })));
+        topic, kCommandQueue, [&thread, topic](const vibe_msgs::StateCommand::ConstPtr& command) {
+          obeyStateCommand(thread, topic, command->string);
+        }));
   offer<std_srvs::SetBool>("pause",
                            [&thread](const std_srvs::SetBool::Request& r) { return thread.setPaused(r.data); });
   offer<vibe_msgs::Step>("step", [&thread](const vibe_msgs::Step::Request& r) { return thread.takeSteps(r.n); });

@@ -203,10 +203,7 @@ void SimulationThread::takeStep() {
   const std::int64_t now = ros_utils::wallTime();
   beginTiming(now, real_time);
   pace_.begin(now);
-  StepInput input = simulation_.input();
-  for (const std::string& sentence : interpreter_.apply(pace_.inputTime(now, queue_.now()), queue_, simulation_.model(),
-                                                        input, real_time, simulation_.state().joints))
-    warnThrottled(sentence);
+  const StepInput input = nextInput(pace_.inputTime(now, queue_.now()), real_time);
   status_.scope_moves = interpreter_.moves(InputChannel::Scope);
   status_.suturing_device_moves = interpreter_.moves(InputChannel::SuturingDevice);
   simulation_.addWarnings(publishers_.takeWarnings());
@@ -226,6 +223,17 @@ void SimulationThread::takeStep() {
     publishers_.procedureState(simulation_, status_);  // it is sent once a second, and time now stands still
     answerSteps({true, "Took " + std::to_string(steps_asked_) + " steps."});
   }
+}
+
+StepInput SimulationThread::nextInput(std::int64_t stamp, bool real_time) {
+  const DueInput& due = queue_.takeDue(stamp);
+  StepInput input = simulation_.input();
+  for (const std::string& sentence :
+       interpreter_.interpret(due, simulation_.model(), input, simulation_.state().joints))
+    warnThrottled(sentence);
+  const std::string released = real_time ? releaseSilentButtons(due, input) : "";
+  if (!released.empty()) warnThrottled(released);
+  return input;
 }
 
 void SimulationThread::beginTiming(std::int64_t now, bool real_time) {

@@ -77,6 +77,7 @@ class SimulationThread {
   Hold findDeadline();
   void wait(Hold hold);
   void takeStep();
+  StepInput nextInput(std::int64_t stamp, bool real_time);
   void beginTiming(std::int64_t now, bool real_time);
   void endTiming();
   void warnThrottled(const std::string& sentence);

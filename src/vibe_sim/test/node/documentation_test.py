@@ -50,24 +50,13 @@ class DocumentationTest(unittest.TestCase):
         topics = {topic for topic, nodes in registrations if "/sim_node" in nodes} - NOT_OURS
         return {topic if topic == "/clock" else topic[1:]: types[topic] for topic in topics}
 
-    def without_former(self, topics, way):
-        """Former names of topics have a page of their own."""
-        with open(os.path.join(os.path.dirname(os.path.realpath(DOCS)), "upgrading.md"), encoding="utf-8") as text:
-            rows = re.findall(r"^\| (`[^|]*) \| [^|]* \| `sim_node`", text.read(), re.MULTILINE)
-        names = {name for row in rows for name in re.findall(r"`([^`]+)`", row)}
-        former = {topic for topic in topics if topic.startswith("overstitch/") or "simulated" in topic}
-        former |= {"scope/measured_js"} if way == "subscribed" else set()
-        self.assertEqual(former - names, set())
-        return {topic: kind for topic, kind in topics.items() if topic not in former}
-
     def test_published_topics(self):
-        running = self.without_former(self.topics_of_node(self.published), "published")
+        running = self.topics_of_node(self.published)
         self.assertEqual(rows_of(self.text, "Published topics"), running)
 
     def test_subscribed_topics(self):
         running = self.topics_of_node(self.subscribed)
         running.pop("/clock", None)  # every node subscribes to it with use_sim_time
-        running = self.without_former(running, "subscribed")
         self.assertEqual(rows_of(self.text, "Subscribed topics"), running)
 
     def test_services(self):

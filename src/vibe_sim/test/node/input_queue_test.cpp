@@ -48,7 +48,11 @@ class InputQueueTest : public testing::Test {
   Model model;  // without a tool
   StepInput input;
   std::vector<std::string> apply(std::int64_t stamp, bool real_time = true) {
-    return interpreter.apply(stamp, queue, model, input, real_time);
+    const DueInput& due = queue.takeDue(stamp);
+    std::vector<std::string> sentences = interpreter.interpret(due, model, input);
+    const std::string released = real_time ? releaseSilentButtons(due, input) : "";
+    if (!released.empty()) sentences.push_back(released);
+    return sentences;
   }
 };
 
@@ -189,7 +193,9 @@ class PullQueueTest : public testing::Test {
   InputQueue queue;
   InputInterpreter interpreter;
   StepInput input;
-  std::vector<std::string> apply(std::int64_t stamp) { return interpreter.apply(stamp, queue, *world.model, input); }
+  std::vector<std::string> apply(std::int64_t stamp) {
+    return interpreter.interpret(queue.takeDue(stamp), *world.model, input);
+  }
 };
 
 TEST_F(PullQueueTest, aPullIsLatchedLikeEveryInput) {

@@ -85,11 +85,11 @@ class MoveQueueTest : public testing::Test {
 TEST_F(MoveQueueTest, BeginsWhereTheHandIsAndNotWhereItWasSentTo) {
   input.joints[Insertion] = 0.2;
   send(InputChannel::Scope, 0.1, true);
-  interpreter.apply(1000, queue, model, input, true, JointArray{0.05});
+  interpreter.interpret(queue.takeDue(1000), model, input, JointArray{0.05});
   EXPECT_EQ(input.joints[Insertion], 0.05);
   EXPECT_TRUE(interpreter.moves(InputChannel::Scope));
   EXPECT_FALSE(interpreter.moves(InputChannel::SuturingDevice));
-  interpreter.apply(20'000 * kMillisecond, queue, model, input);
+  interpreter.interpret(queue.takeDue(20'000 * kMillisecond), model, input);
   EXPECT_NEAR(input.joints[Insertion], 0.1, 1e-15);
   EXPECT_FALSE(interpreter.moves(InputChannel::Scope));
 }
@@ -97,9 +97,9 @@ TEST_F(MoveQueueTest, BeginsWhereTheHandIsAndNotWhereItWasSentTo) {
 TEST_F(MoveQueueTest, TheScopeAndTheDeviceMoveIndependently) {
   send(InputChannel::Scope, 0.1, true);
   send(InputChannel::SuturingDevice, 0.01, true);
-  interpreter.apply(1000, queue, model, input);
+  interpreter.interpret(queue.takeDue(1000), model, input);
   send(InputChannel::Scope, 0.02, false);
-  interpreter.apply(2000, queue, model, input);
+  interpreter.interpret(queue.takeDue(2000), model, input);
   EXPECT_EQ(input.joints[Insertion], 0.02);
   EXPECT_FALSE(interpreter.moves(InputChannel::Scope));
   EXPECT_TRUE(interpreter.moves(InputChannel::SuturingDevice));
@@ -110,7 +110,7 @@ TEST_F(MoveQueueTest, TheScopeAndTheDeviceMoveIndependently) {
 TEST_F(MoveQueueTest, AMoveWithoutAScopeIsASentence) {
   model.tool.reset();
   send(InputChannel::SuturingDevice, 0.1, true);
-  const std::vector<std::string> sentences = interpreter.apply(1000, queue, model, input);
+  const std::vector<std::string> sentences = interpreter.interpret(queue.takeDue(1000), model, input);
   ASSERT_EQ(sentences.size(), 1u);
   EXPECT_EQ(sentences[0].rfind("suturing_device/move_jp", 0), 0u);
   EXPECT_FALSE(interpreter.moves(InputChannel::SuturingDevice));

@@ -102,23 +102,6 @@ class RecordTest(unittest.TestCase):
             messages = sum(len(message[1]) for _, message, _ in bag.read_messages(raw=True))
         self.assertLess(os.path.getsize(self.bag), 0.7 * messages)  # which a bag of short chunks exceeds
 
-    def test_2_a_recording_of_the_release_before_is_the_same(self):
-        """Its topics had other names, one of them that of another topic of today."""
-        path, filled = (os.path.join(self.folder, name) for name in ("before.bag", "before_filled.bag"))
-        former = {"/scope/input/joint_states": "/scope/measured_js"}
-        with rosbag.Bag(self.bag) as source, rosbag.Bag(path, "w") as target:
-            for topic, message, time in source.read_messages(raw=True):
-                target.write(former.get(topic, topic).replace("suturing_device", "overstitch"), message, time, raw=True)
-        self.assertEqual(count(path, "/scope/input/joint_states"), 0)
-        self.assertGreater(count(path, "/overstitch/operating_state"), 0)
-        status, sentence = replay(path, "--fill", filled)
-        self.assertEqual(status, 0, sentence)
-        self.assertTrue(sentence.startswith("the same: all"), sentence)
-        for topic in ("/scope/input/joint_states", "/suturing_device/operating_state"):
-            self.assertEqual(count(filled, topic), count(self.bag, topic), topic)
-        self.assertGreaterEqual(count(filled, "/scope/measured_js"), count(filled, "/applied_input"))
-        self.assertEqual(count(filled, "/overstitch/operating_state"), 0)
-
     def test_3_a_killed_recorder_loses_the_last_chunk_only(self):
         path = os.path.join(self.folder, "killed.bag")
         recorder = self.start(path)

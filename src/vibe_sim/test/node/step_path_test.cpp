@@ -72,7 +72,9 @@ class StepPath : public ::testing::Test {
   void step() {
     stamp += kPeriod;
     StepInput input = simulation.input();
-    interpreter.apply(stamp, queue, simulation.model(), input, true, simulation.state().joints);
+    const DueInput& due = queue.takeDue(stamp);
+    interpreter.interpret(due, simulation.model(), input, simulation.state().joints);
+    releaseSilentButtons(due, input);
     simulation.setInput(input);
     simulation.step();
   }
@@ -149,7 +151,7 @@ TEST_F(StepPath, SamplesOfAnotherThreadAllArrive) {
   StepInput input;
   double last = 0;
   for (std::int64_t now = 0; last < 1e-6 * kCount - 1e-9; now += 7) {
-    interpreter.apply(now, queue, simulation.model(), input);
+    interpreter.interpret(queue.takeDue(now), simulation.model(), input);
     ASSERT_GE(input.joints[Insertion], last);
     last = input.joints[Insertion];
   }

@@ -72,7 +72,7 @@ TEST_F(TipVelocityTest, AVelocityLastsUntilTheNextMessageForTheJoints) {
   const auto frame = [&] {
     stamp += 16'666'667;
     const double before = input.joints[Insertion];
-    EXPECT_TRUE(interpreter.apply(stamp, queue, *world.model, input).empty());
+    EXPECT_TRUE(interpreter.interpret(queue.takeDue(stamp), *world.model, input).empty());
     return input.joints[Insertion] - before;
   };
   frame();

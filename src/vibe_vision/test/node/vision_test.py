@@ -55,7 +55,6 @@ class VisionTest(unittest.TestCase):
         cls.scene = Scene("moving", FRAMES)
         cls.tracking = Recorder("suturing_device/tracking", InstrumentTrackArray)
         cls.doubts = Recorder("suturing_device/doubts", InstrumentDoubts)
-        cls.former = Recorder("overstitch/tracking", InstrumentTrackArray)
         cls.measured = Recorder("suturing_device/input/joint_states", JointState)
         cls.predicted = Recorder("suturing_device/predicted_js", JointState)
         cls.camera_info = Recorder("camera_info", CameraInfo)
@@ -73,7 +72,7 @@ class VisionTest(unittest.TestCase):
     def tearDown(self):
         for program in self.programs:
             program.stop()
-        for recorder in (self.tracking, self.doubts, self.former, self.measured, self.predicted, self.camera_info,
+        for recorder in (self.tracking, self.doubts, self.measured, self.predicted, self.camera_info,
                          self.diagnostics):
             recorder.clear()
 
@@ -90,9 +89,6 @@ class VisionTest(unittest.TestCase):
     def waits_for_the_end(self, node):
         last = max(self.scene.stamps)
         self.assertIsNotNone(self.tracking.waits_for(lambda m: m.frame_sequence == last, 60), node.output())
-        # by its former name, too, with one warning
-        self.assertIsNotNone(self.former.waits_for(lambda m: m.frame_sequence == last), node.output())
-        self.assertEqual(node.count("listens to overstitch/tracking, a former name"), 1, node.output())
 
     def assert_accurate(self, scene, tracks):
         slides, rotations = errors_of(scene, tracks, "helix")
@@ -389,9 +385,7 @@ class VisionTest(unittest.TestCase):
         topics = {topic for topic, nodes in publishers if "/vision_node" in nodes}
         ours = {topic.lstrip("/") for topic in topics if topic != "/rosout" and "/image_raw/" not in topic}
         ours = {topic for topic in ours if not topic.startswith("debug_image/")}  # of plugins of image_transport
-        with open(os.path.join(PACKAGE, "../../docs/upgrading.md"), encoding="utf-8") as file:
-            former = set(re.findall(r"`(overstitch/\w+)`", file.read()))
-        self.assertEqual(ours - former, {topic.lstrip("/") for topic in documented})
+        self.assertEqual(ours, {topic.lstrip("/") for topic in documented})
 
     def assert_refuses(self, text, **parameters):
         given = dict(config=self.scene.config, source=self.scene.source)

@@ -9,7 +9,7 @@ bool OperatorSeat::take(ClientId client, std::uint32_t grant, double now) {
   holder_ = client;
   grant_ = grant;
   number_ = 0;
-  heard_ = now;
+  last_received_ = now;
   return true;
 }
 
@@ -20,10 +20,10 @@ bool OperatorSeat::leave(ClientId client) {
   return true;
 }
 
-bool OperatorSeat::hear(ClientId client, const Command& drive, double now) {
+bool OperatorSeat::receive(ClientId client, const Command& drive, double now) {
   if (holder_ == 0 || client != holder_ || drive.grant != grant_ || drive.number <= number_) return false;
   number_ = drive.number;
-  heard_ = now;
+  last_received_ = now;
   keys_ = {drive.keys.begin(), drive.keys.end()};
   axes_ = drive.axes;
   return true;
@@ -31,8 +31,8 @@ bool OperatorSeat::hear(ClientId client, const Command& drive, double now) {
 
 void OperatorSeat::tick(double now) {
   if (holder_ == 0) return;
-  if (now - heard_ > kDeadMan) letGo();
-  if (now - heard_ > kAbsent) holder_ = 0;
+  if (now - last_received_ > kDeadMan) letGo();
+  if (now - last_received_ > kAbsent) holder_ = 0;
 }
 
 void OperatorSeat::letGo() {

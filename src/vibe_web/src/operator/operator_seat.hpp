@@ -23,7 +23,7 @@ class OperatorSeat {
 
   /// @return whether the message counts: it comes from the one in the seat, names its grant and is newer than all
   /// before. Then it is what is held from now on.
-  bool hear(ClientId client, const Command& drive, double now);
+  bool receive(ClientId client, const Command& drive, double now);
 
   /// Lets go of everything if the page is silent, and empties the seat if it is silent for long.
   void tick(double now);
@@ -36,7 +36,7 @@ class OperatorSeat {
  private:
   ClientId holder_ = 0;
   std::uint32_t grant_ = 0, number_ = 0;
-  double heard_ = 0;
+  double last_received_ = 0;
   std::set<int> keys_;
   std::array<double, kAxes> axes_{};
 

@@ -138,13 +138,13 @@ class Client : public std::enable_shared_from_this<Client<Stream>> {
       return false;
     }
     if (command->kind == Command::Kind::Rate) period_ = std::chrono::nanoseconds(1'000'000'000 / command->rate);
-    if (command->kind == Command::Kind::Drawn) return noteDrawn(command->drawn), true;
+    if (command->kind == Command::Kind::Drawn) return countDrawn(command->drawn), true;
     if (command->kind == Command::Kind::Ping) return answer(command->ping), true;
     shared_->on_command(id_, *command);
     return true;
   }
 
-  void noteDrawn(int frames) {
+  void countDrawn(int frames) {
     undrawn_ = std::max(0, undrawn_ - frames);  // of all that were sent, so that none is forgotten in a queue
     tells_ = true;
     pump();

@@ -17,11 +17,11 @@ Command drive(std::uint32_t grant, std::uint32_t number) {
 
 TEST(OperatorSeat, HoldsOneAndHearsNobodyElse) {
   OperatorSeat seat;
-  EXPECT_FALSE(seat.hear(1, drive(0, 1), 0));  // nobody drives, and nothing was granted
+  EXPECT_FALSE(seat.receive(1, drive(0, 1), 0));  // nobody drives, and nothing was granted
   EXPECT_TRUE(seat.take(1, 11, 0));
   EXPECT_FALSE(seat.take(2, 22, 0));
-  EXPECT_FALSE(seat.hear(2, drive(11, 1), 0));
-  EXPECT_TRUE(seat.hear(1, drive(11, 1), 0));
+  EXPECT_FALSE(seat.receive(2, drive(11, 1), 0));
+  EXPECT_TRUE(seat.receive(1, drive(11, 1), 0));
   EXPECT_EQ(seat.keys(), (std::set<int>{'W'}));
   EXPECT_FALSE(seat.leave(2));
   EXPECT_TRUE(seat.leave(1));
@@ -32,17 +32,17 @@ TEST(OperatorSeat, HoldsOneAndHearsNobodyElse) {
 TEST(OperatorSeat, ReplayedMessagesDoNotCount) {
   OperatorSeat seat;
   seat.take(1, 11, 0);
-  EXPECT_TRUE(seat.hear(1, drive(11, 5), 0));
-  EXPECT_FALSE(seat.hear(1, drive(11, 5), 0));  // the same again
-  EXPECT_FALSE(seat.hear(1, drive(11, 4), 0));
-  EXPECT_FALSE(seat.hear(1, drive(12, 6), 0));  // of another time in the seat
-  EXPECT_TRUE(seat.hear(1, drive(11, 6), 0));
+  EXPECT_TRUE(seat.receive(1, drive(11, 5), 0));
+  EXPECT_FALSE(seat.receive(1, drive(11, 5), 0));  // the same again
+  EXPECT_FALSE(seat.receive(1, drive(11, 4), 0));
+  EXPECT_FALSE(seat.receive(1, drive(12, 6), 0));  // of another time in the seat
+  EXPECT_TRUE(seat.receive(1, drive(11, 6), 0));
 }
 
 TEST(OperatorSeat, SilenceLetsGoAndThenEmptiesTheSeat) {
   OperatorSeat seat;
   seat.take(1, 11, 0);
-  seat.hear(1, drive(11, 1), 1);
+  seat.receive(1, drive(11, 1), 1);
   seat.tick(1 + 0.9 * kDeadMan);
   EXPECT_FALSE(seat.keys().empty());
   EXPECT_NE(seat.axes()[0], 0);
@@ -50,7 +50,7 @@ TEST(OperatorSeat, SilenceLetsGoAndThenEmptiesTheSeat) {
   EXPECT_TRUE(seat.keys().empty());
   EXPECT_EQ(seat.axes()[0], 0);
   EXPECT_EQ(seat.holder(), 1U);
-  EXPECT_TRUE(seat.hear(1, drive(11, 2), 2));  // it speaks again
+  EXPECT_TRUE(seat.receive(1, drive(11, 2), 2));  // it speaks again
   EXPECT_FALSE(seat.keys().empty());
   seat.tick(2 + 1.1 * kAbsent);
   EXPECT_EQ(seat.holder(), 0U);

@@ -47,9 +47,6 @@ struct Calibration {
   /// helix_advance, helix_rotation, needle_driver; absent: these joints come from somewhere else
   std::optional<std::array<ButtonDrive, kSuturingDeviceJointCount>> suturing_device;
 
-  /// What should be changed in the file although it can be read, as a sentence; empty: nothing
-  std::string remark;
-
   /// @param address  file, or package:// address
   /// @throws Error with file, line, key and remedy
   static Calibration load(const std::string& address);

@@ -136,9 +136,9 @@ class DeviceDriver {
   void search();
   std::optional<HidInfo> find();
   std::vector<HidInfo> listMatching();
-  void noteAbsence();
+  void setAbsent();
   void connect(const HidInfo& info);
-  void noteFailure(const HidInfo& info, const std::string& reason);
+  void countFailure(const HidInfo& info, const std::string& reason);
   void setUnusable(const std::string& what);
   void readReports(double wait);
   void takeReport(const std::uint8_t* bytes, std::size_t size);

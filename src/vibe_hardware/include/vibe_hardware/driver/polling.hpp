@@ -32,17 +32,17 @@ class SilenceWatch {
   /// speaks first if it can [s].
   static constexpr double kLimit = DeviceDriver::kSilence + 0.02;
 
-  /// A sample has come. @return whether it ends a silence that has been told
+  /// A sample has come. @return whether it ends a silence that has been reported
   bool arrived(double now);
   /// The driver itself has said that the device is gone or silent.
-  void stop() { watching_ = told_ = false; }
+  void stop() { watching_ = reported_ = false; }
   /// Whether the device has become silent; true once for each silence.
   bool expired(double now);
 
  private:
   double last_ = 0;  // arrival of the last sample
   bool watching_ = false;
-  bool told_ = false;
+  bool reported_ = false;
 };
 
 }  // namespace vibe::hardware

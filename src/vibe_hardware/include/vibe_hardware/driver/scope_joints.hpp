@@ -91,7 +91,5 @@ class SuturingDeviceDrive {
   std::array<ButtonDrive, kSuturingDeviceJointCount> drives_;
   Positions positions_{};
 };
-/// The former name.
-using OverstitchDrive [[deprecated("has been renamed SuturingDeviceDrive")]] = SuturingDeviceDrive;
 
 }  // namespace vibe::hardware

@@ -65,8 +65,6 @@ class SuturingDeviceFingers {
   Positions positions_{};
   std::array<int, kSuturingDeviceJointCount> direction_{};  // 1: forward, -1: backward
 };
-/// The former name.
-using OverstitchFingers [[deprecated("has been renamed SuturingDeviceFingers")]] = SuturingDeviceFingers;
 
 /// Hand and arm at the axes of the haptic device: mass [kg], damping [N s/m] and stiffness [N/m] at the insertion.
 /// Form: see HandImpedance; the values are a design choice: a natural frequency of 8 Hz (insertion) and 17 Hz

@@ -78,7 +78,7 @@ class PadLink {
   Open open_;
   std::unique_ptr<PadSource> pad_;
   double last_try_ = -1e9;  // [s]
-  bool told_ = false;       // that there is none
+  bool reported_ = false;   // that there is none
   std::uint64_t connections_ = 0;
 
   std::string look(double now);

@@ -74,7 +74,7 @@ class TopicDisplay : public rviz::Display {
 
  private:
   void subscribe();
-  void say(const MessageReport& report);
+  void showStatus(const MessageReport& report);
   void place(const std_msgs::Header& header);
 
   /// Makes what draws, in `scene_node_`. What it throws becomes a status, and the display stays empty.
@@ -95,8 +95,8 @@ class TopicDisplay : public rviz::Display {
   ros::Subscriber subscriber_;
   bool ready_ = false;  // there is a visual
   bool waiting_ = true;
-  std::optional<MessageReport> said_;  // last status of the message: setting a status costs more than drawing
-  std::optional<bool> placed_;         // whether the transform was known; none: not looked up yet
+  std::optional<MessageReport> report_;  // last status of the message: setting a status costs more than drawing
+  std::optional<bool> placed_;           // whether the transform was known; none: not looked up yet
 };
 
 /// Which properties explain themselves.

@@ -29,14 +29,6 @@ INPUTS = {
     "suturing_device/servo_jp": "sensor_msgs/JointState",
     "suturing_device/move_jp": "sensor_msgs/JointState",
 }
-# names in recordings of the release before
-FORMER = {
-    "suturing_device/tracking": "overstitch/tracking",
-    "scope/input/joint_states": "scope/measured_js",
-    "suturing_device/input/joint_states": "overstitch/measured_js",
-    "suturing_device/servo_jp": "overstitch/servo_jp",
-    "suturing_device/move_jp": "overstitch/move_jp",
-}
 ABSOLUTE = {"/diagnostics": "diagnostic_msgs/DiagnosticArray", "/clock": "rosgraph_msgs/Clock"}
 
 
@@ -66,18 +58,9 @@ def find_topics(bag, namespace):
     found = {}
     for short, datatype in {**TYPES, **INPUTS}.items():
         found[short] = select(bag, namespace + "/" + short, datatype)
-        if short in FORMER:
-            found[short] += select_former(bag, namespace, FORMER[short], datatype)
     for topic, datatype in ABSOLUTE.items():
         found[topic] = select(bag, topic, datatype)
     return found
-
-
-def select_former(bag, namespace, former, datatype):
-    """The joints of the tool, which the simulator publishes as scope/measured_js now, are no input."""
-    simulators = {bag.connections[key].caller for key in select(bag, namespace + "/applied_input", STEP_INPUT)}
-    named = select(bag, namespace + "/" + former, datatype)
-    return [key for key in named if bag.connections[key].caller not in simulators | {""}]
 
 
 def select(bag, topic, datatype):

@@ -1,5 +1,5 @@
-"""The organ at the end of a session, to turn in the page: what the viewer of vibe_web draws, and the viewer itself, which
-is there where that package's page was built."""
+"""The organ at the end of a session, to turn in the page: what a viewer draws, and the viewer itself. It is a script in the
+share folder of this package, that another package puts there: vibe_web, where its page is built."""
 
 import base64
 import functools
@@ -17,7 +17,7 @@ MILLILITRE = 1e-6  # [m^3]
 @functools.lru_cache(maxsize=1)
 def viewer_script():
     """The text of the viewer, or an empty one."""
-    path = find_in_package("vibe_web", "page/viewer.js", "share")
+    path = find_in_package("vibe_sessions", "viewer.js", "share")
     if path is None:
         return ""
     with open(path, encoding="utf-8") as file:
@@ -25,7 +25,8 @@ def viewer_script():
 
 
 def organ_data(recording):
-    """JSON of numbers only, which is safe inside a page; empty without an organ. Layout: viewer.ts of vibe_web."""
+    """JSON of numbers only, which is safe inside a page; empty without an organ. It is the text of the element
+    organ-data, for which the viewer looks."""
     topology, cloud = recording.topology, recording.particles
     if topology is None or len(topology.triangles) == 0:
         return ""

@@ -1,0 +1,89 @@
+#pragma once
+#include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <ros/spinner.h>
+#include <sensor_msgs/JointState.h>
+#include <vibe_msgs/ProcedureState.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vibe_operator/drive/scope_drive.hpp"
+#include "vibe_operator/messages/session_watch.hpp"
+
+namespace vibe::operating {
+
+/// Publishes the joints of a ScopeDrive on scope/servo_jp and suturing_device/input/joint_states, 60 times a second in
+/// a thread of its own, so that slow drawing does not make the motion rough. It begins where the simulator's joints are
+/// and is silent while there is no simulator, while time stands still, and while another node drives the scope.
+/// Functions may be called from any thread; changes of buttons are reported in the thread of the call.
+class ScopeSender {
+ public:
+  explicit ScopeSender(ScopeDrive::ButtonChange button_changed);
+  ~ScopeSender();
+
+  /// @param name_space  valid; empty: that of the node
+  void start(const std::string& name_space);
+  /// Releases all keys; falls silent when the joints have come to rest.
+  void stop();
+
+  void setSpeeds(const DriveSpeeds& speeds);
+  void keyDown(int key);
+  void keyUp(int key);
+  void releaseAll();
+  void displace(int joint, double by);
+
+  /// What to show.
+  struct View {
+    bool driving = false;  ///< joints are being published
+    std::string trouble;   ///< why they are not, in one sentence
+    std::set<int> keys_down;
+    DriveGear gear = DriveGear::Normal;
+    Joints joints{};
+    JointLimits limits{};
+    vibe_msgs::ProcedureState::ConstPtr state;  ///< null: not come yet
+    double force = 0;                           ///< of the tissue on the tool [N]; NaN: unknown
+  };
+  View view() const;
+
+ private:
+  mutable std::mutex mutex_;  // of everything below except queue, spinner and timer
+  ScopeDrive drive_;
+  bool active_ = false, driving_ = false, connected_ = false, has_limits_ = false;
+  std::string requested_, trouble_;
+  JointLimits limits_{};
+  Joints seen_{};                  // of the simulator
+  std::optional<Joints> present_;  // the same, if they came since the joints were last driven
+  vibe_msgs::ProcedureState::ConstPtr state_;
+  double force_;
+  ros::Time last_;                                                           // up to which the joints have moved
+  double waiting_since_ = 0, driving_since_ = 0, wanted_ = 0, seen_at_ = 0;  // steady clock [s]
+  SimulatorWatch simulator_;
+  ControlWatch same_topic_, other_topic_;
+
+  ros::CallbackQueue queue_;
+  ros::NodeHandle handle_, topics_;
+  ros::Publisher scope_, suturing_device_;
+  std::vector<ros::Subscriber> subscribers_;
+  ros::WallTimer timer_;
+  ros::AsyncSpinner spinner_;
+
+  void tick();
+  void connect();
+  void disconnect();
+  template <class Message>
+  void watch(const std::string& topic, ControlWatch& watch);
+  void takeState(const vibe_msgs::ProcedureState::ConstPtr& state);
+  std::string findTrouble();
+  std::string findLimits();
+  bool begin(const ros::Time& now);
+  bool moveTo(const ros::Time& now);
+  void endDriving();
+};
+
+}  // namespace vibe::operating
