@@ -145,7 +145,7 @@ def run_all(options, scratch):
 def parse():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", required=True, type=os.path.abspath, help="build folder of the workspace, with its tests")
-    parser.add_argument("--scripts", required=True, help="folder with scripts that are tests")
+    parser.add_argument("--scripts", required=True, type=os.path.abspath, help="folder with scripts that are tests")
     parser.add_argument("--variant", default="", help="what scripts get as VIBE_VARIANT")
     parser.add_argument("--filter", default="", help="regular expression: names of tests or, if none matches, of cases")
     parser.add_argument("--areas", type=str.split, default=[], help="packages whose tests run, with the scripts that name "
