@@ -13,7 +13,7 @@ namespace vibe::benchmarks::hard_contact_test {
 namespace {
 
 constexpr int kMostIterations = 40;  // of a step
-constexpr double kClosed = 0.01;     // error of the energy account over the work put in [1]
+constexpr double kClosed = 0.01;     // error of the energy account over the work put in
 
 bool slow() {
   return std::getenv("VIBE_SLOW_TESTS") != nullptr;

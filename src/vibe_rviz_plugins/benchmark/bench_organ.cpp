@@ -69,7 +69,7 @@ void addRenderSurface(graphics::TissueMesh& mesh) {
   mesh.vertex_count = mesh.render_offsets.size() - 1;
 }
 
-// How far particle i has gone outward at this frame, as a share of its place [1].
+// How far particle i has gone outward at this frame, as a share of its place.
 double bulgeOf(const graphics::TissueMesh& mesh, Motion motion, int frame, std::size_t i) {
   const double breath = 0.05 * std::sin(2 * kPi * frame / kBreath);
   if (motion == Motion::Everything) return breath;

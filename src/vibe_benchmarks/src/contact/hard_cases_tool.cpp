@@ -23,10 +23,10 @@ constexpr double kJumpTime = 0.2;                  // between jumps [s]
 constexpr double kSleeveTension = 8;               // [N]
 constexpr double kSleeveSpeed = 0.06;              // of the cinch [m/s]
 constexpr double kSleeveWidth = 0.085;             // half, along the wall: beyond the scope [m]
-constexpr double kSleeveLength = 0.15;             // over the length of the body; half of it where there are three [1]
+constexpr double kSleeveLength = 0.15;             // over the length of the body; half of it where there are three
 constexpr double kSleeveTime = 8;                  // of a cinch [s]
 constexpr double kShortest = 0.3, kLongest = 1.5;  // time of a random motion [s]
-constexpr double kPressProbability = 0.3;          // probability that a button changes with a motion [1]
+constexpr double kPressProbability = 0.3;          // probability that a button changes with a motion
 
 HardPhase phaseOf(const std::string& name, double duration, std::function<StepInput(double)> input) {
   HardPhase phase;

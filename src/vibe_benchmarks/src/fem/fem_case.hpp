@@ -66,7 +66,7 @@ enum class SampleKind {
   LimitPressure,    ///< largest pressure over all levels [Pa]
   Profile,          ///< displacements at points compared with a table
   Frequency,        ///< of one vibration mode, or of the oscillation of a displacement [Hz]
-  Kept,             ///< ratio of the amplitude to that one period earlier [1]
+  Kept,             ///< ratio of the amplitude to that one period earlier
   Series,           ///< displacement over time compared with a table
   StaticField,      ///< like Profile, at the end of a transient
 };

@@ -13,7 +13,7 @@ struct PullWay {
   const char* method;   ///< tissue.model
   const char* pulling;  ///< suture.cinch_model
   int particles;        ///< suture.group_particles
-  double strain_limit;  ///< suture.strain_limit [1]
+  double strain_limit;  ///< suture.strain_limit
 };
 
 /// The plate of a case in the simulator, with one set of two bites at the spots of the cinch in the case.

@@ -16,7 +16,7 @@ constexpr int kAll = 1000;
 constexpr double kFrame = 1.0 / 60, kSpeed = 15e-3;  // of the cinch [s], [m/s]
 constexpr int kRest = 60;                            // frames of rest before a level is measured
 constexpr int kMaxFrames = 600;                      // of drawing, before a method counts as ended
-constexpr double kLimit = 0.5, kWideLimit = 2;       // of strain [1]
+constexpr double kLimit = 0.5, kWideLimit = 2;       // of strain
 constexpr PullWay kWays[] = {{"shell", "thread", 5, kLimit},
                              {"shell", "groups", 5, kLimit},
                              {"shell", "groups", kAll, kLimit},

@@ -20,7 +20,7 @@ struct OutcomeTrial {
   double pressure = 2000;         ///< at which the stomach is measured [Pa]
   double sewn_at = 2000;          ///< pressure at which the bites are made and the threads are cinched [Pa]
   double tension = 3;             ///< at which the cinch stops drawing [N]
-  double thread_friction = 0.15;  ///< [1]
+  double thread_friction = 0.15;  ///< ratio
   std::optional<double> drawn;    ///< of every set, at most [m]
   bool foundation = true;         ///< neighbouring organs
 };
@@ -32,7 +32,7 @@ struct OutcomeRow {
   double mean_tension = 0, min_tension = 0;  ///< over the sets, of the largest in each at rest [N]
   double drawn = 0;                          ///< thread drawn by all sets [m]
   double settled = 0;                        ///< time after the last set until `after` is measured [s]
-  /// Largest relative change of volume, mean area, length and tension in the last kOutcomeWindow of it [1].
+  /// Largest relative change of volume, mean area, length and tension in the last kOutcomeWindow of it.
   double change = 0;
   int recognised = 0;  ///< sets of the technique that was sewn
   int torn_out = 0, broken = 0, loose = 0;
@@ -43,7 +43,7 @@ constexpr int kOutcomeSets = 6, kOutcomeBites = 7;
 constexpr double kOutcomeLength = 13e-3, kOutcomeWidth = 60e-3;  // of a set: those of trainees/expert.yaml [m]
 constexpr double kOutcomeFrom = 0.63, kOutcomeTo = 0.18;         // of the axis: about the same
 constexpr double kOutcomeWindow = 4;                             // [s]
-constexpr double kOutcomeChange = 1e-3;                          // allowed within that window [1]
+constexpr double kOutcomeChange = 1e-3;                          // allowed within that window
 
 /// Sews idealised sleeves. Stomachs at rest are kept, so that patterns in the same stomach share it.
 class OutcomeStudy {

@@ -15,8 +15,8 @@ constexpr double kMillimetreOfMercury = 133.322;  ///< [Pa]
 /// The stomach at one moment, at equilibrium at a pressure.
 struct PatternMeasures {
   OrganMeasures organ;
-  double mean_strain = 0;  ///< in-plane, over the wall's area [1]
-  double high_strain = 0;  ///< exceeded by 5 % of the wall [1]
+  double mean_strain = 0;  ///< in-plane, over the wall's area
+  double high_strain = 0;  ///< exceeded by 5 % of the wall
   /// Mean over the wall of half the sum of the two principal stresses [Pa]. By the virial theorem this is -1/2 of the
   /// sum of elastic force times position, divided by the volume of the wall. Where ends are held, the holding forces
   /// make it depend on the origin, which is the centre of the particles.

@@ -56,7 +56,7 @@ struct SetLayout {
   int bites = 7;              ///< per set: 4, or 7 (two bite vectors on each leg and on the bar)
   double half_width = 0.018;  ///< extent of a leg to both sides of the greater curvature [m]
   double share =
-      0.6;  ///< length of a set along the organ from first to last leg, relative to the length available per set [1]
+      0.6;  ///< length of a set along the organ from first to last leg, relative to the length available per set
 };
 
 /// Bites of one pattern in the square [-1, 1] across (anterior to posterior) and [0, 1] along (distal to proximal).

@@ -19,11 +19,11 @@ namespace {
 
 constexpr double kStride = 1e-3;        // of a walk; a quarter of a particle's spacing, design choice [m]
 constexpr double kNormalRadius = 6e-3;  // over which the wall's direction is averaged: as wide as the device's cap [m]
-constexpr double kFarAlong = 0.05;    // of a place from the wall found for it, over the axis' length; design choice [1]
-constexpr double kFarAround = 0.35;   // and around the axis: the opening of a tube is as wide; design choice [rad]
-constexpr double kApex = 0.05;        // along the axis: nearer to the apex, angles are not told apart [1]
-constexpr double kStalled = 0.2;      // of a stride: less is no progress; design choice [1]
-constexpr double kAlongWeight = 2.0;  // of the distance along the axis beside that around it; design choice [1]
+constexpr double kFarAlong = 0.05;      // of a place from the wall found for it, over the axis' length; design choice
+constexpr double kFarAround = 0.35;     // and around the axis: the opening of a tube is as wide; design choice [rad]
+constexpr double kApex = 0.05;          // along the axis: nearer to the apex, angles are not told apart
+constexpr double kStalled = 0.2;        // of a stride: less is no progress; design choice
+constexpr double kAlongWeight = 2.0;    // of the distance along the axis beside that around it; design choice
 
 Eigen::Vector3d weightsIn(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                           const Eigen::Vector3d& c) {

@@ -16,7 +16,7 @@ namespace vibe {
 class BallUnion {
  public:
   /// @param blend      k: blending width between neighbouring parts [m]
-  /// @param flattening ratio of depth (along x) to width of a section [1]
+  /// @param flattening ratio of depth (along x) to width of a section
   BallUnion(double blend, double flattening) : blend_(blend), flattening_(flattening) {}
 
   /// Adds a ball of a row of balls with this spacing. The weight is chosen such that a long straight row has its

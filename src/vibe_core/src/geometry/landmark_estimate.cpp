@@ -18,7 +18,7 @@ namespace vibe {
 namespace {
 
 constexpr double kPatch = 0.125;        // radius of the ends of the axis over the size of the organ; 12 mm at 0.9 L
-constexpr double kIncisuraBegin = 0.4;  // along the axis: the incisura lies between body and antrum [1]
+constexpr double kIncisuraBegin = 0.4;  // along the axis: the incisura lies between body and antrum
 constexpr double kIncisuraEnd = 0.85;
 constexpr double kAround = 0.15;           // over the size of the organ: where the width of the lumen is looked at
 constexpr double kOffWall = 1e-3;          // over that: where a ray across the lumen starts

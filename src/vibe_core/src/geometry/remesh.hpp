@@ -83,7 +83,7 @@ SurfaceMesh remesh(const SurfaceMesh& input, int vertices, const Projection& pro
 struct RemeshReport {
   double mean_distance = 0;  ///< from the new vertices to the input [m]
   double max_distance = 0;   ///< [m]
-  double volume_error = 0;   ///< (new - old) / old [1]
+  double volume_error = 0;   ///< (new - old) / old
   bool smoothed = false;     ///< the input was coarser than the result, and its creases were smoothed
 };
 

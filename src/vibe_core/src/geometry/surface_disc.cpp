@@ -11,7 +11,7 @@ namespace vibe {
 
 namespace {
 
-// Share of the disc below which a vertex takes no part: what is less is rounding [1].
+// Share of the disc below which a vertex takes no part: what is less is rounding.
 constexpr double kLeastShare = 1e-9;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {

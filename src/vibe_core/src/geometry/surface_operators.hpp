@@ -9,7 +9,7 @@
 namespace vibe {
 
 /// Stiffness matrix of the Laplacian with linear elements on the surface (cotangent weights), symmetric,
-/// positive semi-definite, rows summing to zero [1]. Shape (vertices, vertices).
+/// positive semi-definite, rows summing to zero. Shape (vertices, vertices).
 Eigen::SparseMatrix<double> cotangentStiffness(const SurfaceMesh& mesh);
 
 /// The function that is 0 on `zeros`, 1 on `ones` and harmonic on the rest of the surface, one value per vertex.
@@ -31,7 +31,7 @@ void smoothTaubin(SurfaceMesh& mesh, int iterations);
 /// of a few percent, where it preserves the shape.
 void offsetToVolume(SurfaceMesh& mesh, double volume);
 
-/// Scales about the origin to the volume and returns the factor [1].
+/// Scales about the origin to the volume and returns the factor.
 double scaleToVolume(SurfaceMesh& mesh, double volume);
 
 /// Volume enclosed by the surface at given vertex positions [m^3].

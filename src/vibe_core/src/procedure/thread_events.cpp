@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMet = 1.01 * kMinSegment;  // a segment no longer than this lies between bites that have met [m]
 
-// Least share of the pull-out force that a bite holds, however shallow [1]. Design choice without a published value:
+// Least share of the pull-out force that a bite holds, however shallow. Design choice without a published value:
 // with a hold proportional to the depth alone, a bite that only just caught the mucosa would tear out at any tension.
 constexpr double kMinHold = 0.25;
 

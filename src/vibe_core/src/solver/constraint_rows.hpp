@@ -37,7 +37,7 @@ struct EquationRow {
 struct ContactRows {
   std::array<LinearForm, 3> form;
   std::array<Eigen::Vector3d, 3> direction;  ///< normal, two tangents; unit
-  double friction = 0;                       ///< Coulomb coefficient [1]
+  double friction = 0;                       ///< Coulomb coefficient
   std::size_t load = 0;                      ///< its index in the loads
   double target = 0;                         ///< of the normal, of one that does not count [m]
   double compliance = 0;                     ///< of the normal [m/N]
@@ -59,7 +59,7 @@ struct SegmentRows {
   /// Of the part of their stiffness that the factor does not have; 0: it has enough of it [m/N].
   double turn_missing = 0;
   double spare = 0;    ///< thread that may slide out of it [m]
-  double capstan = 1;  ///< largest ratio of the tensions of this segment and the next [1]
+  double capstan = 1;  ///< largest ratio of the tensions of this segment and the next
 };
 
 struct ThreadRows {

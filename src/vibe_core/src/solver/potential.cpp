@@ -71,7 +71,7 @@ double GasLaw::closedEnergy(double amount, double from, double volume) const {
 }
 
 namespace {
-constexpr double kRounding = 6e-8;  // half a unit in the last place of single precision (2^-24) [1]
+constexpr double kRounding = 6e-8;  // half a unit in the last place of single precision (2^-24)
 }
 
 double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gradient) {

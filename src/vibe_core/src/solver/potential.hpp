@@ -15,7 +15,7 @@ namespace vibe {
 class GasLaw {
  public:
   /// @param load  kept by reference: the pressure may change while a volume is prescribed
-  /// @param part  of the step after which its forces act [1]
+  /// @param part  of the step after which its forces act
   explicit GasLaw(const GasLoad& load, double part = 1);
 
   /// Gauge pressure [Pa].
@@ -48,7 +48,7 @@ class GasLaw {
 class Potential {
  public:
   /// @param inertia  mass times this is the spring to z_hat [1/s^2]; 0: a static problem
-  /// @param part     of the step after which its forces act, see GasLaw [1]
+  /// @param part     of the step after which its forces act, see GasLaw
   Potential(const ElasticBody& body, const BodyLoads& loads, double inertia, StepperWorkspace& scratch, double part = 1)
       : body_(body),
         gas_(loads.gas),

@@ -35,7 +35,7 @@ class ThreadSlides {
   void clear();
   void addThread();
   /// Of the last thread.
-  /// @param capstan  largest ratio of the tensions of this segment and the next one of the thread, 1 or more [1]
+  /// @param capstan  largest ratio of the tensions of this segment and the next one of the thread, 1 or more
   /// @param spare    thread that may slide out of it, 0 or more [m]
   void addSegment(double capstan, double spare);
   /// Another compliance between all segments, to be set by compliance() (lower and upper part).

@@ -19,7 +19,7 @@ struct ClusterSet {
   int group_count = 0;
   std::vector<std::int32_t> row_offset;        ///< first row of each group (group_count + 1)
   std::vector<std::int32_t> particle;          ///< member, by slot
-  std::vector<double> weight;                  ///< mass over the cluster's mass [1], by slot
+  std::vector<double> weight;                  ///< mass over the cluster's mass, by slot
   std::vector<double> rest_x, rest_y, rest_z;  ///< member minus the cluster's centre of mass at rest [m], by slot
   std::vector<double> gain;                    ///< fraction of the path to the goal per sub-step, (group_count * 8)
   std::vector<double> orientation_weight;  ///< weight of the centre's orientation in the moment matrix [m^2], (.. * 8)

@@ -17,8 +17,8 @@ namespace vibe {
 struct LawConstants {
   double shear;       ///< mu, or the law's own modulus in its place [Pa]
   double bulk;        ///< lambda, or the law's own modulus in its place [Pa]
-  double stiffening;  ///< b, or 1/Jm [1]
-  double limit;       ///< above this K the function of K is extended by its second-order Taylor polynomial [1]
+  double stiffening;  ///< b, or 1/Jm
+  double limit;       ///< above this K the function of K is extended by its second-order Taylor polynomial
   const MaterialLaw* registered = nullptr;  ///< for a law of another package; lives as long as the program
 };
 

@@ -12,7 +12,7 @@ struct LawConstants;
 // number; its apex is the node beyond it.
 constexpr int kShellPatch = 0;       ///< positions of nodes 2, 3 and the three apexes relative to node 1 [m]
 constexpr int kShellSide = 15;       ///< per side: entries 11, 12, 22 of T [1/m], then twice the volume [m^3]
-constexpr int kShellNormal = 27;     ///< normal of the patch at the centroid, shortened by kShellSoftness [1]
+constexpr int kShellNormal = 27;     ///< normal of the patch at the centroid, shortened by kShellSoftness
 constexpr int kShellLength = 30;     ///< 36 times the area element at the centroid, lengthened by kShellSoftness [m^2]
 constexpr int kShellBend = 31;       ///< area times half the bending stiffness at rest, by (36 area elements)^4 / 36^2
 constexpr int kShellOrigin = 32;     ///< position of node 1 less the origin of the volume [m]

@@ -13,7 +13,7 @@ namespace vibe {
 
 /// Fibres of the wall of an organ. The long axis is that of a stomach (see findAxis); for an organ without an end at
 /// the duodenum it is the line from fundus to pylorus.
-/// @param factor  of the modulus, per triangle [1]
+/// @param factor  of the modulus, per triangle
 /// @throws Error if the organ has no axis: fundus and pylorus coincide
 ShellFibres wallFibres(const FibreScene& scene, const Organ& organ, const std::vector<double>& factor);
 

@@ -39,7 +39,7 @@ GoalResult perform(const WaitGoal& goal, Operator& me) {
 namespace {
 
 constexpr double kHalfView = 0.87;     // 50 degrees; a gastroscope's picture is 140 degrees wide across its corners
-constexpr double kFarthestView = 1.5;  // distance at which a place still counts as seen, of the wanted one [1]
+constexpr double kFarthestView = 1.5;  // distance at which a place still counts as seen, of the wanted one
 
 }  // namespace
 
@@ -110,8 +110,7 @@ GoalResult perform(const MarkGoal& goal, Operator& me) {
 
 namespace {
 
-constexpr double kNextTime =
-    0.5;  // part of a surprise that is expected of the next bite, beside the last; measured [1]
+constexpr double kNextTime = 0.5;  // part of a surprise that is expected of the next bite, beside the last; measured
 
 }  // namespace
 
@@ -142,7 +141,7 @@ namespace {
 
 constexpr double kLongestCinch = 20;  // [s]
 constexpr double kStalled = 2;        // without a rise of the tension: no more thread comes [s]
-constexpr double kRise = 0.01;        // that counts, of the full tension [1]
+constexpr double kRise = 0.01;        // that counts, of the full tension
 
 bool isTight(const Operator& me) {
   const Observation& seen = me.view();

@@ -12,7 +12,7 @@ namespace vibe {
 constexpr double kBlocked = 15e-3;
 
 /// Least depth over thickness that is sewn for want of a better one: it holds two strands of a tight thread, 6 of the 8
-/// N of a whole wall. A shallower bite would tear out, and its set with it [1].
+/// N of a whole wall. A shallower bite would tear out, and its set with it.
 constexpr double kHolds = 0.8;
 
 /// One attempt at a bite: the helix takes hold of the wall beside the target, draws it into the device until the needle

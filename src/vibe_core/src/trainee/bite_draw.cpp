@@ -13,8 +13,8 @@ namespace vibe {
 namespace {
 
 constexpr double kPushed = 10e-3;        // of the device towards the wall, where not enough of it comes [m]
-constexpr double kDeepEnough = 1.5;      // depth of the needle over the wall's thickness [1]
-constexpr double kThrough = 1.15;        // the least with which an expert closes the arm [1]
+constexpr double kDeepEnough = 1.5;      // depth of the needle over the wall's thickness
+constexpr double kThrough = 1.15;        // the least with which an expert closes the arm
 constexpr double kOnTarget = 2.5e-3;     // of the needle from the target, not to be improved [m]
 constexpr double kBesideTarget = 5e-3;   // to be tried again [m]
 constexpr double kDrawnPerTry = 1.5e-3;  // farther with every further try, by a trainee that does not check [m]

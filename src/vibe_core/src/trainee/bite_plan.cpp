@@ -19,9 +19,9 @@ constexpr int kRolls = 12;                               // positions of the dev
 constexpr int kAimingRounds = 4;                         // of aiming beside the target
 constexpr double kDrawn[] = {14e-3, 10e-3, 6e-3, 2e-3};  // helix_advance at the end that is considered [m]
 constexpr double kBeside = 2e-3;                         // variations of a plan: of the place of the helix [m]
-constexpr double kLessFollows = 0.4;                     // and of ImaginedDraw::follows [1]
+constexpr double kLessFollows = 0.4;                     // and of ImaginedDraw::follows
 constexpr double kLost = 20e-3;                          // counts as the miss of a needle that meets nothing [m]
-constexpr double kStep = 0.8;                            // part of a miss that is corrected per round [1]
+constexpr double kStep = 0.8;                            // part of a miss that is corrected per round
 constexpr double kGoodDepth = 4.5e-3;                    // of the needle, where more is not better [m]
 // Costs, per metre or radian; design choice: a millimetre beside the target against one of depth, of the device's arm
 // that presses into the wall, and of half a radian of motion.

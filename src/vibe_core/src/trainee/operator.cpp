@@ -14,8 +14,8 @@ namespace {
 
 // Design choice: from 0.6 of the allowed force on a hand slows down, to a fifth of its pace, so that what it still
 // moves within its reaction time adds little.
-constexpr double kCarefulFrom = 0.6;  // of Skill::force_limit [1]
-constexpr double kSlowest = 0.2;      // of the pace [1]
+constexpr double kCarefulFrom = 0.6;  // of Skill::force_limit
+constexpr double kSlowest = 0.2;      // of the pace
 
 }  // namespace
 
@@ -58,7 +58,7 @@ double TraineeHand::carefulRate() const {
   return std::clamp(1 - (felt - kCarefulFrom) / (1 - kCarefulFrom), kSlowest, 1.0);
 }
 
-// @param rate  of the pace [1]
+// @param rate  of the pace
 bool TraineeHand::follow(const Joints& joints, double min, const std::function<bool()>& stop,
                          const std::function<double()>& rate) {
   const Joints from = command_.joints;

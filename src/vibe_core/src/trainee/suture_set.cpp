@@ -18,7 +18,7 @@ constexpr double kAsideStep = 1e-3;  // [m]
 constexpr double kAsideMost = 0.5, kShortest = 0.5;
 
 // Margin with which a set is to be read: with 0.5 bites that miss by 4 mm take one more try in three sets, and 99 of
-// 100 sets are read as planned instead of 90; design choice [1]
+// 100 sets are read as planned instead of 90; design choice
 constexpr double kClear = 0.5;
 constexpr double kInstead = 10e-3;  // from a target at which no bite could be taken; design choice [m]
 

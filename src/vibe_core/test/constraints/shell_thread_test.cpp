@@ -77,7 +77,7 @@ PulledSheet zigzag(double rate) {
   return sheet;
 }
 
-// Ratio of the tensions at a bite over its limit, farthest from 1 in thirty steps in which all thread slides [1].
+// Ratio of the tensions at a bite over its limit, farthest from 1 in thirty steps in which all thread slides.
 double farthestFromTheLimit(PulledSheet& sheet) {
   double farthest = 0;
   for (int step = 0; step < 30; ++step) {

@@ -13,7 +13,7 @@ namespace vibe::test {
 /// Uniformity measures of a triangle surface.
 struct MeshQuality {
   double mean_edge = 0;       ///< [m]
-  double edge_variation = 0;  ///< standard deviation of the edge lengths over their mean [1]
+  double edge_variation = 0;  ///< standard deviation of the edge lengths over their mean
   double shortest_edge = 0;   ///< [m]
   double longest_edge = 0;    ///< [m]
   double smallest_angle = 0;  ///< of all triangles [rad]

@@ -45,7 +45,7 @@ Eigen::Isometry3d tipOf(const Model& model, const State& state) {
 }
 
 // How far the contacts are from the published wrench, in force and, with implicit steps, torque about the tip, over the
-// force [1] and over the force times a radius [1].
+// force and over the force times a radius.
 double imbalance(const Model& model, const State& state, const std::vector<ToolContact>& contacts) {
   const Eigen::Isometry3d tip = tipOf(model, state);
   Eigen::Vector3d force = -tip.linear() * state.tool_force, torque = -tip.linear() * state.tool_torque;

@@ -10,9 +10,9 @@ namespace vibe::operating {
 namespace {
 
 constexpr double kEdgeTolerance =
-    1e-9;  // tolerance of triangle edges, so that a ray does not pass between two triangles [1]
+    1e-9;                              // tolerance of triangle edges, so that a ray does not pass between two triangles
 constexpr double kMinDistance = 1e-6;  // hits closer to the origin are ignored [m]
-constexpr double kMinSlope = 1e-9;     // between a ray and a plane that meet [1]
+constexpr double kMinSlope = 1e-9;     // between a ray and a plane that meet
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 

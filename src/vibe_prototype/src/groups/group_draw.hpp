@@ -9,7 +9,7 @@ namespace vibe::prototype {
 void findGroup(const Model& model, const State& state, Suture& suture);
 
 /// Greatest change of length, lengthening or shortening, of the sides of triangles at the group's particles, over their
-/// length at rest [1]. Compared with scene.suture->strain_limit it stands for the elastic limit.
+/// length at rest. Compared with scene.suture->strain_limit it stands for the elastic limit.
 double groupStrain(const Model& model, const State& state, const TissueGroup& group);
 
 /// Draws the farthest particle of a set's group `amount` nearer to the middle, the others by the same part [m].

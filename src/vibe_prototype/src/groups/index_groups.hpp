@@ -18,7 +18,7 @@ struct IndexGroupSettings {
   /// particle spacing: a ray can pass between smaller spheres.
   double ray_radius = 0;
 
-  /// Maximum number of particles of a group for techniques other than U and Z [1]; the default of the paper.
+  /// Maximum number of particles of a group for techniques other than U and Z; the default of the paper.
   int particle_limit = 5;
 
   /// The groups of a U. false: as printed (first to second bite; first to second corner). true: its two legs (first

@@ -11,7 +11,7 @@
 /// Materials and displacements for the tests of shells and of tetrahedra.
 namespace vibe::test {
 
-/// Young's modulus [Pa], Poisson's ratio [1] and side of an element [m].
+/// Young's modulus [Pa], Poisson's ratio and side of an element [m].
 inline constexpr double kE = 3e4, kNu = 0.45, kSide = 0.01;
 /// One entry of kLaws.
 #define VIBE_LAW(name, word, formula) Law::name,

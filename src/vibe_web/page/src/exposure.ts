@@ -3,7 +3,7 @@
 
 import type { Lens } from './messages';
 
-const kCloseEnough = 0.04; // of the target: close enough to show the first picture [1]
+const kCloseEnough = 0.04; // of the target: close enough to show the first picture
 const kTries = 4; // of the first picture
 const kFollow = 0.3; // of what is missing, at most, from picture to picture
 

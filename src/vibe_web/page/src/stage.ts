@@ -16,7 +16,7 @@ const kSizes = [720, 480, 320, 240]; // of the endoscope's picture: a larger one
 const kFirstSize = 240; // the first picture is soon there
 const kQuick = 15, kTooLong = 60; // [ms]
 const kPatience = 20; // pictures before one of another size
-const kAside = 0.35; // the organ from the middle, in edges of the endoscope's picture [1]
+const kAside = 0.35; // the organ from the middle, in edges of the endoscope's picture
 const kArrow = 0.02; // length of a newton [m]
 const kLensFrame = 'scope_camera_optical', kTipFrame = 'scope_tip';
 

@@ -28,7 +28,7 @@ struct StepContext {
   const ToolPoses* tool;  ///< null without a tool. A tool that yields: before the solve as if it did not in this step
   bool insufflator_on;    ///< for the gas
   const ShaftBend* bend = nullptr;  ///< of a tool that yields, at the poses tool->middle; null: it is rigid
-  double when = 1;                  ///< part of the step after which its forces act [1]
+  double when = 1;                  ///< part of the step after which its forces act
   ThreadPool* pool = nullptr;       ///< for what a block does in pieces; null: the calling thread only
 };
 

@@ -106,9 +106,9 @@ struct Event {
   Wall wall = Wall::Anterior;                ///< where the particle is, of the kinds that name it
   double time = 0;                           ///< simulated time at the end of the step [s]
   int particle = -1;                         ///< -1: none
-  double value = 0;            ///< see Kind; in unitOfValue(), or a number or code where that is empty [1]
-  double limit = 0;            ///< what value or amount is compared with, see Kind and RejectReason [m], [N] or [1]
-  double amount = 0;           ///< a second number, see Kind, EventDetail and RejectReason [m] or [1]
+  double value = 0;                          ///< see Kind; in unitOfValue(), or a number or code where there is no unit
+  double limit = 0;            ///< what value or amount is compared with, see Kind and RejectReason [m], [N] or a ratio
+  double amount = 0;           ///< a second number, see Kind, EventDetail and RejectReason [m] or a ratio
   int suture = -1, bite = -1;  ///< numbers from 0; -1: none
 };
 constexpr int kEventKindCount = 33;  ///< values of Event::Kind

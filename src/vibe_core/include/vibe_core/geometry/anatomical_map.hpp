@@ -11,7 +11,7 @@ namespace vibe {
 /// A point of the wall that moves with the tissue.
 struct WallPoint {
   int triangle = -1;                                           ///< of Organ::surface
-  Eigen::Vector3d weight = Eigen::Vector3d::Constant(1. / 3);  ///< of its corners, sum 1 [1]
+  Eigen::Vector3d weight = Eigen::Vector3d::Constant(1. / 3);  ///< of its corners, sum 1
 };
 
 /// Its position on vertices at present positions [m].
@@ -42,7 +42,7 @@ class AnatomicalMap {
 
   const std::vector<Eigen::Vector3d>& vertices() const { return vertices_; }  ///< as given to the constructor [m]
   /// Position along the axis of a share of a region: of what of it is on the greater curvature, or of all of it if
-  /// nothing is, from the fundus towards the pylorus. 0: its proximal end, 1: its distal end [1]
+  /// nothing is, from the fundus towards the pylorus. 0: its proximal end, 1: its distal end
   /// @throws Error if the organ lacks the region
   double alongIn(Region region, double share) const;
   double axisLength() const { return axis_length_; }  ///< from the apex of the fundus to the duodenum [m]
@@ -57,7 +57,7 @@ class AnatomicalMap {
   /// @throws Error if the way leads into an end of the organ, over the apex of the fundus, or more than half around it
   WallPoint walk(const WallPoint& from, double distal, double anterior) const;
 
-  double along(const WallPoint& point) const;              ///< see at() [1]
+  double along(const WallPoint& point) const;              ///< see at()
   double around(const WallPoint& point) const;             ///< see at(), -pi to pi [rad]
   Eigen::Vector3d position(const WallPoint& point) const;  ///< [m]
   Eigen::Vector3d outward(const WallPoint& point) const;   ///< see outwardAt()
@@ -80,8 +80,8 @@ class AnatomicalMap {
   std::vector<Eigen::Vector3d> vertices_;
   std::vector<std::vector<int>> triangles_at_;                  // of each vertex
   std::vector<Eigen::Vector3d> distal_, outward_;               // unit vectors at the vertices
-  std::vector<double> along_, around_;                          // per vertex [1], [rad]
-  std::array<std::pair<double, double>, kRegionCount> extent_;  // along the axis; empty: the first is larger [1]
+  std::vector<double> along_, around_;                          // per vertex: ratio, [rad]
+  std::array<std::pair<double, double>, kRegionCount> extent_;  // along the axis; empty: the first is larger (ratio)
   std::vector<bool> end_;                                       // per vertex: oesophagus or duodenum
   double axis_length_ = 0;
 };

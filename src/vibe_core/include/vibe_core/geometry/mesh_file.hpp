@@ -31,7 +31,7 @@ std::array<double, 3> rotationOf(PatientAxes axes);
 /// Drops vertices without a triangle, merges those that are closer than a part of the longest side of the box around
 /// the surface, and drops the triangles and vertices that vanish.
 /// @param raw   has passed checkNumbers()
-/// @param part  from 0 [1]
+/// @param part  from 0
 SurfaceMesh weld(const SurfaceMesh& raw, double part);
 
 }  // namespace vibe

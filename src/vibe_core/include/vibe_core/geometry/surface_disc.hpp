@@ -14,7 +14,7 @@ namespace vibe {
 /// the disc.
 struct DiscWeights {
   std::vector<int> vertex;     ///< ascending; on a coarse mesh the corners of one triangle
-  std::vector<double> weight;  ///< of each, positive, sum 1 [1]
+  std::vector<double> weight;  ///< of each, positive, sum 1
 };
 
 /// The disc consists of the points of the surface within `radius` of the centre that are connected to it within the

@@ -18,9 +18,10 @@ struct MotionMeasures {
   int movements = 0;                 ///< number that have begun
   int submovements = 0;              ///< peaks of the speed without tremor, see PeakCounter
   std::optional<double> mean_speed;  ///< path_length / time [m/s]
-  std::optional<double> economy;  ///< straight distances of movements over path lengths, 0 to 1; higher is better [1]
-  std::optional<double> log_dimensionless_jerk;  ///< see logDimensionlessJerk(), mean over movements by duration [1]
-  std::optional<double> spectral_arc_length;     ///< SPARC, see SpectralArcLength, mean over movements by duration [1]
+  std::optional<double> economy;     ///< straight distances of movements over path lengths, 0 to 1; higher is better
+  std::optional<double> log_dimensionless_jerk;  ///< see logDimensionlessJerk(), mean over movements by duration
+  std::optional<double>
+      spectral_arc_length;  ///< SPARC, dimensionless: see SpectralArcLength, mean over movements by duration
 };
 
 /// Smoothness of one movement from the jerk of its speed v(t),

@@ -19,7 +19,7 @@ struct OrganMeasures {
   std::optional<double> mean_area;  ///< cross-section of the body, mean over body_length: the lumen's area [m^2]
   std::optional<double> min_area;   ///< of the same sections [m^2]
   /// How evenly wide the body is: 1 - standard deviation / mean of the cross-sections along body_length. A tube has 1,
-  /// an ellipsoid 0.55, a cone 0.11; can be negative. Our definition [1]
+  /// an ellipsoid 0.55, a cone 0.11; can be negative. Our definition, a ratio
   std::optional<double> tubularity;
 };
 

@@ -22,7 +22,7 @@ struct SessionMetrics {
   double max_volume = 0;         ///< [m^3]
   double pressure = 0;           ///< gauge, now [Pa]
   double max_pressure = 0;       ///< [Pa]
-  double max_strain = 0;         ///< in-plane, over particles and time, sampled ten times a second [1]
+  double max_strain = 0;         ///< in-plane, over particles and time, sampled ten times a second
   EnergyAccount energy;          ///< of the last state
   double energy_balance = 0;     ///< see energyBalance(), sampled ten times a second; drift since the start [J]
   EventCounts events;            ///< since the start, by kind

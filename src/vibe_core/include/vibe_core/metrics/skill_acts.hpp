@@ -55,9 +55,9 @@ struct BiteSkill {
   std::optional<double> spacing_sd;            ///< sample standard deviation [m]
   std::optional<double> depth_mean;            ///< below the mucosa [m]
   std::optional<double> depth_sd;              ///< sample standard deviation [m]
-  std::optional<double> full_thickness_share;  ///< [1]
-  std::optional<double> bites_proximal;        ///< share of steps from bite to bite of a set that go proximally [1]
-  std::optional<double> sets_proximal;         ///< the same from the middle of a set to that of the next [1]
+  std::optional<double> full_thickness_share;  ///< ratio
+  std::optional<double> bites_proximal;        ///< share of steps from bite to bite of a set that go proximally
+  std::optional<double> sets_proximal;         ///< the same from the middle of a set to that of the next (ratio)
 };
 
 /// One set of bites on one thread.
@@ -66,11 +66,11 @@ struct SetSkill {
   bool loose = false;                         ///< cinched with less than the scene's loose_tension
   bool named = false;                         ///< technique and margin are known: the T-tag was dropped
   Technique technique = Technique::Other;     ///< that was recognised
-  double margin = 0;                          ///< see TechniqueResult [1]
+  double margin = 0;                          ///< see TechniqueResult (ratio)
   int bites = 0;                              ///< that hold
   int torn_out = 0;                           ///< bites
   std::optional<double> spacing_mean;         ///< see BiteSkill [m]
-  std::optional<double> along;                ///< mean position on the organ's axis, 0: apex, 1: pylorus [1]
+  std::optional<double> along;                ///< mean position on the organ's axis, 0: apex, 1: pylorus
   std::optional<double> thread;               ///< between first and last bite, now; no value below two bites [m]
   double drawn = 0;                           ///< by the cinch [m]
   double tension = 0;                         ///< max over its segments, now [N]

@@ -32,10 +32,10 @@ struct OrganSkill {
   double pressure = 0;                              ///< gauge, at the last measurement [Pa]
   std::optional<OrganMeasures> before;              ///< the reference
   std::optional<OrganMeasures> now;                 ///< at the last measurement
-  std::optional<double> area_reduction;             ///< of mean_area, 1 - now / before; negative: more than before [1]
-  std::optional<double> volume_reduction;           ///< [1]
-  std::optional<double> length_reduction;           ///< of the axis [1]
-  std::string fault;                                ///< why the organ cannot be measured; empty: it can
+  std::optional<double> area_reduction;    ///< of mean_area, 1 - now / before; negative: more than before (ratio)
+  std::optional<double> volume_reduction;  ///< ratio
+  std::optional<double> length_reduction;  ///< of the axis (ratio)
+  std::string fault;                       ///< why the organ cannot be measured; empty: it can
 };
 
 /// Measures the organ once per simulated second, and when the reference is taken.

@@ -20,7 +20,7 @@ struct ForceMeasures {
   double max = 0;                     ///< [N]
   double impulse = 0;                 ///< integral of the magnitude over time [N s]
   std::optional<double> mean;         ///< over loaded_time; no value without load [N]
-  std::optional<double> share_above;  ///< time_above / time; no value without time [1]
+  std::optional<double> share_above;  ///< time_above / time; no value without time
 };
 
 struct ForceSettings {

@@ -17,7 +17,7 @@ struct GeometryScene {
   Kind kind = Kind::Stomach;  ///< decides which of the keys below count
   int particles = 3618;       ///< exactly this many vertices of the mid-surface, 100 to 200,000
 
-  double scale = 1;  ///< factor on all lengths of the organ, but not on the thickness of its wall [1]
+  double scale = 1;  ///< factor on all lengths of the organ, but not on the thickness of its wall
 
   // kind: stomach (procedural)
   std::string shape = "sthenic";  ///< sthenic, j, steer_horn; see stomachKnots()
@@ -38,7 +38,7 @@ struct GeometryScene {
 /// Fibres in the wall, in two families at an angle to each side of the organ's long axis.
 struct FibreScene {
   double modulus = 10e3;  ///< of each family [Pa]
-  double stiffening = 1;  ///< [1]
+  double stiffening = 1;  ///< ratio
   double angle = 0;       ///< 0: both along the organ, pi/2: both around it [rad]
 };
 
@@ -48,15 +48,15 @@ struct TissueScene {
   std::string law = "yeoh";      ///< a word of choicesOf("tissue.law"), of model shell
   double density = 1050;         ///< [kg/m^3]
   double young_modulus = 110e3;  ///< [Pa]
-  double poisson_ratio = 0.45;   ///< [1]
-  double stiffening = 2.0;       ///< of the laws fung, gent and yeoh [1]
+  double poisson_ratio = 0.45;   ///< ratio
+  double stiffening = 2.0;       ///< of the laws fung, gent and yeoh (ratio)
   std::array<double, kRegionCount> thickness{1.97e-3, 1.97e-3, 2.33e-3, 2.70e-3, 2.70e-3};  ///< per Region [m]
-  std::array<double, kRegionCount> stiffness{1, 1, 1, 1, 1};  ///< factor per Region, of model shell [1]
+  std::array<double, kRegionCount> stiffness{1, 1, 1, 1, 1};  ///< factor per Region, of model shell
   std::optional<FibreScene> fibres;                           ///< of model shell
   double mass_damping = 30;                                   ///< Rayleigh damping, mass part [1/s]
   double stiffness_damping = 15e-6;  ///< Rayleigh damping, stiffness part; damps short waves [s]
   int iterations = 2;                ///< quasi-Newton iterations per step, of model shell
-  double spectral_radius = 0.2;      ///< generalised-alpha, of model shell [1]
+  double spectral_radius = 0.2;      ///< generalised-alpha, of model shell (ratio)
   bool self_contact = false;         ///< contact between walls that are pulled together, of model shell
   int substeps = 0;  ///< substeps per step, of model shape_matching; 0: the fewest that are stable, see Model
 };
@@ -103,7 +103,7 @@ struct ScopeScene {
   bool base_from_anatomy = true;                   ///< scope_base at the organ's entry, x axis into the lumen
   Eigen::Vector3d base_position{0, 0, 0};          ///< otherwise this position, in world [m]
   std::array<double, 3> base_rpy{0, 0, 0};         ///< and this orientation [rad]
-  double friction = 0.1;                           ///< Coulomb coefficient tool on mucosa [1]
+  double friction = 0.1;                           ///< Coulomb coefficient tool on mucosa
   std::optional<ScopeComplianceScene> compliance;  ///< empty: a rigid scope
 };
 
@@ -112,7 +112,7 @@ struct HelixScene {
   double reach = 4e-3;              ///< grips if the wall is within this distance of the tip [m]
   double grip_radius = 5e-3;        ///< of the disc of wall that it holds, at rest [m]
   double hold_force = 8.0;          ///< slips above this force when fully turned in [N]
-  double hold_turns = 3.0;          ///< turns until it is fully turned in [1]
+  double hold_turns = 3.0;          ///< turns until it is fully turned in
   double initial_hold_force = 0.5;  ///< holds without a turn [N]; between the two the force grows with the turns
 };
 
@@ -120,7 +120,7 @@ struct HelixScene {
 struct SutureScene {
   double bite_radius = 4e-3;             ///< of the disc of wall that the thread pulls on, at rest [m]
   double thread_stiffness = 323;         ///< force per strain, see polypropylene20() [N]
-  double thread_friction = 0.15;         ///< Coulomb coefficient thread on tissue [1]
+  double thread_friction = 0.15;         ///< Coulomb coefficient thread on tissue
   double thread_strength = 14.1;         ///< breaks above this tension [N]
   double thread_length = 1.2;            ///< of one thread, from the T-tag to where the device releases it [m]
   double pull_out_force = 8.0;           ///< tears out of a full-thickness bite above this force [N]
@@ -130,15 +130,15 @@ struct SutureScene {
   double cinch_tension = 3.0;            ///< at which the cinch stops drawing [N]
   double loose_tension = 0.5;            ///< a cinch released below this is loose [N]
   std::string cinch_model = "thread";    ///< how a set pulls: `thread`, or `groups` (ViBE prototype)
-  double strain_limit = 0.5;             ///< of the wall at which `groups` stops drawing [1]
+  double strain_limit = 0.5;             ///< of the wall at which `groups` stops drawing
   int group_particles = 5;               ///< most per group of techniques other than U and Z
   std::string classifier = "corrected";  ///< or `printed`: equation 2 of the ViBE prototype as printed
 };
 
 /// Bleeding after a bite. All values are design choices; no rates are published.
 struct BleedingScene {
-  double mild_probability = 0.25;   ///< of a bite [1]
-  double brisk_probability = 0.03;  ///< of a bite [1]
+  double mild_probability = 0.25;   ///< of a bite
+  double brisk_probability = 0.03;  ///< of a bite
   double mild_rate = 1.0e-8;        ///< [m^3/s]
   double brisk_rate = 2.5e-7;       ///< [m^3/s]
   double mild_duration = 60;        ///< after which mild bleeding stops by itself [s]

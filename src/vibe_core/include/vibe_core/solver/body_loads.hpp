@@ -66,7 +66,7 @@ struct ToolYield {
 struct SurfacePoint {
   int count = 0;                        ///< number of nodes, 1 to 3; 0: no point
   std::array<int, 3> node{-1, -1, -1};  ///< their numbers, -1 behind the last one
-  std::array<double, 3> weight{};       ///< sum 1 [1]
+  std::array<double, 3> weight{};       ///< sum 1
 
   /// The place of one node.
   static SurfacePoint ofNode(int node) { return {1, {node, -1, -1}, {1, 0, 0}}; }
@@ -76,7 +76,7 @@ struct SurfacePoint {
 /// Examples are held tissue and the weighted mean of a patch on a spring.
 struct LinearConstraint {
   std::vector<int> node;                     ///< numbers of the nodes
-  std::vector<Eigen::Vector3d> coefficient;  ///< [1]
+  std::vector<Eigen::Vector3d> coefficient;  ///< ratio
   double target = 0;                         ///< [m]
   double compliance = 0;                     ///< 0: exact [m/N]
   YieldVector yield = YieldVector::Zero();   ///< motion of the target along the coefficients per ToolYield dof
@@ -87,7 +87,7 @@ struct LinearConstraint {
 /// A few nodes of which something outside feels the weighted mean.
 struct AttachmentPoint {
   std::vector<int> node;       ///< numbers of the nodes
-  std::vector<double> weight;  ///< [1]
+  std::vector<double> weight;  ///< ratio
   bool operator==(const AttachmentPoint& other) const { return node == other.node && weight == other.weight; }
 };
 
@@ -101,7 +101,7 @@ struct ThreadLoad {
   int first_attachment = 0;     ///< index into BodyLoads::attachments; the others follow in the order along the thread
   std::vector<double> length;   ///< unstretched, per segment; out: after sliding [m]
   double stiffness = 0;         ///< force per strain [N]
-  double friction = 0;          ///< Coulomb coefficient [1]
+  double friction = 0;          ///< Coulomb coefficient
   std::vector<double> tension;  ///< per segment, of the last step; out: of this step; 0: slack [N]
   double work = 0;              ///< out: of the thread on the body over the step [J]
 };
@@ -113,8 +113,8 @@ struct ContactConstraint {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< out of the tool, unit
   double offset = 0;                                 ///< normal . x >= offset - compliance * normal force [m]
   double compliance = 0;                             ///< of the wall's thickness; 0: rigid [m/N]
-  double friction = 0;                               ///< Coulomb coefficient [1]
-  double used_friction = 0;  ///< out: the coefficient that the step has used; 0 where there were too many contacts [1]
+  double friction = 0;                               ///< Coulomb coefficient
+  double used_friction = 0;  ///< out: the coefficient that the step has used; 0 where there were too many contacts
   Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  ///< where the point would be if it stuck to the tool [m]
   Eigen::Matrix<double, 3, kYieldDofs> yield =
       Eigen::Matrix<double, 3, kYieldDofs>::Zero();  ///< how far the anchor moves per coordinate in which the tool

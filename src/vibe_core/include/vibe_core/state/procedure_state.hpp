@@ -15,13 +15,13 @@ namespace vibe {
 /// A point where the needle passed through the wall. The thread acts on the weighted mean of the surrounding particles.
 struct Bite {
   std::vector<int> particle;     ///< numbers of these particles
-  std::vector<double> weight;    ///< per particle, sum 1 [1]
+  std::vector<double> weight;    ///< per particle, sum 1
   double time = 0;               ///< time of the bite [s]
   double depth = 0;              ///< greatest depth below the mucosa [m]
   double thickness = 0;          ///< of the wall at the bite, at rest [m]
   Region region = Region::Body;  ///< of the particle with the largest weight
   Wall wall = Wall::Anterior;    ///< of the particle with the largest weight
-  double along = 0;              ///< position along the organ's axis at rest, 0: apex of the fundus, 1: pylorus [1]
+  double along = 0;              ///< position along the organ's axis at rest, 0: apex of the fundus, 1: pylorus
 
   bool fullThickness() const { return depth >= thickness; }  ///< the needle went through the whole wall
 };
@@ -39,7 +39,7 @@ struct Suture {
 
   std::vector<Eigen::Vector3d> taken;  ///< the bites of which the technique was recognised, on the wall at rest [m]
   std::uint8_t technique = 0;          ///< Technique, recognised when the T-tag was dropped
-  double technique_margin = 0;         ///< see recogniseTechnique() [1]
+  double technique_margin = 0;         ///< see recogniseTechnique(), a ratio
   std::array<int, 2> transitions{{-1, -1}};  ///< see TechniqueResult
   std::uint8_t corrected_technique = 0;      ///< Technique by TechniqueRule::Corrected, whichever rule the scene uses
   std::uint8_t printed_technique = 0;        ///< by TechniqueRule::Printed
@@ -96,7 +96,7 @@ struct ProcedureState {
 
   // helix
   double grip_rotation = 0;  ///< helix_rotation when the grip began [rad]
-  double grip_turns = 0;     ///< maximum of turns into the tissue since then [1]
+  double grip_turns = 0;     ///< maximum of turns into the tissue since then
 
   // needle
   bool arm_closed = false;    ///< the needle arm has reached its closed end and has not been fully open since

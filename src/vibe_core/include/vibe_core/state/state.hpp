@@ -25,7 +25,7 @@ constexpr double kPullRadius = 6e-3;    ///< of the patch around the particle, i
 struct PullSpring {
   int particle = -1;                                 ///< at the centre of the patch; -1: nothing is held
   std::vector<int> node;                             ///< particles of the patch, ascending, without fixed ones
-  std::vector<double> weight;                        ///< of each in the mean position, sum 1 [1]
+  std::vector<double> weight;                        ///< of each in the mean position, sum 1
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< end of the spring, world [m]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< spring on tissue in the last step, world [N]
 
@@ -37,7 +37,7 @@ struct PullSpring {
 struct GripPoint {
   int particle = -1;      ///< its number
   Eigen::Vector3d local;  ///< where it was when the helix took hold, in the frame of the link that carries it [m]
-  double weight = 1;      ///< its share of the disc; sum over the grip 1 [1]
+  double weight = 1;      ///< its share of the disc; sum over the grip 1
 };
 
 /// Weight from which a particle counts as held by itself, where only whole particles can be: a quarter of the greatest.

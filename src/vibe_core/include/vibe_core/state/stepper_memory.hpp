@@ -13,7 +13,7 @@ namespace vibe {
 /// element couples.
 struct StiffnessCoupling {
   std::array<int, 6> node{-1, -1, -1, -1, -1, -1};  ///< -1: unused
-  std::array<float, 6> weight{};                    ///< [1]
+  std::array<float, 6> weight{};                    ///< ratio
   std::array<float, 6> stiffness{};                 ///< symmetric, positive semidefinite: xx, xy, xz, yy, yz, zz [N/m]
 };
 

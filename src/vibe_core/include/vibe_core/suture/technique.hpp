@@ -27,7 +27,7 @@ constexpr int kTechniqueMaxBites = 16;  ///< most bites; sets with more are Othe
 struct TechniqueResult {
   Technique technique = Technique::Other;  ///< that was recognised; Other: none
 
-  /// Confidence of the result [1], from 0 (another technique is equally likely) to 1. Corrected: tanh(d / 4), where d
+  /// Confidence of the result, from 0 (another technique is equally likely) to 1. Corrected: tanh(d / 4), where d
   /// is the misfit of the closest alternative minus that of the result. This is the difference of the two probabilities
   /// if there were no third technique. Other counts as an alternative; its misfit is the threshold above which a set is
   /// Other. Printed: the smallest distance of a dot product from its threshold, at most 1.

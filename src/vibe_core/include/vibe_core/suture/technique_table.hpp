@@ -29,10 +29,10 @@ struct TechniqueTable {
   std::array<std::array<std::array<int, kTechniqueCount>, kTechniqueCount>, kTableMaxBites - kTableMinBites + 1>
       count{};
 
-  /// Share of correct answers [1]. three_way: Triangular, Square, Running, C and Other count as one answer, as in the
+  /// Share of correct answers. three_way: Triangular, Square, Running, C and Other count as one answer, as in the
   /// paper.
   double right(bool three_way) const;
-  /// The same among the sets of that many bites, kTableMinBites to kTableMaxBites; 0: there are none [1].
+  /// The same among the sets of that many bites, kTableMinBites to kTableMaxBites; 0: there are none.
   double right(bool three_way, int bite_count) const;
   int drawn(Technique technique) const;  ///< number of patterns of that technique in the table
 };

@@ -12,7 +12,7 @@ struct TissueGroup {
   std::vector<int> particle;            ///< ascending
   std::vector<Eigen::Vector3d> offset;  ///< from the middle at the start of cinching, rotated with the set since [m]
   std::vector<int> middle;              ///< particles whose weighted mean is the middle
-  std::vector<double> weight;           ///< of these particles, sum 1 [1]
+  std::vector<double> weight;           ///< of these particles, sum 1
   double drawn = 0;                     ///< completed fraction of the way to the middle, 0 to 1
 
   bool empty() const { return particle.empty(); }

@@ -17,7 +17,7 @@ constexpr double kLitrePerMinute = 1e-3 / 60;
 struct ApcParameters {
   // the probe, in the working channel of the scope
   double power = 40;                        ///< [W]; 20 and 40 W: Fetz 2021, Endosc Int Open 9:E790
-  double efficiency = 1;                    ///< fraction of the power that reaches the tissue [1]
+  double efficiency = 1;                    ///< fraction of the power that reaches the tissue
   double argon_flow = 1 * kLitrePerMinute;  ///< [m^3/s]; 1.0 to 1.4 L/min: Fetz 2021
   double probe_length = 0.010;              ///< beyond the tip of the scope [m]; design choice
   /// Largest distance from the end of the probe to tissue [m]. The manufacturer emed specifies 3 mm in endoscopes and 5

@@ -35,7 +35,7 @@ class ElasticElements {
   /// Mass of each node for a density [kg/m^3], lumped; (nodeCount).
   virtual std::vector<double> lumpedMass(double density) const = 0;
 
-  /// Mean stretch around each node relative to rest, minus 1; within the surface for shells. (nodeCount) [1]
+  /// Mean stretch around each node relative to rest, minus 1; within the surface for shells. (nodeCount)
   virtual void strain(const double* displacement, float* out) const = 0;
 };
 

@@ -29,8 +29,8 @@ constexpr int kLawCount = VIBE_MATERIAL_LAWS(VIBE_COUNT);
 struct Material {
   Law law = Law::NeoHookean;  ///< built in, or registered before
   double young_modulus = 0;   ///< [Pa]
-  double poisson_ratio = 0;   ///< [1]
-  double stiffening = 0;      ///< b, or 1/Jm; not used by every law [1]
+  double poisson_ratio = 0;   ///< ratio
+  double stiffening = 0;      ///< b, or 1/Jm; not used by every law (ratio)
 };
 
 /// Parameter ranges of a law beyond E > 0, 0 <= nu < 0.5 and stiffening >= 0.
@@ -54,16 +54,16 @@ std::string nameOf(Law law);
 
 /// Invariants of a deformation, as differences from rest.
 struct LawInvariants {
-  double first;       ///< I - 3 = tr(FtF) - 3 = l1^2 + l2^2 + l3^2 - 3 for principal stretches l [1]
-  double volume;      ///< J - 1 = l1 l2 l3 - 1; below -1 for inverted material [1]
-  double difference;  ///< first - 2 volume, computed without cancellation; second order in the strain [1]
+  double first;       ///< I - 3 = tr(FtF) - 3 = l1^2 + l2^2 + l3^2 - 3 for principal stretches l (ratio)
+  double volume;      ///< J - 1 = l1 l2 l3 - 1; below -1 for inverted material (ratio)
+  double difference;  ///< first - 2 volume, computed without cancellation; second order in the strain
 };
 
 /// Parameters of a material. shear and lambda are the Lame constants that follow from young_modulus and poisson_ratio.
 struct LawParameters {
   double shear;       ///< mu = E / (2 (1 + nu)) [Pa]
   double lambda;      ///< E nu / ((1 + nu) (1 - 2 nu)) [Pa]
-  double stiffening;  ///< tissue.stiffening; a law may ignore it [1]
+  double stiffening;  ///< tissue.stiffening; a law may ignore it (ratio)
 };
 
 /// Energy per rest volume W(I, J) and its derivatives with respect to I and J [Pa].

@@ -25,10 +25,10 @@ struct ShellSweep;
 /// Ogden 2000, "A new constitutive framework for arterial wall mechanics", without dispersion. Fibres do not contribute
 /// to bending.
 struct ShellFibres {
-  double stiffening = 1;        ///< above 0 [1]
+  double stiffening = 1;        ///< above 0 (ratio)
   std::vector<double> modulus;  ///< per triangle [Pa]; empty: no fibres
   std::vector<std::array<Eigen::Vector3d, 2>>
-      direction;  ///< per triangle, projected onto its plane; 0: the family is absent; unit vector [1]
+      direction;  ///< per triangle, projected onto its plane; 0: the family is absent; unit vector
 };
 
 /// A thin wall at rest, described by its middle surface.

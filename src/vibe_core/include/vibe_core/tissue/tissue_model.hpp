@@ -21,7 +21,7 @@ class TissueModel {
   /// Adds the elastic force on every particle [N]; arrays of (particle count).
   virtual void addForces(const State& state, double* fx, double* fy, double* fz) const = 0;
 
-  /// Mean in-plane stretch around each particle relative to rest, minus 1 [1]; array of (particle count).
+  /// Mean in-plane stretch around each particle relative to rest, minus 1; array of (particle count).
   virtual void strain(const State& state, float* out) const = 0;
 
   /// Ratio of simulated to requested stiffness, the minimum over the wall. Below 1, the substeps are too long for the

@@ -25,7 +25,7 @@ class ShaftBend {
   /// free length.
   struct Share {
     double mean = 0, change = 0;            ///< [m]
-    double mean_rate = 0, change_rate = 0;  ///< per metre of free length [1]
+    double mean_rate = 0, change_rate = 0;  ///< ratio per metre of free length
   };
 
   /// @param stations      distance of each joint from the end of the shaft, ascending [m], kMaxShaftStations at most
@@ -62,7 +62,7 @@ struct ToolJoint {
   Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  ///< joint frame in the parent link [m]
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();           ///< unit, in the joint frame
   int input = -1;         ///< index of the driving input in StepInput::joints; -1: fixed
-  double multiplier = 1;  ///< position = multiplier * input + offset (URDF mimic) [1]
+  double multiplier = 1;  ///< position = multiplier * input + offset (URDF mimic), a ratio
   double offset = 0;      ///< [m], [rad]
   int station = -1;   ///< index into ToolModel::shaftStations(): a joint of the shaft that bends under load; -1: none
   int direction = 0;  ///< of such a joint: 0: up, 1: left

@@ -15,7 +15,7 @@ namespace vibe {
 /// A place on the wall of the organ in its present shape: anatomical coordinates (see AnatomicalMap), then millimetres
 /// along the wall from there.
 struct Place {
-  double along = 0.5;   ///< the axis, 0: apex of the fundus, 1: duodenal end; of `region`, if there is one [1]
+  double along = 0.5;   ///< the axis, 0: apex of the fundus, 1: duodenal end; of `region`, if there is one
   double around = 0;    ///< angle from the greater curvature, positive towards the anterior wall [rad]
   double distal = 0;    ///< distance from there along the wall, towards the pylorus [m]
   double anterior = 0;  ///< and then around the organ, towards the front [m]
@@ -52,7 +52,7 @@ struct SutureSetGoal {
   double width = 60e-3;              ///< and around it [m]
   bool mirrored = false;             ///< begins on the posterior instead of the anterior side
   bool cinched = true;               ///< ends with T-tag and cinch
-  double spacing = 0;  ///< of the sets of its row, as Place::along; leaves less `length`; 0: it is alone [1]
+  double spacing = 0;                ///< of the sets of its row, as Place::along; leaves less `length`; 0: it is alone
 };
 
 struct CinchGoal {};

@@ -14,7 +14,7 @@ struct TremorSettings {
   double low_frequency = 8;                     ///< [Hz]
   double high_frequency = 12;                   ///< [Hz]
   std::array<double, kJointCount> amplitude{};  ///< root mean square per joint [m], [rad]
-  double scale = 1;                             ///< multiplies all amplitudes [1]
+  double scale = 1;                             ///< multiplies all amplitudes (ratio)
 };
 
 /// Involuntary movement of the hands: for each joint a sum of sinusoids with frequencies spread over a band and random
@@ -42,18 +42,18 @@ class Tremor {
 /// the two are a learning curve.
 struct Skill {
   std::string name = "expert";  ///< for people; it changes nothing
-  double pace = 1;              ///< speed of the hand relative to an experienced one [1]
+  double pace = 1;              ///< speed of the hand relative to an experienced one
   double look_time = 7;         ///< that is taken to look before each bite [s]
   double foresight = 1;         ///< how well it imagines where the needle will pass when the wall is drawn in, 0 to 1:
                                 ///< not beyond what the device looks like now, fully
   double reaction_time = 0.15;  ///< from what is seen or felt to the motion of the hand [s]
   double aim_error = 1e-3;      ///< standard deviation of the place of a bite or mark, per direction [m]
   double force_limit = 5;       ///< at which a motion is stopped [N]
-  double turns = 3;             ///< revolutions of the helix [1]
+  double turns = 3;             ///< revolutions of the helix
   double drawn = 3e-3;          ///< helix_advance to which it draws the wall in without checks_depth [m]
   int attempts = 5;             ///< per bite or mark
   bool checks_depth = true;     ///< draws the wall in farther if the needle has not penetrated it fully
-  double tightness = 1;         ///< part of the tension of a full cinch at which it is released [1]
+  double tightness = 1;         ///< part of the tension of a full cinch at which it is released
   /// Of the hands, added to all motions.
   TremorSettings tremor{8, 12, {5e-5, 1.7e-3, 1.7e-3, 1.7e-3, 2e-5, 0, 0}, 1};
 

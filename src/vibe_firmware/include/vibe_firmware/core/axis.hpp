@@ -25,10 +25,10 @@ struct AxisConfig {
   float slew_limit = 10.0F;         ///< of torque changes that the hand does not cause: see step() of an axis [N m/s]
   float velocity_pole = 0.9F;       ///< a, of the velocity filter v = a v + (1-a) dx/T; in [0, 1)
   float output_delay = 0.05e-3F;    ///< t_d, from reading the encoder to the torque; at most T [s]
-  float safety_factor = 1.25F;      ///< of both passivity conditions, at least 1 [1]
+  float safety_factor = 1.25F;      ///< of both passivity conditions, at least 1
   float energy_capacity = 0.05F;    ///< that the passivity observer lets the axis give back at most [J]
   float speed_limit = 100.0F;       ///< that the axis cannot exceed; beyond it: encoder fault [rad/s]
-  float counts_per_turn = 2048.0F;  ///< between two index pulses; 0: the encoder has no index [1]
+  float counts_per_turn = 2048.0F;  ///< between two index pulses; 0: the encoder has no index
 };
 constexpr std::size_t kAxisConfigFields = 13;  ///< all float, in the order above
 static_assert(sizeof(AxisConfig) == kAxisConfigFields * sizeof(float), "kAxisConfigFields");

@@ -33,7 +33,7 @@ struct AxisState {
   float position = 0;           ///< [rad]
   float velocity = 0;           ///< filtered [rad/s]
   float torque = 0;             ///< commanded in the last tick [N m]
-  float spring_gain = 0;        ///< of the last tick, from 0 (host silent) to 1 [1]
+  float spring_gain = 0;        ///< of the last tick, from 0 (host silent) to 1 (ratio)
   float transition = 0;         ///< torque added to the spring so that new parameters do not jump; fades [N m]
   float torque_limit = 0;       ///< in force; falls at the slew limit to that of the parameters [N m]
   EnergyAccount energy{};       ///< that the axis may still give to the hand

@@ -13,8 +13,8 @@ struct MotorDrive {
   float supply_voltage = 9.0F;       ///< U, of the bridge [V]
   float resistance = 19.8F;          ///< R, of winding and bridge [ohm]
   float torque_constant = 11.5e-3F;  ///< k [N m/A]
-  float transmission = 10.0F;        ///< n, turns of the motor per turn of the axis [1]
-  float direction = 1.0F;            ///< -1: the motor is wired the other way round; 1 otherwise [1]
+  float transmission = 10.0F;        ///< n, turns of the motor per turn of the axis
+  float direction = 1.0F;            ///< -1: the motor is wired the other way round; 1 otherwise
 };
 
 /// Duty in [-1, 1] for a torque of the axis [N m]. NaN gives 0.

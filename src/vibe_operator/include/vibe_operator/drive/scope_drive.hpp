@@ -54,7 +54,7 @@ using JointLimits = std::array<JointLimit, kJointCount>;  ///< by DriveJoint
 struct DriveSpeeds {
   /// While a key is held, at normal speed [1/s]. Design choice: about the pace of the scripted trainees.
   Joints keys = {0.03, 0.8, 0.6, 0.6, 0.015, 12.0, 0.03};
-  double slow = 0.25, fast = 2.5;  ///< factors of the other two gears; slow applies to mouse and wheel too [1]
+  double slow = 0.25, fast = 2.5;  ///< factors of the other two gears; slow applies to mouse and wheel too
 };
 
 /// Keys and mouse of a player, and the joints and buttons that follow from them. Knows no clock: advance() says how

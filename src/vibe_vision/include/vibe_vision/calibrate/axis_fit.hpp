@@ -45,15 +45,15 @@ struct MotionSample {
 
 /// What is known about the print and the rig when no slide is known; standard deviations.
 struct ScaleTrust {
-  double print = 0.005;   ///< relative error of the printed size [1]
+  double print = 0.005;   ///< relative error of the printed size
   double slant = 0.0873;  ///< angle between axis and sensor [rad]; it shortens the picture by its cosine
 };
 
 struct MotionFit {
   SlideAxis axis;                     ///< slide 0 is at the first sample; perspective 0
   double rms_across = 0;              ///< 1.48 times the median distance from the line [px]
-  double scale_uncertainty = 0;       ///< relative standard deviation of pixels_per_metre, trust included [1]
-  double size_change = 0;             ///< relative change of the marker's size from one end to the other [1]
+  double scale_uncertainty = 0;       ///< relative standard deviation of pixels_per_metre, trust included
+  double size_change = 0;             ///< relative change of the marker's size from one end to the other
   std::vector<std::string> warnings;  ///< sentences with their remedies
 };
 

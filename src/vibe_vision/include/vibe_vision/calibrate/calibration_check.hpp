@@ -20,10 +20,10 @@ enum class Verdict {
 struct CheckedQuantity {
   std::string name;  ///< "scale", "direction", "across", "perspective", "lens", "path", or the word of a Doubt
   Verdict verdict = Verdict::Unknown;  ///< what came of it
-  double value = 0;      ///< against the calibration [SI]; of a doubt the share of frames that have it [1]
-  double deviation = 0;  ///< standard deviation of the value [SI]; of the shutter of its row time [s]
-  double limit = 0;      ///< of the value, beyond which it is wrong [SI]
-  std::string text;      ///< value and deviation in words, and the remedy if it does not hold
+  double value = 0;                    ///< against the calibration [SI]; of a doubt the share of frames that have it
+  double deviation = 0;                ///< standard deviation of the value [SI]; of the shutter of its row time [s]
+  double limit = 0;                    ///< of the value, beyond which it is wrong [SI]
+  std::string text;                    ///< value and deviation in words, and the remedy if it does not hold
 };
 
 /// What a motion says about one instrument.

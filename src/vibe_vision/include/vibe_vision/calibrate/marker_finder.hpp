@@ -18,7 +18,7 @@ namespace vibe::vision {
 struct MarkerSighting {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< centre, as seen (distorted) [px]
   Eigen::Vector2d direction =
-      Eigen::Vector2d::UnitX();  ///< of +u of a sleeve; of a ring always x; unit vector in the image [1]
+      Eigen::Vector2d::UnitX();  ///< of +u of a sleeve; of a ring always x; unit vector in the image
   double pixels_per_metre = 0;   ///< from the size at which it is seen [px/m]
   double score = 0;              ///< correlation coefficient, up to 1
 };
@@ -64,7 +64,7 @@ struct LocatedMarker {
 
 struct LocatedMarkers {
   std::vector<LocatedMarker> markers;  ///< one per image
-  /// Where positive slide is as a sleeve shows it: a unit vector in the undistorted image [1]; zero for a ring.
+  /// Where positive slide is as a sleeve shows it: a unit vector in the undistorted image; zero for a ring.
   Eigen::Vector2d direction = Eigen::Vector2d::Zero();
 };
 

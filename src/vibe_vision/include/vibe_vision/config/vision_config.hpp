@@ -63,7 +63,7 @@ struct InstrumentConfig {
 struct GateConfig {
   double min_contrast = 20;       ///< white - black [DN]
   double min_visible = 0.4;       ///< share of the marker's information that must be seen, 0 to 1
-  double max_scale_error = 0.15;  ///< of the marker's size relative to the calibrated one [1]
+  double max_scale_error = 0.15;  ///< of the marker's size relative to the calibrated one
   double max_tilt = 0.35;         ///< of the marker in the image [rad]
 };
 
@@ -75,7 +75,7 @@ struct VisionConfig {
   CameraModel camera;  ///< lens and sensor
   PixelNoise noise;    ///< of the sensor
   /// Of the response: a pixel shows 255 (light / 255)^(1 / gamma). Not given: 1, or what a marker tells that 1 does not
-  /// explain [1].
+  /// explain; an exponent.
   std::optional<double> gamma;
   double blur = 0.6;                          ///< standard deviation of the point spread function in focus [px]
   GateConfig gates;                           ///< of all instruments

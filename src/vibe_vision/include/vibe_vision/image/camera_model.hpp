@@ -10,7 +10,7 @@ struct CameraModel {
   int width = 0, height = 0;           ///< of the full image [px]
   double fx = 0, fy = 0;               ///< [px]
   double cx = 0, cy = 0;               ///< [px]
-  std::array<double, 5> distortion{};  ///< k1, k2, p1, p2, k3, of OpenCV's model [1]
+  std::array<double, 5> distortion{};  ///< coefficients k1, k2, p1, p2, k3 of OpenCV's model
   double reprojection_rms = 0;         ///< residual of the calibration [px]; 0: not calibrated
 
   bool isDistorted() const;  ///< any coefficient is not 0

@@ -42,16 +42,17 @@ void setTag(SyntheticInstrument& instrument, const TagDesign& tag);
 
 /// What spoils a picture. The default spoils nothing but noise and focus blur.
 struct Degradation {
-  double exposure = 1e-3;              ///< [s]
-  double blur = 0.6;                   ///< standard deviation of the point spread function [px]
-  PixelNoise noise;                    ///< of the sensor, that the picture has
-  double flicker = 0;                  ///< relative amplitude at 100 Hz [1]
-  double drift = 0;                    ///< relative change of the light per second, down and up again in 2 s [1/s]
-  double vignetting = 0;               ///< share of the light lost in the corners
-  std::array<double, 5> distortion{};  ///< the config's camera has the same: a calibrated lens; k1, k2, p1, p2, k3 [1]
-  int highlights = 0;                  ///< saturated spots on each marker; they are fixed in space, it moves through
-  bool occluder = false;               ///< a bar, 6 mm wide, that sweeps across the axes
-  bool look_alike = false;             ///< the same marker, 0.75 times as large, that passes beside
+  double exposure = 1e-3;  ///< [s]
+  double blur = 0.6;       ///< standard deviation of the point spread function [px]
+  PixelNoise noise;        ///< of the sensor, that the picture has
+  double flicker = 0;      ///< relative amplitude at 100 Hz
+  double drift = 0;        ///< relative change of the light per second, down and up again in 2 s [1/s]
+  double vignetting = 0;   ///< share of the light lost in the corners
+  std::array<double, 5>
+      distortion{};         ///< the config's camera has the same: a calibrated lens; coefficients k1, k2, p1, p2, k3
+  int highlights = 0;       ///< saturated spots on each marker; they are fixed in space, it moves through
+  bool occluder = false;    ///< a bar, 6 mm wide, that sweeps across the axes
+  bool look_alike = false;  ///< the same marker, 0.75 times as large, that passes beside
 };
 
 struct SyntheticScene {

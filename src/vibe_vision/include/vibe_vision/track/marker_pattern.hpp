@@ -57,7 +57,7 @@ struct PixelBlock {
 struct PatternValues {
   std::vector<float> value;  ///< 0 to 1, per pixel
   std::array<std::vector<float>, kPoseParameters>
-      derivative;  ///< per parameter of the pose, in its unit, and pixel [1/px], [1/rad] or [1]
+      derivative;  ///< per parameter of the pose, in its unit, and pixel [1/px], [1/rad] or a ratio
 
   /// Room for this many pixels. @param observed  as MarkerPattern::observes(); others get no derivatives
   void allocate(std::size_t capacity, const std::array<bool, kPoseParameters>& observed);
@@ -108,7 +108,7 @@ class MarkerPattern {
   virtual double searchHalfWidth() const = 0;  ///< [px]
   /// Fills that mean reflectance, 0 to 1.
   /// @param motion  during the exposure, along the axis [px]
-  /// @param scale  of the marker's size, relative to the pattern's pixels_per_metre [1]
+  /// @param scale  of the marker's size, relative to the pattern's pixels_per_metre
   virtual void searchProfile(double motion, double scale, std::vector<float>& profile) const = 0;
   /// What the rotation adds to that: cos(rotation) * cosine + sin(rotation) * sine, as long as the profile; empty for a
   /// marker that does not show it.

@@ -55,7 +55,7 @@ struct Measurement {
   double along = 0, lateral = 0;                    ///< marker centre relative to SlideAxis::origin, undistorted [px]
   double along_variance = 0;                        ///< [px^2]
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< marker centre in the full image, as seen (distorted) [px]
-  double scale = 1;                                 ///< size of the marker relative to the calibrated one [1]
+  double scale = 1;                                 ///< size of the marker relative to the calibrated one
   double tilt = 0;                                  ///< in the image, against the axis [rad]
   double contrast = 0;                              ///< white - black [DN]
   int roi_x = 0, roi_y = 0, roi_width = 0, roi_height = 0;  ///< where it was looked for, full image [px]
