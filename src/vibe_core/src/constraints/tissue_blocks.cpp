@@ -141,7 +141,7 @@ const std::vector<WallContact>& WallContacts::find(const State& state) {
       const int i = pair.node[k];
       if (i >= 0) contact.point += 0.5 * std::abs(pair.weight[k]) * Eigen::Vector3d(state.x[i], state.y[i], state.z[i]);
     }
-    contact.force = SelfContact::normalForce(pair);
+    contact.force = contact_->normalForce(pair);
     found_.push_back(contact);
   }
   return found_;

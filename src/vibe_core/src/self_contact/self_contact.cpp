@@ -180,8 +180,9 @@ void SelfContact::finish(Pair& pair) {
   pairs_.push_back(pair);
 }
 
-double SelfContact::normalForce(const Pair& pair) {
-  return -pair.stiffness / pair.thickness * squeeze(pair.away.norm() / pair.thickness, pair.straight_below).slope;
+double SelfContact::normalForce(const Pair& pair) const {
+  const double distance = pair.away.norm() / pair.thickness;
+  return -pair.stiffness / pair.thickness * squeeze(distance, pair.straight_below, policy_.wall_onset).slope;
 }
 
 double SelfContact::evaluate(const double* positions4, float* gradient4) const {

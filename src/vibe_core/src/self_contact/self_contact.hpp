@@ -109,7 +109,7 @@ class SelfContact : public EnergyTerm {
 
   const std::vector<Pair>& pairs() const { return pairs_; }
   /// With which the points of a pair press on each other where they are at detect() [N].
-  static double normalForce(const Pair& pair);
+  double normalForce(const Pair& pair) const;
   bool acts() const override { return !pairs_.empty(); }
   int pairCount() const override { return static_cast<int>(pairs_.size()); }
   int searchCount() const;  ///< how often the lists of what may be near had to be renewed

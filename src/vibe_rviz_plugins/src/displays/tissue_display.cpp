@@ -111,12 +111,12 @@ void TissueDisplay::addColours() {
   int number = 0;
   for (const std::string& name : graphics::colourMapNames()) map_->addOption(QString::fromStdString(name), number++);
   const Range range = defaultRange(graphics::Colouring::Strain);
-  min_ = new rviz::FloatProperty("From", range.min,
-                                 "Value at the dark end of the map: strain, heat [J], thickness [m].", colouring_,
-                                 SLOT(changeLook()), this);
-  max_ = new rviz::FloatProperty("To", range.max,
-                                 "Value at the bright end of the map: strain, heat [J], thickness [m].", colouring_,
-                                 SLOT(changeLook()), this);
+  min_ =
+      new rviz::FloatProperty("From", range.min, "Value at the dark end of the map: strain, heat [J], thickness [m].",
+                              colouring_, SLOT(changeLook()), this);
+  max_ =
+      new rviz::FloatProperty("To", range.max, "Value at the bright end of the map: strain, heat [J], thickness [m].",
+                              colouring_, SLOT(changeLook()), this);
   legend_shown_ = new rviz::BoolProperty("Legend", true, "Show the colour scale in the lower left corner of the views.",
                                          colouring_, SLOT(changeLegend()), this);
 }

@@ -10,6 +10,7 @@ namespace vibe {
 /// contact_numbers.inl is a member here, a row of docs/policy.md, and something that `vibe_policy` shifts to see what
 /// depends on it.
 struct StepPolicy {
+  /// @cond
 #define VIBE_POLICY_SECTION(title)
 #define VIBE_REAL(name, value, unit, meaning, reason) double name = value;
 #define VIBE_COUNT(name, value, meaning, reason) int name = value;
@@ -18,16 +19,20 @@ struct StepPolicy {
 #undef VIBE_POLICY_SECTION
 #undef VIBE_REAL
 #undef VIBE_COUNT
+  /// @endcond
 };
 
 /// One number of the policy, for tables and for what shifts it.
 struct PolicyNumber {
-  std::string section, name;
-  std::string unit;  ///< empty for a ratio or a count
-  std::string meaning, reason;
+  std::string section;                 ///< of the table
+  std::string name;                    ///< of the member
+  std::string unit;                    ///< empty for a ratio or a count
+  std::string meaning;                 ///< what it decides
+  std::string reason;                  ///< source, measurement or what speaks for the default
   double StepPolicy::*real = nullptr;  ///< exactly one of `real` and `count` is set
-  int StepPolicy::*count = nullptr;
+  int StepPolicy::*count = nullptr;    ///< a whole number
 
+  /// Its value in a policy, in `unit`.
   double of(const StepPolicy& policy) const { return real != nullptr ? policy.*real : policy.*count; }
   /// A count becomes the nearest whole number, at least 1 above or below where it would stay the same.
   void scale(StepPolicy& policy, double factor) const;

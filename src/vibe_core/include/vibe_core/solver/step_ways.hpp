@@ -26,13 +26,16 @@ enum class StepWay {
   NotFinite,          ///< numbers that are not finite: the simulator starts again from rest
 };
 
-constexpr std::size_t kStepWayCount = 16;
+constexpr std::size_t kStepWayCount = 16;  ///< of StepWay
 
 /// How often a step has taken each way.
 class StepWays {
  public:
+  /// Once more.
   void count(StepWay way) { ++taken_[static_cast<std::size_t>(way)]; }
+  /// Times that it was taken.
   int of(StepWay way) const { return taken_[static_cast<std::size_t>(way)]; }
+  /// Those of a solve to those of its step.
   void add(const StepWays& others) {
     for (std::size_t k = 0; k < kStepWayCount; ++k) taken_[k] += others.taken_[k];
   }
