@@ -65,16 +65,16 @@ ReadResult RecordingSource::prepare() {
   cv::Mat picture;
   const PictureReader::Result result = reader_->next(picture);
   if (result == PictureReader::Result::Unreadable) {
-    complain(reader_->complaint(), 1);
+    reportFault(reader_->complaint(), 1);
     ++index_;
     return ReadResult::Frame;
   }
   if (result == PictureReader::Result::End) {
-    if (!reader_->complaint().empty()) complain(name_ + " " + reader_->complaint(), 0);
+    if (!reader_->complaint().empty()) reportFault(name_ + " " + reader_->complaint(), 0);
     return options_.loop && index_ > 0 && repeat() ? ReadResult::Frame : ReadResult::End;
   }
   if (table_ && index_ >= table_->rows.size()) {
-    complain(table_->file + ": has fewer rows than " + name_ + " has frames; it needs one row per frame", 1);
+    reportFault(table_->file + ": has fewer rows than " + name_ + " has frames; it needs one row per frame", 1);
     return ReadResult::End;
   }
   const FrameTable::Row row = rowOf(index_++);
@@ -102,7 +102,7 @@ FrameTable::Row RecordingSource::rowOf(std::size_t index) const {
 bool RecordingSource::accept(const cv::Mat& picture) {
   const bool has_depth = picture.depth() == CV_8U || picture.depth() == CV_16U;
   if (!has_depth || (picture.channels() != 1 && picture.channels() != 3 && picture.channels() != 4)) {
-    complain(name_ + ": frame " + std::to_string(index_ - 1) + " is neither grey nor colour of 8 or 16 bits", 1);
+    reportFault(name_ + ": frame " + std::to_string(index_ - 1) + " is neither grey nor colour of 8 or 16 bits", 1);
     return false;
   }
   if (width_ == 0) {
@@ -110,10 +110,10 @@ bool RecordingSource::accept(const cv::Mat& picture) {
     height_ = picture.rows;
   }
   if (picture.cols == width_ && picture.rows == height_) return true;
-  complain(name_ + ": frame " + std::to_string(index_ - 1) + " has " + std::to_string(picture.cols) + " x " +
-               std::to_string(picture.rows) + " pixels, but the first has " + std::to_string(width_) + " x " +
-               std::to_string(height_) + "; it is left out",
-           1);
+  reportFault(name_ + ": frame " + std::to_string(index_ - 1) + " has " + std::to_string(picture.cols) + " x " +
+                  std::to_string(picture.rows) + " pixels, but the first has " + std::to_string(width_) + " x " +
+                  std::to_string(height_) + "; it is left out",
+              1);
   return false;
 }
 
@@ -141,7 +141,7 @@ void RecordingSource::fill(const cv::Mat& picture, const FrameTable::Row& row) {
   has_pending_ = true;
 }
 
-void RecordingSource::complain(const std::string& text, std::uint64_t unreadable) {
+void RecordingSource::reportFault(const std::string& text, std::uint64_t unreadable) {
   const std::lock_guard<std::mutex> lock(mutex_);
   complaint_ = text;
   statistics_.unreadable += unreadable;

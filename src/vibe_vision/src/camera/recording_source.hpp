@@ -49,7 +49,7 @@ class RecordingSource : public FrameSource {
   FrameTable::Row rowOf(std::size_t index) const;
   bool accept(const cv::Mat& picture);
   void fill(const cv::Mat& picture, const FrameTable::Row& row);
-  void complain(const std::string& text, std::uint64_t unreadable);
+  void reportFault(const std::string& text, std::uint64_t unreadable);
 };
 
 }  // namespace vibe::vision

@@ -67,10 +67,10 @@ std::vector<std::string> studyScenes() {
   return scenes;
 }
 
-std::vector<NumberEffect> studyNumbers(const StudyOptions& options, const std::function<void(std::string)>& tell) {
+std::vector<NumberEffect> studyNumbers(const StudyOptions& options, const std::function<void(std::string)>& progress) {
   std::vector<NumberEffect> effects = shiftsOf(options);
   for (const std::string& name : options.scenes) {
-    tell(name);
+    progress(name);
     Cell cell;
     cell.scene = name;
     const BenchScene scene = makeBenchScene(cell, 1);
