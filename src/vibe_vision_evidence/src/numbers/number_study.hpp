@@ -31,7 +31,7 @@ struct NumberEffect {
 /// The scenes that a study shows by default: those of the benchmark and of its harder ones what makes a tracker decide.
 std::vector<std::string> studyScenes();
 /// Draws each scene once and tracks it with every number shifted.
-/// @param tell  hears what is done. @throws Error for an unknown number or scene
+/// @param progress  hears what is done. @throws Error for an unknown number or scene
 std::vector<NumberEffect> studyNumbers(const StudyOptions& options, const std::function<void(std::string)>& progress);
 /// CSV: a row per number and factor, with what the number is.
 void writeEffects(std::ostream& out, const std::vector<NumberEffect>& effects);
