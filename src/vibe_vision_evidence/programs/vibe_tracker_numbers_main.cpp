@@ -42,14 +42,7 @@ int study(int argc, char** argv) {
   line.option("--frames", options.study.frames, "of each scene").check(inRange(2, 100000)).showDefault();
   line.option("--csv", options.csv, "write to this file instead of the standard output");
   line.flag("--list", options.list, "print the numbers and end");
-  try {
-    return line.parse(argc, argv) ? run(options) : 0;
-  } catch (const UsageError& error) {
-    std::cerr << "vibe_tracker_numbers: " << error.what() << "; see --help.\n";
-  } catch (const std::exception& error) {
-    std::cerr << "vibe_tracker_numbers: " << error.what() << "\n";
-  }
-  return 2;
+  return runProgram(line, argc, argv, [&] { return run(options); });
 }
 
 }  // namespace

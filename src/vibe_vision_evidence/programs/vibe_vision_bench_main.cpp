@@ -73,3 +73,10 @@ int benchmark(int argc, char** argv) {
     return run(options);
   });
 }
+
+}  // namespace
+}  // namespace vibe::vision::evidence
+
+int main(int argc, char** argv) {
+  return vibe::vision::evidence::benchmark(argc, argv);
+}
