@@ -178,10 +178,10 @@ TEST(Contacts, PinchFromBothSidesAndLetGo) {
       const double z = body.rest[n].z();
       if (z < 1e-9)
         run.loads.contacts.push_back(
-            {SurfacePoint::ofNode(n), {0, 0, 1}, 0.5 * top - half_gap, 0, 0.3, run.position(n)});
+            {SurfacePoint::ofNode(n), {0, 0, 1}, 0.5 * top - half_gap, 0, 0.3, 0, run.position(n)});
       if (z > top - 1e-9)
         run.loads.contacts.push_back(
-            {SurfacePoint::ofNode(n), {0, 0, -1}, -0.5 * top - half_gap, 0, 0.3, run.position(n)});
+            {SurfacePoint::ofNode(n), {0, 0, -1}, -0.5 * top - half_gap, 0, 0.3, 0, run.position(n)});
     }
     ASSERT_TRUE(run.step().finite);
     double below = 0, above = 0;
@@ -271,7 +271,7 @@ void load(Body& run, int step) {
     const int node = 20 + (11 * k + 17 * (step / 7)) % (tip - 30);
     if ((step / 5 + k) % 3 != 0)
       run.loads.contacts.push_back(
-          {SurfacePoint::ofNode(node), {0, 0, 1}, body.rest[node].z() - 1e-3, 0, 0.3, run.position(node)});
+          {SurfacePoint::ofNode(node), {0, 0, 1}, body.rest[node].z() - 1e-3, 0, 0.3, 0, run.position(node)});
   }
 }
 
