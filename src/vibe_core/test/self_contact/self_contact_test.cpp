@@ -41,7 +41,7 @@ TEST(SelfContact, NormalForcesArePartsOfTheGradient) {
     for (std::size_t k = 0; k < 4; ++k)
       for (Eigen::Index c = 0; c < 3 && pair.node[k] >= 0; ++c)
         sum[4 * static_cast<std::size_t>(pair.node[k]) + static_cast<std::size_t>(c)] -=
-            pair.weight[k] * SelfContact::normalForce(pair) * pair.normal[c];
+            pair.weight[k] * world.contact.normalForce(pair) * pair.normal[c];
   const double largest = *std::max_element(sum.begin(), sum.end());
   ASSERT_GT(largest, 1e-3);
   for (std::size_t i = 0; i < sum.size(); ++i) EXPECT_NEAR(world.gradient[i], sum[i], 1e-5 * largest);

@@ -93,7 +93,7 @@ struct Slope {
     run.loads.contacts.clear();
     for (int i = 0; i < run.nodes(); ++i)
       if (run.stepper.body().rest[i].z() < 1e-9)
-        run.loads.contacts.push_back({SurfacePoint::ofNode(i), {0, 0, 1}, 0, 0, friction_, run.position(i)});
+        run.loads.contacts.push_back({SurfacePoint::ofNode(i), {0, 0, 1}, 0, 0, friction_, 0, run.position(i)});
     run.step();
     sum.setZero();
     for (const ContactConstraint& contact : run.loads.contacts) {
@@ -157,7 +157,7 @@ TEST(Contacts, ThoseThatPushTakeTheRowsWhereThereAreTooMany) {
     if (at_end && !below) run.loads.constraints.push_back(meanOf({n}, {0, 0, 1}, body, -pressed));
     if (!below) continue;
     if (at_end) over_gap.push_back(n);
-    run.loads.contacts.push_back({SurfacePoint::ofNode(n), {0, 0, 1}, at_end ? -gap : 0, 0, 0.3, run.position(n)});
+    run.loads.contacts.push_back({SurfacePoint::ofNode(n), {0, 0, 1}, at_end ? -gap : 0, 0, 0.3, 0, run.position(n)});
   }
   ASSERT_GT(run.loads.contacts.size(), 150);
   ASSERT_TRUE(run.step().finite);

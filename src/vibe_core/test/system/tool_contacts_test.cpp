@@ -112,7 +112,9 @@ void checkStep(const Model& model, const State& state, const StepReport& report,
     }
   seen.contacts += count;
   EXPECT_NEAR(grip.norm(), state.grip_force, 1e-9);
-  if (!model.solver->usesSubsteps()) EXPECT_EQ(count, state.contact_count);
+  if (!model.solver->usesSubsteps()) {
+    EXPECT_EQ(count, state.contact_count);
+  }
 }
 
 Seen checkRun(World& world, double seconds, const std::function<StepInput(double)>& input) {
