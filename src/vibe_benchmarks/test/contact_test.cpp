@@ -146,7 +146,7 @@ TEST(Contact, ChecksSeeAWallThatCrossesAndAToolThatPassesThrough) {
   EXPECT_EQ(check.tool(state).depth, 0);
   State through = state;
   through.joints[Insertion] = model->tool->limits()[Insertion].upper;  // straight through the far wall
-  const test::ToolCrossing crossing = check.tool(through);
+  const vibe::test::ToolCrossing crossing = check.tool(through);
   EXPECT_GT(crossing.pierced, 0);
   EXPECT_GT(crossing.depth, 5e-3);
   for (auto* axis : {&state.x, &state.y, &state.z}) {  // one vertex far out through the other side
