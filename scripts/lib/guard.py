@@ -102,7 +102,10 @@ class Keeper:
         """Until the command has ended; forwards signals; asks it to end when the other process is gone."""
         deadline = None
         while self.status is None:
-            if deadline is None and self.life in select.select([self.life, self.ended], [], [], POLL)[0]:
+            ready = select.select([self.life, self.ended], [], [], POLL)[0] if deadline is None else []
+            if self.ended in ready:
+                os.read(self.ended, 4096)  # else it would be ready for ever, and this a busy loop
+            if self.life in ready:
                 numbers = os.read(self.life, 64)
                 for number in numbers:
                     send(self.command, number)

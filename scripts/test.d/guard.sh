@@ -69,3 +69,16 @@ forwardsInterrupt() {
   [ "$status" -eq 5 ] || { echo "status $status, not 5"; return 1; }
 }
 check 'guard passes SIGINT on' forwardsInterrupt
+
+# An orphan that ends wakes the guard once, and not for ever.
+sleepsMeanwhile() {
+  VIBE_TEST_MARK=$mark-idle /usr/bin/python3 "$root/scripts/lib/guard.py" bash -c '(sleep 0.1 &); sleep 4' &
+  local pid=$! used=0 one
+  sleep 3
+  for one in $(processesWith "VIBE_TEST_MARK=$mark-idle"); do
+    used=$((used + $(awk '{print $14 + $15}' "/proc/$one/stat")))
+  done
+  wait "$pid"
+  [ "$used" -lt 100 ] || { echo "guard and command took $used hundredths of a second while they slept for 3 s"; return 1; }
+}
+check 'a guard sleeps while its command does' sleepsMeanwhile
