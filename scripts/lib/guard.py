@@ -149,7 +149,8 @@ def run(command):
     """Runs a command and ends what it leaves behind; returns its exit status."""
     life_read, life_write = os.pipe()
     answer_read, answer_write = os.pipe()
-    if os.fork() == 0:
+    keeper = os.fork()
+    if keeper == 0:
         os.close(life_write)
         os.close(answer_read)
         try:
@@ -161,6 +162,7 @@ def run(command):
     for number in FORWARDED:
         signal.signal(number, lambda received, frame: os.write(life_write, bytes([received])))
     answer = os.read(answer_read, 1)
+    os.waitpid(keeper, 0)  # it has nothing more to do, and is a process of the family as long as it is there
     return answer[0] if answer else 1
 
 
