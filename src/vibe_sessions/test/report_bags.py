@@ -47,7 +47,6 @@ class SyntheticSession:
         self.skip_steps = options.get("skip_steps", ())
         self.caller = options.get("caller", "/gamepad_node")
         self.delay = options.get("delay", 0.020)  # of the inputs [s]
-        self.input_topic = options.get("input_topic", "scope/input/joint_states")
         self.compression = options.get("compression", rosbag.Compression.NONE)
         self.metrics = options.get("metrics", {})
         self.event_text = options.get("event_text", "Something.")
@@ -113,7 +112,7 @@ class SyntheticSession:
             return
         message = JointState(name=["insertion"], position=[0.1])
         message.header.seq = self.sequence
-        self.put(self.input_topic, message, stamp, stamp + self.delay, self.caller)
+        self.put("scope/input/joint_states", message, stamp, stamp + self.delay, self.caller)
 
     def _tool(self, seconds):
         angle = 2 * math.pi * seconds / TURN

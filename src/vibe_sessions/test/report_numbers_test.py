@@ -118,14 +118,6 @@ class NumbersTest(unittest.TestCase):
         self.assertEqual(numbers["dropped"]["lost_inputs"], 17)  # of 18: nothing follows the last
         self.assertEqual(numbers["session"]["driver"], "gamepad_node")
 
-    def test_inputs_of_the_release_before_have_another_name(self):
-        options = dict(duration=2, origin=1.7e9, delay=0.035, input_topic="scope/measured_js")
-        recording, numbers = self.read(**options)
-        self.assertEqual(recording.callers, {"scope/input/joint_states": ["/gamepad_node"]})
-        self.assertAlmostEqual(numbers["latency"]["/scope/measured_js"]["p50"], 0.035, places=6)
-        # a simulator of today publishes the joints of the tool there
-        self.assertEqual(self.read(caller=None, **options)[1]["latency"], {})
-
     def test_no_delays_in_simulated_time(self):
         self.assertEqual(self.read(duration=1)[1]["latency"], {})
 
