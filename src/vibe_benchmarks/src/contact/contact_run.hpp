@@ -76,7 +76,7 @@ struct ContactTrace {
   double others = 0;         ///< CPU time of all other threads, mean of the same steps [ms]
   double iterations = 0;     ///< mean of the steps
   int max_iterations = 0;    ///< of a step
-  int fallback_steps = 0;    ///< repeated with backward Euler
+  int fallback_steps = 0;    ///< taken with backward Euler
   int contacts = 0;          ///< with the tool, most in a step
   int pairs = 0;             ///< of walls in contact, most in a frame
   int crossings = 0;         ///< pairs of triangles of the wall that cross, most at the end of a frame

@@ -45,7 +45,7 @@ struct HardResult {
   double real_time = 0;        ///< simulated time over that CPU time
   double iterations = 0;       ///< mean
   int max_iterations = 0;      ///< of a step
-  int fallback_steps = 0;      ///< repeated with backward Euler
+  int fallback_steps = 0;      ///< taken with backward Euler
   int crossings = 0;           ///< most pairs of triangles of the wall that cross at the end of a step
   int crossed_steps = 0;       ///< steps at whose end some cross
   int last_crossings = 0;      ///< at the end

@@ -57,11 +57,11 @@ VIBE_COUNT(satisfy_after, 5, "iterations after which the constraints are met exa
            "about half of what a step may take, so that as many remain to reduce the energy again")
 
 VIBE_POLICY_SECTION("When a step counts as arrived")
-VIBE_REAL(arrived, 0.5, "", "length of the last direction over the first, above which a step counts as not arrived",
+VIBE_REAL(arrived, 0.5, "", "length of the last direction over the first, or over the way foreseen, above which a step counts as not arrived",
           "a step that leaves half of its move has not found the equilibrium")
-VIBE_REAL(nearly_arrived, 0.1, "", "the same where the last direction did not lower the energy",
+VIBE_REAL(nearly_arrived, 0.1, "", "as `arrived`, where no part of the last direction lowered the energy",
           "near the end that may be due to rounding")
-VIBE_REAL(position_roundings, 10, "", "the same over the rounding error of a position",
+VIBE_REAL(position_roundings, 10, "", "as `nearly_arrived`, over the rounding error of a position instead of the first direction",
           "in some directions energies are less certain")
 VIBE_COUNT(fallback_steps, 3, "steps with backward Euler after a step that did not arrive",
            "measured: ten cost twice as many iterations each, and an error of 6.5 instead of 5.6 % in the cinch of a "
