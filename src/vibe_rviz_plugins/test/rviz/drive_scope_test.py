@@ -188,21 +188,7 @@ class DriveScope(unittest.TestCase):
         self.assertLess(abs(self.simulator.joints["insertion"] - START["insertion"]), 0.02)
 
     def test_another_device_is_respected(self):
-        self.respect("/scope/input/joint_states")
-
-    def test_a_device_of_the_release_before_is_respected(self):
-        """The joints of the tool have the same name now, and efforts."""
-        tool = rospy.Publisher("/scope/measured_js", JointState, queue_size=10)
-        self.wait(lambda: tool.get_num_connections() > 0, "the tool to listen")
-        for _ in range(50):
-            tool.publish(JointState(name=SCOPE, position=[0.2, 0, 0, 0], effort=[0, 0, 0, 0]))
-            time.sleep(0.02)
-        self.scope.clear()
-        self.wait(lambda: self.scope.messages, "messages while a tool publishes its joints")
-        self.respect("/scope/measured_js")
-
-    def respect(self, topic):
-        device = rospy.Publisher(topic, JointState, queue_size=10)
+        device = rospy.Publisher("/scope/input/joint_states", JointState, queue_size=10)
         message = JointState(name=SCOPE, position=[0.2, 0, 0, 0])
         since = time.monotonic()
         while time.monotonic() - since < 2:
