@@ -123,12 +123,10 @@ std::vector<PolicyTrace> PolicyStudy::runAll() const {
 }
 
 PolicyEffect PolicyStudy::effectOf(const PolicyNumber& number, double factor) const {
-  const StepPolicy before = stepPolicy();
-  StepPolicy shifted = before;
+  StepPolicy shifted = stepPolicy();
   number.scale(shifted, factor);
-  setStepPolicy(shifted);
+  const ScopedStepPolicy scoped(shifted);
   const std::vector<PolicyTrace> traces = runAll();
-  setStepPolicy(before);
   PolicyEffect effect;
   effect.factor = factor;
   effect.value = number.of(shifted);

@@ -86,7 +86,7 @@ void SutureSession::press(Button button, bool down, StepCosts& costs, SewnSet& s
   step();
   costs.cpu.push_back(1e3 * simulation_.timer().last_cpu);
   costs.wall.push_back(1e3 * simulation_.timer().last_wall);
-  if (state().solver.fallback > 0) ++set.fallback_steps;
+  if (state().solver.backward_euler_steps > 0) ++set.fallback_steps;
   for (const Suture& suture : state().procedure.sutures)
     for (double tension : suture.tension) set.max_tension = std::max(set.max_tension, tension);
 }

@@ -24,7 +24,8 @@ ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, c
       context_{model, state, model.scene.step_period, motion != nullptr ? &scratch.tool : nullptr, insufflator_on} {
   if (motion != nullptr) tool_.emplace(model, *motion, state, scratch, report);
   context_.pool = scratch.stepper->pool;
-  const TimeScheme& scheme = stepper.plan().schemeOf(stepper.settings().backward_euler || state.solver.fallback > 0);
+  const bool fallback = stepper.settings().backward_euler || state.solver.backward_euler_steps > 0;
+  const TimeScheme& scheme = stepper.plan().schemeOf(fallback);
   context_.when = scheme.part() - stepPolicy().earlier_normals;
 }
 
@@ -107,7 +108,7 @@ std::optional<AttemptResult> ImplicitStep::solve(Attempt attempt) {
   StepSolve solve(stepper_.plan(), motionOf(state_), scratch_.loads, state_.solver, scratch);
   solve.foresee();
   // another attempt costs little now
-  if (first && tool_ && state_.solver.fallback == 0 && tool_->misses()) {
+  if (first && tool_ && state_.solver.backward_euler_steps == 0 && tool_->misses()) {
     report_.evaluations += solve.abandon();
     report_.ways.count(StepWay::ToolReaimedEarly);
     follow_ = stepPolicy().aim_foreseen;
@@ -201,6 +202,7 @@ void ImplicitStep::recover() {
 }
 
 void ImplicitStep::store() {
+  stepper_.end(report_.arrived, state_.solver);
   accountCorrections();
   scratch_.touches.clear();
   {

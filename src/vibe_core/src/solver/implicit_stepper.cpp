@@ -7,6 +7,7 @@
 #include "solver/step_plan.hpp"
 #include "solver/step_solve.hpp"
 #include "solver/stepper_workspace.hpp"
+#include "vibe_core/solver/step_policy.hpp"
 
 namespace vibe {
 
@@ -56,7 +57,9 @@ StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMe
   begin(motion, loads, memory, scratch);
   StepSolve solve(*plan_, motion, loads, memory, scratch);
   solve.foresee();
-  return solve.finish();
+  const StepOutcome outcome = solve.finish();
+  end(outcome.arrived, memory);
+  return outcome;
 }
 
 void ImplicitStepper::begin(const MotionView& motion, const BodyLoads& loads, StepperMemory& memory,
@@ -75,11 +78,17 @@ void ImplicitStepper::begin(const MotionView& motion, const BodyLoads& loads, St
 
 void ImplicitStepper::beginAgain(StepperMemory& memory, StepperWorkspace& scratch) const {
   Continuation& from = scratch.continuation;
-  const bool arrived = from.motion_length > 0 && memory.fallback == 0 && !plan_->extrapolates(false);
+  const bool arrived = from.motion_length > 0 && !plan_->extrapolates(false);
   if (arrived) from.from = Continuation::From::Solution;
   // each solve is judged as if it were the first
   memory.elastic_energy = from.elastic_energy;
   if (!arrived) memory.usual_length = from.usual_length;
+}
+
+// What is left of a step that did not arrive has high frequencies, and a scheme of second order would hand it on.
+void ImplicitStepper::end(bool arrived, StepperMemory& memory) const {
+  int& steps = memory.backward_euler_steps;
+  steps = arrived || settings().backward_euler ? std::max(0, steps - 1) : stepPolicy().fallback_steps;
 }
 
 StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, StepperWorkspace& scratch, double tolerance,

@@ -28,7 +28,7 @@ class QuasiNewton {
   /// Convergence is judged by a length instead of that of the first direction; 0: by that one [m].
   void judgeBy(double length) { first_length_ = length; }
   /// That length, after the first direction [m].
-  double judgedBy() const { return first_length_; }
+  double referenceLength() const { return first_length_; }
   /// Forgets the history; needed after a new factor.
   void restart() { history_.count = 0; }
   /// Finds the direction that the next iterate takes, if it is not known yet.

@@ -23,7 +23,7 @@ StepSolve::StepSolve(const StepPlan& plan, const MotionView& motion, BodyLoads& 
       at_(scratch.iterate),
       system_(scratch.system),
       continuation_(scratch.continuation),
-      fallback_(plan.settings.backward_euler || memory.fallback > 0),
+      fallback_(plan.settings.backward_euler || memory.backward_euler_steps > 0),
       scheme_(plan.schemeOf(fallback_)),
       potential_(plan.body, loads, scheme_.inertia, scratch, scheme_.part()),
       newton_(plan.body, potential_, loads, scratch,
@@ -42,7 +42,7 @@ void StepSolve::foresee() {
     system_.schur.setRows(system_.rows, *scratch_.factors.current, scratch_.factors.columns);
   }
   newton_.setGas(foreseenVolume());
-  if (guessed_ && newton_.judgedBy() > 0) doubtDirection();
+  if (guessed_ && newton_.referenceLength() > 0) doubtDirection();
   chooseContacts();
   newton_.aim();
   storeToolForces(system_, loads_);
@@ -62,7 +62,7 @@ void StepSolve::evaluateStart() {
 // something has met the body, and the guess is on the wrong side of that.
 void StepSolve::doubtDirection() {
   newton_.aim();
-  if (newton_.directionLength() < stepPolicy().misled_part * newton_.judgedBy()) return;
+  if (newton_.directionLength() < stepPolicy().misled_part * newton_.referenceLength()) return;
   ways_.count(StepWay::GuessMisled);
   startFromHere();
   at_.first = at_.last;
@@ -81,10 +81,10 @@ void StepSolve::chooseContacts() {
 }
 
 int StepSolve::abandon() {
-  continuation_.from = newton_.judgedBy() > 0 ? From::Abandoned : From::Guess;
+  continuation_.from = newton_.referenceLength() > 0 ? From::Abandoned : From::Guess;
   continuation_.evaluations += newton_.evaluations();
   continuation_.value = newton_.value();
-  continuation_.foreseen = newton_.judgedBy();
+  continuation_.foreseen = newton_.referenceLength();
   continuation_.motion_length = 0;
   return newton_.evaluations();
 }
@@ -94,16 +94,14 @@ StepOutcome StepSolve::finish() {
   outcome.fallback = fallback_;
   iterate(outcome);
   outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton_.value());
-  continuation_.motion_length = outcome.arrived && !fallback_ ? newton_.judgedBy() : 0;
+  continuation_.motion_length = outcome.arrived && !fallback_ ? newton_.referenceLength() : 0;
   scratch_.gas_stiffness = potential_.gas().stiffness(at_.last.volume);
   if (fallback_) ways_.count(StepWay::BackwardEuler);
   if (!outcome.arrived) ways_.count(StepWay::NotArrived);
   outcome.ways = ways_;
   outcome.ways.add(newton_.ways());
   continuation_.from = From::Guess;  // an abandoned solve has been gone on with
-  if (memory_.fallback > 0) --memory_.fallback;
   if (!outcome.finite) return outcome;
-  if (!outcome.arrived && !plan_.settings.backward_euler) memory_.fallback = stepPolicy().fallback_steps;
   storeForces(system_, scheme_.z_gain / scheme_.x_gain, loads_);
   storeGas(scratch_, loads_.gas);
   outcome.work = finishMotion(plan_.body, scheme_, motion_, loads_, !outcome.arrived, scratch_);
@@ -132,7 +130,7 @@ void StepSolve::iterate(StepOutcome& outcome) {
 
 void StepSolve::judgeEnd(bool done, StepOutcome& outcome) {
   const StepPolicy& policy = stepPolicy();
-  const double first_length = newton_.judgedBy();
+  const double first_length = newton_.referenceLength();
   if (continuation_.from != From::Solution)
     memory_.usual_length += policy.usual_share * (first_length - memory_.usual_length);
   // a search that failed may have failed by rounding only: then less may be left for the step to count as arrived

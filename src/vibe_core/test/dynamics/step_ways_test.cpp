@@ -65,10 +65,9 @@ class RoughSession {
   /// In a workspace of its own, so that nothing but the state decides.
   Result stepFrom(const Moment& moment, const StepPolicy& policy = StepPolicy()) const {
     Result result{moment.before, {}, {}};
-    setStepPolicy(policy);
+    const ScopedStepPolicy scoped(policy);
     Workspace workspace(*model_);
     vibe::step(*model_, result.state, moment.input, workspace, result.events);
-    setStepPolicy(StepPolicy());
     result.report = workspace.report();
     return result;
   }
@@ -230,19 +229,19 @@ TEST(StepWays, AStepThatDoesNotArriveEndsWithItsMeanVelocity) {
   const Result result = session().stepFrom(moment);
   EXPECT_FALSE(result.report.arrived);
   EXPECT_TRUE(hasNoAcceleration(result.state));
-  EXPECT_EQ(result.state.solver.fallback, StepPolicy().fallback_steps);
+  EXPECT_EQ(result.state.solver.backward_euler_steps, StepPolicy().fallback_steps);
   StepPolicy once;
   once.fallback_steps = 0;
-  EXPECT_EQ(session().stepFrom(moment, once).state.solver.fallback, 0);
+  EXPECT_EQ(session().stepFrom(moment, once).state.solver.backward_euler_steps, 0);
 }
 
 TEST(StepWays, StepsAfterItTakeBackwardEuler) {
   const Moment moment = momentOf(StepWay::BackwardEuler);
   const Result result = session().stepFrom(moment);
-  EXPECT_GT(moment.before.solver.fallback, 0);
+  EXPECT_GT(moment.before.solver.backward_euler_steps, 0);
   EXPECT_TRUE(result.report.fallback);
   Moment without = moment;
-  without.before.solver.fallback = 0;
+  without.before.solver.backward_euler_steps = 0;
   EXPECT_EQ(session().stepFrom(without).report.ways.of(StepWay::BackwardEuler), 0);
 }
 

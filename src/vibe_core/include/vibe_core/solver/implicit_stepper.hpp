@@ -111,12 +111,15 @@ class ImplicitStepper {
   /// backward Euler. Forces of the loads are their means over the step.
   StepOutcome step(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
 
-  /// A step of several solves, with other loads in each: begin(), a StepSolve, and for each further one beginAgain(),
-  /// with the motion as at the start of the step. A further solve starts where the one before has ended, if that
-  /// arrived, or was abandoned. All together take as many evaluations as two without backward Euler may, but each has
-  /// some at least.
+  /// A step of several solves, with other loads in each: begin(), a StepSolve, for each further one beginAgain(), with
+  /// the motion as at the start of the step, and end(). All have the scheme that the step has begun with. A further
+  /// solve starts where the one before has ended, if that arrived, or was abandoned. All together take as many
+  /// evaluations as two without backward Euler may, but each has some at least.
   void begin(const MotionView& motion, const BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
   void beginAgain(StepperMemory& memory, StepperWorkspace& scratch) const;
+  /// After the last solve of a step that goes on: the rule after which the next steps take backward Euler.
+  /// @param arrived  StepOutcome::arrived of that solve
+  void end(bool arrived, StepperMemory& memory) const;
   const StepPlan& plan() const { return *plan_; }
 
   /// The equilibrium under the loads from the positions in `motion` (velocities become 0), refactoring as it goes.

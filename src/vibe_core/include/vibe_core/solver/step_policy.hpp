@@ -47,4 +47,16 @@ const StepPolicy& stepPolicy();
 /// have other bits, and recordings do not say so.
 void setStepPolicy(const StepPolicy& policy);
 
+/// Sets a policy, and at the end of its life the one that was before.
+class ScopedStepPolicy {
+ public:
+  explicit ScopedStepPolicy(const StepPolicy& policy) : before_(stepPolicy()) { setStepPolicy(policy); }
+  ScopedStepPolicy(const ScopedStepPolicy&) = delete;
+  ScopedStepPolicy& operator=(const ScopedStepPolicy&) = delete;
+  ~ScopedStepPolicy() { setStepPolicy(before_); }
+
+ private:
+  const StepPolicy before_;
+};
+
 }  // namespace vibe

@@ -33,7 +33,7 @@ VIBE_FIELDS(EnergyAccount, tool_work, hand_work, scope_loss, gas_work, thread_wo
             damping_loss, viscous_loss, contact_loss, contact_energy, numerical_loss, correction_work, residual_work);
 VIBE_FIELDS(StiffnessCoupling, node, weight, stiffness);
 VIBE_FIELDS(StepperMemory, linearization_point, next, couplings, next_couplings, linearization_id, next_id, steps, due,
-            elastic_energy, usual_length, rest_steps, recovery_steps, jammed_steps, fallback);
+            elastic_energy, usual_length, rest_steps, recovery_steps, jammed_steps, backward_euler_steps);
 VIBE_FIELDS(ImpedanceBasis, id, positions, gas_direction, gas_stiffness, node, direction, row_motion);
 VIBE_FIELDS(SlopeMemory<3>, known, has_pair, place, force, step, change);
 VIBE_FIELDS(SlopeMemory<kScopeJointCount>, known, has_pair, place, force, step, change);

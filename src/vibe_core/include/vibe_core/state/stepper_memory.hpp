@@ -28,12 +28,12 @@ struct StepperMemory {
   std::uint64_t next_id = 0;                      ///< hash of `next` and `next_couplings`
   std::int64_t steps = 0;                         ///< number of steps taken
   std::int64_t due = 0;                           ///< value of `steps` at which the next factor takes over
-  double elastic_energy = 0;  ///< of elements and foundation at the end of the last step; < 0: unknown [J]
-  double usual_length = 0;    ///< running mean of the first moves of steps [m]
-  int rest_steps = 0;         ///< consecutive steps in which nothing moved
-  int recovery_steps = 0;     ///< that remain of a recovery, straight to rest
-  int jammed_steps = 0;       ///< in which walls were jammed, less those in which they were not; 0 or more
-  int fallback = 0;           ///< remaining steps with backward Euler, after one that did not arrive
+  double elastic_energy = 0;     ///< of elements and foundation at the end of the last step; < 0: unknown [J]
+  double usual_length = 0;       ///< running mean of the first moves of steps [m]
+  int rest_steps = 0;            ///< consecutive steps in which nothing moved
+  int recovery_steps = 0;        ///< that remain of a recovery, straight to rest
+  int jammed_steps = 0;          ///< in which walls were jammed, less those in which they were not; 0 or more
+  int backward_euler_steps = 0;  ///< that remain, after a step that did not arrive
 };
 
 }  // namespace vibe
