@@ -24,7 +24,7 @@ TEST(Policy, EachNumberHasANameOfItsOwnAndAReason) {
   std::set<std::string> names;
   for (const PolicyNumber& number : policyNumbers()) {
     EXPECT_TRUE(names.insert(number.name).second) << number.name;
-    EXPECT_FALSE(number.section.empty() || number.meaning.empty() || number.reason.empty()) << number.name;
+    EXPECT_TRUE(*number.section != 0 && *number.meaning != 0 && *number.reason != 0) << number.name;
   }
 }
 

@@ -131,6 +131,7 @@ void ToolStep::recoverAround() {
   path.to = path.from;
   ToolMotion motion = *motion_;
   motion.displaceEnd(report_.tool_displacement);
+  // the tool moves first, as far as the wall at the start of the step lets it
   scratch_.guard->separate(scratch_.tool, motion, path, scratch_.held);
   state_.joints = motion.inputs(1);
   if (model_.scope_springs) report_.tool_displacement = motion.displacement(1);
@@ -141,6 +142,7 @@ void ToolStep::recoverAround() {
   for (int attempt = 0; attempt < stepPolicy().recovery_attempts; ++attempt) {
     const std::vector<int>& met = scratch_.guard->meets(there, stands, pathOfStep(scratch_, state_), scratch_.held);
     if (met.empty()) return;
+    // nodes that wait may stretch triangles over the tool that were free, hence the next attempt
     for (std::size_t k = 0; k < 3; ++k)
       for (const int i : met) (state_.*kMotionOf[k])[i] = scratch_.start[k][i];
   }
@@ -182,6 +184,7 @@ void ToolStep::reportHand(double tool_work) {
     effort.head<kScopeJointCount>() = springs_->load(after).head<kScopeJointCount>();
     state_.energy.scope_loss += springs_->loss(after);
   }
+  // the hand works only by what it moves: a joint that tissue holds bears a load without work
   double hand_work = 0;
   for (int j = 0; j < kJointCount; ++j) hand_work += effort[j] * (to[j] - from[j]);
   state_.energy.hand_work += hand_work;

@@ -19,7 +19,8 @@ namespace vibe::step_ways_test {
 namespace {
 
 constexpr double kOff = 1e300;
-constexpr std::size_t kKept = 4;  // moments of each way
+constexpr std::size_t kKept = 8;  // moments of each way
+constexpr int kMostSeeds = 12;
 
 /// A state and the input of the step after it, which takes a way.
 struct Moment {
@@ -42,20 +43,13 @@ Scene roughScene() {
   return scene;
 }
 
-/// A scope that a strong hand throws from limit to limit, mostly holding the wall where it comes by.
+/// A scope that a strong hand first leads to where it presses the wall, and then throws from limit to limit, mostly
+/// holding the wall where it comes by. Which ways that takes depends on the last bit: it goes on until each of those
+/// that a tool brings about has been taken.
 class RoughSession {
  public:
-  RoughSession()
-      : model_(buildModel(roughScene(), scopeText())), workspace_(*model_), state_(initialState(*model_, 1)) {
-    for (int k = 0; k < 30; ++k) step({});
-    std::mt19937 generator(5);
-    for (int jump = 0; jump < 40; ++jump) {
-      const StepInput input = anyInput(generator);
-      for (int k = 0; k < 12; ++k) {
-        state_.hand_effort.fill(0);
-        step(input);
-      }
-    }
+  RoughSession() : model_(buildModel(roughScene(), scopeText())), workspace_(*model_) {
+    for (int seed = 1; seed <= kMostSeeds && !isComplete(); ++seed) run(seed);
   }
 
   /// The first of each way.
@@ -73,6 +67,27 @@ class RoughSession {
   }
 
  private:
+  bool isComplete() const {
+    constexpr std::array kOfTools{StepWay::GuessMisled,   StepWay::ContactsExchanged, StepWay::ToolReaimedEarly,
+                                  StepWay::PairsDropped,  StepWay::LastMoveUnseen,    StepWay::NotArrived,
+                                  StepWay::BackwardEuler, StepWay::ToolReaimed,       StepWay::ToolLimited};
+    return std::all_of(kOfTools.begin(), kOfTools.end(), [&](StepWay way) { return moments_.count(way) > 0; });
+  }
+
+  void run(int seed) {
+    std::mt19937 generator(seed);
+    state_ = initialState(*model_, 1);
+    for (int k = 0; k < 30; ++k) step({});
+    for (int goal = 0; goal < 6; ++goal) press(generator);
+    for (int jump = 0; jump < 40; ++jump) {
+      const StepInput input = anyInput(generator);
+      for (int k = 0; k < 12; ++k) {
+        state_.hand_effort.fill(0);
+        step(input);
+      }
+    }
+  }
+
   StepInput anyInput(std::mt19937& generator) const {
     std::uniform_real_distribution<double> uniform(0, 1);
     StepInput input;
@@ -83,6 +98,22 @@ class RoughSession {
     input.joints[Insertion] = (0.5 + 0.5 * uniform(generator)) * model_->tool->limits()[Insertion].upper;
     input.buttons[HelixGrab] = uniform(generator) < 0.9 ? 1 : 0;
     return input;
+  }
+
+  void press(std::mt19937& generator) {
+    std::uniform_real_distribution<double> uniform(0, 1);
+    const std::array<double, kJointCount> from = state_.joints;
+    std::array<double, kJointCount> goal;
+    for (int j = 0; j < kJointCount; ++j) {
+      const JointLimits& limits = model_->tool->limits()[j];
+      goal[j] = limits.lower + uniform(generator) * (limits.upper - limits.lower);
+    }
+    goal[Insertion] = (0.4 + 0.5 * uniform(generator)) * model_->tool->limits()[Insertion].upper;
+    for (int k = 1; k <= 40; ++k) {
+      StepInput input;
+      for (int j = 0; j < kJointCount; ++j) input.joints[j] = from[j] + k / 40.0 * (goal[j] - from[j]);
+      step(input);
+    }
   }
 
   void step(const StepInput& input) {
@@ -152,41 +183,31 @@ TEST(StepWays, AMomentIsWhollyInTheStateAndTheInput) {
   }
 }
 
-// A guess along the velocities is given up where it is tangled, or where something has met the wall.
-TEST(StepWays, AGuessThatIsTangledIsGivenUp) {
-  const Moment moment = momentOf(StepWay::GuessTangled);
-  StepPolicy keeps;
-  keeps.guess_growth = kOff;
-  const Result given_up = session().stepFrom(moment), kept = session().stepFrom(moment, keeps);
-  EXPECT_EQ(kept.report.ways.of(StepWay::GuessTangled), 0);
-  EXPECT_GT(farthestApart(given_up.state, kept.state), 0);
-}
-
+// A guess along the velocities would leave the wall on the wrong side of what it has met, with more energy.
 TEST(StepWays, AGuessThatMisleadsIsGivenUp) {
-  const Moment moment = momentOf(StepWay::GuessMisled);
   StepPolicy keeps;
   keeps.misled_part = kOff;
-  const Result given_up = session().stepFrom(moment), kept = session().stepFrom(moment, keeps);
-  EXPECT_EQ(kept.report.ways.of(StepWay::GuessMisled), 0);
-  EXPECT_GT(farthestApart(given_up.state, kept.state), 0);
+  int better = 0, worse = 0;
+  for (const Moment& moment : momentsOf(StepWay::GuessMisled)) {
+    const Result given_up = session().stepFrom(moment), kept = session().stepFrom(moment, keeps);
+    EXPECT_EQ(kept.report.ways.of(StepWay::GuessMisled), 0);
+    ++(given_up.state.solver.elastic_energy < kept.state.solver.elastic_energy ? better : worse);
+  }
+  EXPECT_GT(better, worse);
 }
 
 // A contact without a row pushes with no force, so the wall would go through the tool there: what a step leaves is in
-// its residual, and the guard stops what it may of the motion.
+// its residual.
 TEST(StepWays, ContactsThatWouldBeDeepInTheToolGetRows) {
   StepPolicy keeps;
   keeps.contact_exchanges = 0;
-  double left = 0, left_without = 0, moved = 0, moved_without = 0;
+  int better = 0, worse = 0;
   for (const Moment& moment : momentsOf(StepWay::ContactsExchanged)) {
     const Result exchanged = session().stepFrom(moment), kept = session().stepFrom(moment, keeps);
     EXPECT_EQ(kept.report.ways.of(StepWay::ContactsExchanged), 0);
-    left += exchanged.report.residual;
-    left_without += kept.report.residual;
-    moved += farthestApart(exchanged.state, moment.before);
-    moved_without += farthestApart(kept.state, moment.before);
+    ++(exchanged.report.residual < kept.report.residual ? better : worse);
   }
-  EXPECT_LT(left, 0.8 * left_without);
-  EXPECT_GT(moved, moved_without);
+  EXPECT_GT(better, worse);
 }
 
 TEST(StepWays, AToolThatIsLedElsewhereIsAimedAgainBeforeAnythingMoves) {
@@ -199,18 +220,21 @@ TEST(StepWays, AToolThatIsLedElsewhereIsAimedAgainBeforeAnythingMoves) {
   EXPECT_NE(aimed.state.tool_displacement, missed.state.tool_displacement);
 }
 
-TEST(StepWays, ADirectionThatLeadsUpLosesItsHistory) {
-  const Result result = session().stepFrom(momentOf(StepWay::PairsDropped));
-  EXPECT_TRUE(result.report.arrived || result.report.evaluations > 8);
+// From the end of the first solve, the second is short.
+TEST(StepWays, AToolThatASolveLeadsElsewhereIsAimedAgain) {
+  StepPolicy never;
+  never.miss_speed = kOff;
+  for (const Moment& moment : momentsOf(StepWay::ToolReaimed)) {
+    const Result aimed = session().stepFrom(moment), missed = session().stepFrom(moment, never);
+    EXPECT_EQ(missed.report.ways.of(StepWay::ToolReaimed), 0);
+    EXPECT_GE(aimed.report.solves, 2);
+    EXPECT_LT(aimed.report.evaluations, 2 * missed.report.evaluations + 8);
+    EXPECT_NE(aimed.state.tool_displacement, missed.state.tool_displacement);
+  }
 }
 
-TEST(StepWays, WhatTheToolHoldsGoesWhereTheToolGoes) {
-  const Moment moment = momentOf(StepWay::ConstraintsMet);
-  StepPolicy never;
-  never.satisfy_after = 1 << 20;
-  const Result met = session().stepFrom(moment), unmet = session().stepFrom(moment, never);
-  EXPECT_EQ(unmet.report.ways.of(StepWay::ConstraintsMet), 0);
-  EXPECT_GT(farthestApart(met.state, unmet.state), 0);
+TEST(StepWays, ADirectionThatLeadsUpLosesItsHistory) {
+  for (const Moment& moment : momentsOf(StepWay::PairsDropped)) EXPECT_TRUE(session().stepFrom(moment).report.arrived);
 }
 
 // What is not looked at is a hundredth of what was moved.
@@ -252,8 +276,21 @@ TEST(StepWays, AToolThatTheWallStopsIsSolvedForWhereItCanGo) {
   EXPECT_EQ(piercedBy(session().model(), result.state), 0);
 }
 
+/// The wall is thrown at a tool that it has stopped.
+Moment thrownAtTheTool() {
+  for (Moment moment : momentsOf(StepWay::ToolLimited))
+    for (const double speed : {1.0, -1.0, 4.0, -4.0})
+      for (auto* velocity : {&moment.before.vx, &moment.before.vy, &moment.before.vz}) {
+        const std::vector<double> before = *velocity;
+        for (double& v : *velocity) v += speed;
+        if (session().stepFrom(moment).report.ways.of(StepWay::WallStopped) > 0) return moment;
+        *velocity = before;
+      }
+  throw std::runtime_error("no wall is stopped");
+}
+
 TEST(StepWays, AWallThatWouldRunIntoTheToolStopsOnItsWay) {
-  const Moment moment = momentOf(StepWay::WallStopped);
+  const Moment moment = thrownAtTheTool();
   const Result result = session().stepFrom(moment);
   const double dt = session().model().scene.step_period;
   EXPECT_EQ(result.report.ways.of(StepWay::ToolLimited), 1);
@@ -269,7 +306,9 @@ Moment standing() {
 }
 
 TEST(StepWays, TissueThatRestsSleeps) {
-  const Moment moment = momentOf(StepWay::Asleep);
+  Moment moment = standing();
+  moment.before.solver.rest_steps = StepPolicy().rest_steps;
+  moment.before.step = 1;  // one in thirty looks whether something wakes it
   const Result asleep = session().stepFrom(moment);
   EXPECT_EQ(asleep.report.evaluations, 0);
   EXPECT_EQ(farthestApart(asleep.state, moment.before), 0);

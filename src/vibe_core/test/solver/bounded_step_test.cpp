@@ -5,6 +5,7 @@
 
 #include "solver/implicit_worlds.hpp"
 #include "solver/step_solve.hpp"
+#include "vibe_core/solver/step_policy.hpp"
 
 namespace vibe::bounded_step_test {
 namespace {
@@ -121,6 +122,52 @@ TEST(BoundedStep, AStepThatDoesNotArriveIsFollowedByBackwardEuler) {
   for (int i = 0; i < run.nodes(); ++i)
     for (const auto& a : run.motion.a) ASSERT_EQ(a[i], 0);
   EXPECT_TRUE(run.step().fallback);
+}
+
+// A history that knows nothing of the body: as if a node could be moved far without a force.
+TEST(BoundedStep, ASearchThatFailsBeginsAgainWithoutTheHistory) {
+  const std::unique_ptr<Body> beam = disturbedBeam(0.05), misled = disturbedBeam(0.05);
+  const StepOutcome usual = beam->step();
+  EXPECT_EQ(usual.ways.of(StepWay::SearchRestarted), 0);
+
+  misled->stepper.begin(misled->motion.view(), misled->loads, misled->memory, *misled->scratch);
+  StepSolve solve(misled->stepper.plan(), misled->motion.view(), misled->loads, misled->memory, *misled->scratch);
+  solve.foresee();
+  PairHistory& history = misled->scratch->history;
+  std::fill(history.move[0].begin(), history.move[0].end(), 0.0F);
+  history.change[0] = history.move[0];
+  const int node = misled->nodes() - 1;
+  history.move[0][4 * node] = 1;
+  history.change[0][4 * node] = 1e-6F;
+  history.curvature[0] = 1e6;
+  history.count = 1;
+  const StepOutcome outcome = solve.finish();
+  EXPECT_GE(outcome.ways.of(StepWay::SearchRestarted), 1);
+  EXPECT_TRUE(outcome.arrived);
+  EXPECT_LT(outcome.residual, 2 * usual.residual + 1e-5);
+}
+
+/// Two steps of a beam whose last node a tool takes eight sides of an element aside at once. The first does not arrive.
+StepOutcome takeAside(Body& run, double& left) {
+  const int node = run.nodes() - 1;
+  const double target = run.position(node).z() + 8 * kSide;
+  run.loads.constraints.push_back({{node}, {Eigen::Vector3d::UnitZ()}, target});
+  run.step();
+  const StepOutcome outcome = run.step();
+  left = std::abs(run.position(node).z() - target);
+  return outcome;
+}
+
+// The line search admits small parts of so far a move only.
+TEST(BoundedStep, WhatAToolHoldsGoesWhereTheToolGoes) {
+  double left = 0, left_without = 0;
+  EXPECT_EQ(takeAside(*disturbedBeam(0), left).ways.of(StepWay::ConstraintsMet), 1);
+  StepPolicy never;
+  never.satisfy_after = 1 << 20;
+  const ScopedStepPolicy scoped(never);
+  EXPECT_EQ(takeAside(*disturbedBeam(0), left_without).ways.of(StepWay::ConstraintsMet), 0);
+  EXPECT_LT(left, 1e-6);
+  EXPECT_GT(left_without, 1e-4);
 }
 
 // In a smooth motion the limit plays no part.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 namespace vibe {
@@ -24,11 +23,11 @@ struct StepPolicy {
 
 /// One number of the policy, for tables and for what shifts it.
 struct PolicyNumber {
-  std::string section;                 ///< of the table
-  std::string name;                    ///< of the member
-  std::string unit;                    ///< empty for a ratio or a count
-  std::string meaning;                 ///< what it decides
-  std::string reason;                  ///< source, measurement or what speaks for the default
+  const char* section;                 ///< of the table
+  const char* name;                    ///< of the member
+  const char* unit;                    ///< empty for a ratio or a count
+  const char* meaning;                 ///< what it decides
+  const char* reason;                  ///< source, measurement or what speaks for the default
   double StepPolicy::*real = nullptr;  ///< exactly one of `real` and `count` is set
   int StepPolicy::*count = nullptr;    ///< a whole number
 
