@@ -246,6 +246,10 @@ TEST(HardStomach, UnderABentScopeThatIsHeldTheWallComesToRest) {
     stomach.run(stomach.model->scene.step_period, input);
   }
   stomach.run(2, input);
+  for (const Joint j : {TipUpDown, TipLeftRight}) {
+    const double load = scene.scope->compliance->bending_stiffness * stomach.state.tool_displacement[j];
+    EXPECT_NEAR(stomach.state.tool_load[j], load, 0.02 * std::abs(load)) << "N m; " << j;
+  }
   double speed = 0;
   for (const auto* v : {&stomach.state.vx, &stomach.state.vy, &stomach.state.vz})
     for (const double value : *v) speed = std::max(speed, std::abs(value));
