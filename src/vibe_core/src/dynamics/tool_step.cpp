@@ -43,11 +43,7 @@ void ToolStep::addSprings() {
 ToolDisplacement ToolStep::expectedDisplacement() const {
   const ToolDisplacement& from = motion_->startDisplacement();
   const ToolYield yield = model_.scope_springs->during(motion_->inputs(0.5), from, from, step_).yield();
-  const Eigen::Isometry3d& tip = scratch_.tool.start[model_.tip_link];
-  const YieldVector pull =
-      yieldForce(*model_.tool, scratch_.tool.start, model_.tool->shaftBend(motion_->inputs(0), from), model_.tip_link,
-                 tip.translation(), tip.linear() * state_.tool_force, tip.linear() * state_.tool_torque);
-  const YieldVector moved = yield.free + yield.compliance * pull;
+  const YieldVector moved = yield.free + yield.compliance * Eigen::Map<const YieldVector>(state_.tool_load.data());
   ToolDisplacement end = from;
   for (int d = 0; d < kYieldDofs; ++d) end[d] += moved[d];
   return end;
@@ -152,6 +148,7 @@ void ToolStep::recoverAround() {
 void ToolStep::report(const ImplicitStepper& stepper) {
   const double tool_work = state_.energy.tool_work;
   reportForces();
+  if (model_.scope_springs) reportLoad();
   reportHand(state_.energy.tool_work - tool_work);
   reportImpedance(stepper);
 }
@@ -165,6 +162,15 @@ void ToolStep::reportForces() {
     pushTool(touch.force, touch.point, touch.motion, tip, report_, state_.energy);
     report_.contacts.push_back(touch);
   }
+}
+
+// What is touched nearer to the hand than a joint does not load that joint: each touch counts with its own link.
+void ToolStep::reportLoad() {
+  const ShaftBend bend = model_.tool->shaftBend(state_.joints, report_.tool_displacement);
+  YieldVector load = YieldVector::Zero();
+  for (const ToolTouch& touch : scratch_.touches)
+    load += yieldJacobian(*model_.tool, scratch_.tool.end, bend, touch.link, touch.point).transpose() * touch.force;
+  for (int d = 0; d < kYieldDofs; ++d) report_.tool_load[d] = load[d];
 }
 
 // Inputs that are not the scope's act from within the tool: the hand that pushes an instrument. Levers are those half

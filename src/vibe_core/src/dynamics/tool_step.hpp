@@ -50,6 +50,7 @@ class ToolStep {
   ToolDisplacement expectedDisplacement() const;
   void reportStopped(const ToolMotion& wanted);
   void reportForces();
+  void reportLoad();
   void reportHand(double tool_work);
   void reportImpedance(const ImplicitStepper& stepper);
 

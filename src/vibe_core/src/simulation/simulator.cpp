@@ -41,6 +41,7 @@ void storeForces(const Model& model, const StepReport& report, const std::vector
   const Eigen::Matrix3d to_tip = poses[model.tip_link].linear().transpose();
   state.tool_force = to_tip * report.tool_force;
   state.tool_torque = to_tip * report.tool_torque;
+  state.tool_load = report.tool_load;
   state.grip_force = report.grip_force.norm();
   state.hand_effort = report.hand_effort;
   state.contact_count = report.contact_count;
@@ -108,6 +109,7 @@ void recover(const Model& model, State& state, EventLog log) {
   state.hand_effort = fresh.hand_effort;
   state.tool_force.setZero();
   state.tool_torque.setZero();
+  state.tool_load = fresh.tool_load;
   state.grip_force = 0;
   log.emit(Event::Kind::Recovery).detail = EventDetail::NotFinite;
 }

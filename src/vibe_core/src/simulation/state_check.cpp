@@ -110,6 +110,7 @@ std::string toolDamage(const State& s, const Model& model) {
   bool displaced = false;
   for (double value : s.joints) sum += value;
   for (double value : s.hand_effort) sum += value;
+  for (double value : s.tool_load) sum += value;
   for (double value : s.tool_displacement) {
     sum += value;
     displaced = displaced || value != 0;

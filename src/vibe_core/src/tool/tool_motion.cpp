@@ -94,17 +94,4 @@ Eigen::Matrix<double, 3, kYieldDofs> yieldJacobian(const ToolModel& tool, const 
   return jacobian;
 }
 
-// A link that turns by w moves the end of an arm r by w x r, and w is half the sum of e x (w x e) over three axes e.
-YieldVector yieldForce(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses, const ShaftBend& bend,
-                       int link, const Eigen::Vector3d& point, const Eigen::Vector3d& force,
-                       const Eigen::Vector3d& torque) {
-  const auto there = yieldJacobian(tool, poses, bend, link, point);
-  YieldVector sum = there.transpose() * force;
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(k);
-    sum += 0.5 * (yieldJacobian(tool, poses, bend, link, point + axis) - there).transpose() * torque.cross(axis);
-  }
-  return sum;
-}
-
 }  // namespace vibe

@@ -65,11 +65,4 @@ Eigen::Matrix<double, 3, kJointCount> pointJacobian(const ToolModel& tool, const
 Eigen::Matrix<double, 3, kYieldDofs> yieldJacobian(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses,
                                                    const ShaftBend& bend, int link, const Eigen::Vector3d& point);
 
-/// Generalised force on the tool's displacement of a force and a torque that act on a link.
-/// @param point   at which the force acts, in the frame of the poses [m]
-/// @param force   [N], @param torque  [N m]: in the same frame
-YieldVector yieldForce(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses, const ShaftBend& bend,
-                       int link, const Eigen::Vector3d& point, const Eigen::Vector3d& force,
-                       const Eigen::Vector3d& torque);
-
 }  // namespace vibe

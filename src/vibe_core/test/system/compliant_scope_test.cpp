@@ -69,10 +69,15 @@ TEST(CompliantScope, EveryDegreeOfFreedomIsInEquilibrium) {
   World world = scopeWorld(scopeScene(ScopeComplianceScene{}));
   world.run(4.0, at(0.14, 0.5, 0.3));
   const ToolDisplacement& q = world.state.tool_displacement;
-  const YieldVector k = world.model->scope_springs->stiffness(world.state.joints[Insertion] + q[Insertion]);
+  const ScopeSprings& springs = *world.model->scope_springs;
+  const YieldVector k = springs.stiffness(world.state.joints[Insertion] + q[Insertion]);
   for (int j = 0; j < kScopeJointCount; ++j) {
     const double effort = world.state.hand_effort[j], load = -k[j] * q[j];
     EXPECT_NEAR(load, effort, 0.02 * std::abs(effort) + 1e-4) << j;
+  }
+  for (int d = 0; d < kYieldDofs; ++d) {
+    const double load = k[d] * q[d] - (d == Insertion ? springs.configurationalForce(world.state.joints, q) : 0);
+    EXPECT_NEAR(world.state.tool_load[d], load, 0.02 * std::abs(load) + 1e-4) << d;
   }
   EXPECT_GT(std::abs(q[TipUpDown]), 0.02) << "the bending section gives way";
   EXPECT_GT(std::abs(q[kShaftDof]), 0.05) << "and so does the shaft";

@@ -234,6 +234,29 @@ TEST(HardStomach, WhereTheToolStopsTheWallMakesRoom) {
   EXPECT_LE(stood_still, 3);
 }
 
+// It is pressed by the bending section and by the tip at once. Where the tool is expected decides on the normals.
+TEST(HardStomach, UnderABentScopeThatIsHeldTheWallComesToRest) {
+  Scene scene = stomachScene();
+  scene.geometry.particles = 2000;
+  Stomach stomach(scene);
+  stomach.run(0.5);
+  StepInput input;
+  for (int k = 1; k <= 60; ++k) {
+    input.joints = {k / 60.0 * 0.068, k / 60.0 * -0.23, k / 60.0 * 1.55, k / 60.0 * 1.34};
+    stomach.run(stomach.model->scene.step_period, input);
+  }
+  stomach.run(2, input);
+  for (const Joint j : {TipUpDown, TipLeftRight}) {
+    const double load = scene.scope->compliance->bending_stiffness * stomach.state.tool_displacement[j];
+    EXPECT_NEAR(stomach.state.tool_load[j], load, 0.02 * std::abs(load)) << "N m; " << j;
+  }
+  double speed = 0;
+  for (const auto* v : {&stomach.state.vx, &stomach.state.vy, &stomach.state.vz})
+    for (const double value : *v) speed = std::max(speed, std::abs(value));
+  EXPECT_GT(stomach.state.tool_force.norm(), 5) << "N";
+  EXPECT_LT(speed, 1e-4) << "m/s; where the bending section's force loads the tip's joints, too: 0.4";
+}
+
 TEST(HardStomach, AThousandfoldGravityAndThenNone) {
   Scene heavy = stomachScene();
   heavy.gravity = GravityScene{{-9810, 0, 0}};

@@ -107,7 +107,10 @@ struct State {
 
   Eigen::Vector3d tool_force = Eigen::Vector3d::Zero();   ///< tissue on tool, mean over the step, in scope_tip [N]
   Eigen::Vector3d tool_torque = Eigen::Vector3d::Zero();  ///< about the origin of scope_tip, in scope_tip [N m]
-  double grip_force = 0;                                  ///< magnitude of the force on the grip [N]
+  /// Of the tissue on the ways in which the tool gives way, with the forces of the step where it ends, in the order of
+  /// tool_displacement; 0 with a rigid one [N], [N m], [N m], [N m], then [N m^2].
+  std::array<double, kYieldDofs> tool_load{};
+  double grip_force = 0;  ///< magnitude of the force on the grip [N]
   int contact_count = 0;  ///< points where the tool touches the wall; shape matching: particles that it touches
 
   PullSpring pull;  ///< pulls the tissue from outside

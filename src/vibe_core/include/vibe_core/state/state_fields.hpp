@@ -41,7 +41,7 @@ VIBE_FIELDS(ImpedanceMemory, last_step, next_renewal, current, next, last_nodes,
             last_force, last_jump, slope, joint_slope);
 VIBE_FIELDS(State, step, time, seed, random, x, y, z, vx, vy, vz, ax, ay, az, qw, qx, qy, qz, wx, wy, wz, gas_amount,
             pressure, volume, pressure_reached, joints, tool_displacement, hand_effort, stall, blocked_steps, grip,
-            helix_pressed, in_contact, untouched_time, tool_force, tool_torque, grip_force, contact_count, pull,
-            procedure, energy, solver, impedance);
+            helix_pressed, in_contact, untouched_time, tool_force, tool_torque, tool_load, grip_force, contact_count,
+            pull, procedure, energy, solver, impedance);
 
 }  // namespace vibe
