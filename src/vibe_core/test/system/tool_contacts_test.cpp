@@ -84,7 +84,7 @@ void checkContact(const Model& model, const State& state, const ToolContact& con
   EXPECT_GE(contact.normalForce(), 0);
   if (model.solver->usesSubsteps()) return;  // a mean over sub-steps, the normal of the last
   EXPECT_LE(contact.tangentialForce().norm(), 1.01 * model.scene.scope->friction * contact.normalForce() + 1e-9);
-  EXPECT_LT(std::abs(contact.gap), 1e-3) << "less than half a wall, also where the tool is fast";
+  EXPECT_LT(std::abs(contact.gap), model.particle_radius) << "less than half a wall, also where the tool is fast";
 }
 
 /// What a run has met.
