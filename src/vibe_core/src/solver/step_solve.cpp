@@ -35,20 +35,26 @@ void StepSolve::foresee() {
   setStepTargets(loads_, motion_, scheme_, memory_.couplings, at_.z, system_);
   newton_.takeRows();
   newton_.judgeBy(foreseen);
+  guessed_ = continuation_.from != From::Solution && (foreseen > 0 || plan_.extrapolates(fallback_));
   evaluateStart();
   {
     const InStage stage(scratch_.stages, StepStage::Factor);
     system_.schur.setRows(system_.rows, *scratch_.factors.current, scratch_.factors.columns);
   }
   newton_.setGas(foreseenVolume());
-  if (continuation_.from != From::Solution && foreseen > 0) doubtDirection();
+  if (guessed_ && newton_.referenceLength() > 0) doubtDirection();
   chooseContacts();
   newton_.aim();
   storeToolForces(system_, loads_);
 }
 
+// A guess with far more energy may be tangled and lead to a tangled minimum: then start from the present positions.
 void StepSolve::evaluateStart() {
   continuation_.from == From::Abandoned ? newton_.start(continuation_.value) : newton_.start();
+  if (guessed_ && !(at_.last.elastic_value <= stepPolicy().guess_growth * memory_.elastic_energy)) {
+    ways_.count(StepWay::GuessTangled);
+    startFromHere();
+  }
   if (continuation_.from != From::Solution) at_.first = at_.last;
 }
 

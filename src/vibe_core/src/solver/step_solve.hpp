@@ -15,7 +15,8 @@ namespace vibe {
 /// one.
 ///
 /// A solve starts at the present positions or, where the motion carries a node far, along the velocities: the step then
-/// has to find only what changes it. Such a guess is given up where the first direction leads back. A free body is moved rigidly first.
+/// has to find only what changes it. Such a guess is given up where it has far more energy than the last step ended
+/// with, or where the first direction leads back. A free body is moved rigidly first.
 class StepSolve {
  public:
   /// @param motion   in and out, as at the start of the step
@@ -56,6 +57,7 @@ class StepSolve {
   const TimeScheme& scheme_;
   Potential potential_;
   QuasiNewton newton_;
+  bool guessed_ = false;  // it starts elsewhere than at the present positions
   StepWays ways_;
 };
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "solver/balloon.hpp"
+#include "vibe_core/solver/step_policy.hpp"
 
 namespace vibe::few_iterations_test {
 namespace {
@@ -121,6 +122,20 @@ TEST_P(FewIterations, StayWithTheConvergedMotion) {
   EXPECT_GT(error, 0) << "these are not other iterations";
   EXPECT_GT(motion.released, 1e-4);
   EXPECT_LE(motion.max_after, motion.released);
+}
+
+// Where a step starts at positions that have far more energy than the last step ended with, it does not get far enough.
+TEST(FewIterationsOfABall, AGuessWithFarMoreEnergyIsGivenUp) {
+  StepSettings settings;
+  settings.spectral_radius = 0.5;
+  settings.iterations = 20;
+  const Motion truth = pullAndLetGo(Kind::Clamped, settings);
+  settings.iterations = 3;
+  const double given_up = errorOf(pullAndLetGo(Kind::Clamped, settings), truth);
+  StepPolicy keeps;
+  keeps.guess_growth = 1e300;
+  const ScopedStepPolicy scoped(keeps);
+  EXPECT_LT(given_up, 0.7 * errorOf(pullAndLetGo(Kind::Clamped, settings), truth));
 }
 
 std::string nameOf(const ::testing::TestParamInfo<FewIterations::ParamType>& info) {

@@ -3,6 +3,9 @@
 // costs to shift a number is measured, see docs/policy.md.
 
 VIBE_POLICY_SECTION("Where a solve starts")
+VIBE_REAL(guess_growth, 2, "",
+          "elastic energy of an extrapolated guess over that of the last step, above which the guess is dropped",
+          "a guess along a smooth motion changes the energy by a few percent per step")
 VIBE_REAL(misled_part, 0.5, "",
           "first direction from the predicted positions over the predicted motion, above which the step starts from "
           "the present positions",

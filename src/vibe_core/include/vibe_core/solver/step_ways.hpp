@@ -10,7 +10,8 @@ namespace vibe {
 enum class StepWay {
   Asleep,             ///< the tissue rests and nothing new acts: the step is skipped
   Recovery,           ///< tissue that was lost or jammed is led towards rest, without a solve
-  GuessMisled,        ///< the first direction leads back from the extrapolated positions: the solve starts from the present ones
+  GuessTangled,       ///< the extrapolated positions have far more energy: the solve starts from the present ones
+  GuessMisled,        ///< the first direction leads back from the extrapolated positions: the same
   ContactsExchanged,  ///< contacts without a row would be deep in the tool: they take the rows of idle ones
   ToolReaimedEarly,   ///< the first direction leads the tool elsewhere: contacts are found anew before anything moves
   PairsDropped,       ///< a direction with the history leads up: the history goes
@@ -25,7 +26,7 @@ enum class StepWay {
   NotFinite,          ///< numbers that are not finite: the simulator starts again from rest
 };
 
-constexpr std::size_t kStepWayCount = 15;  ///< of StepWay
+constexpr std::size_t kStepWayCount = 16;  ///< of StepWay
 
 /// How often a step has taken each way.
 class StepWays {
@@ -43,7 +44,7 @@ class StepWays {
   std::array<int, kStepWayCount> taken_{};
 };
 
-/// A word for tables, such as "guess misled".
+/// A word for tables, such as "guess tangled".
 const char* nameOf(StepWay way);
 
 }  // namespace vibe
