@@ -15,6 +15,14 @@ usageError() {
   exit 2
 }
 
+# helpOnly "$@": of a script that has no option but --help.
+helpOnly() {
+  [ $# -gt 0 ] || return 0
+  [ "$1" = --help ] || usageError "unknown option '$1'"
+  usage
+  exit 0
+}
+
 # requireValue OPTION COUNT: an option that takes a value must be followed by one.
 requireValue() {
   [ "$2" -ge 2 ] || usageError "$1 needs a value"

@@ -20,7 +20,7 @@ check 'no tool: vibe_headless runs' program vibe_core/vibe_headless --script han
 check 'no tool: vibe_headless refuses a protocol' refuses 2 "has no scope" program vibe_core/vibe_headless \
   --script "$root/src/vibe_core/trainees/first.yaml"
 check 'no tool: vibe_haptic_loop' refuses 2 "has no scope" program vibe_hardware/vibe_haptic_loop --script hand.yaml
-for mode in scenarios patterns outcomes; do
+for mode in scenarios outcomes; do
   check "no tool: vibe_sutures $mode" refuses 2 "needs the sections" program vibe_benchmarks/vibe_sutures $mode --quick
 done
 for mode in states hard refinement; do
@@ -28,13 +28,11 @@ for mode in states hard refinement; do
 done
 check 'no tool: vibe_policy' refuses 2 "needs the sections" program vibe_benchmarks/vibe_policy
 
-check 'no tool: vibe_factor runs' program vibe_benchmarks/vibe_factor
-
 # a program that is new here needs a line above
 onlyThese() {
   local found
   found=$(cd "$root/src" && grep -l 'loadScene(' ./*/programs/*.cpp | sed -E 's#.*/##; s/(_main)?\.cpp$//' | sort)
   echo "$found"
-  [ "$(xargs <<<"$found")" = 'vibe_contact vibe_factor vibe_haptic_loop vibe_headless vibe_policy vibe_sutures' ]
+  [ "$(xargs <<<"$found")" = 'vibe_contact vibe_haptic_loop vibe_headless vibe_policy vibe_sutures' ]
 }
 check 'no tool: these are all programs that take a scene' onlyThese

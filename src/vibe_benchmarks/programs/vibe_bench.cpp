@@ -1,7 +1,6 @@
 // Measures speed and error of every method and setting on one scenario, and runs the cases with reference solutions.
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -10,7 +9,7 @@
 #include "fem/fem_case.hpp"
 #include "method/method_table.hpp"
 #include "output/result_row.hpp"
-#include "pulling/pulling_table.hpp"
+#include "pulling/pulled_plate.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/program/command_line.hpp"
 #include "vibe_core/program/error.hpp"
@@ -50,20 +49,12 @@ std::vector<std::string> shippedCases() {
   return files;
 }
 
-void writeRows(const std::string& file, const std::vector<ResultRow>& rows) {
-  if (file == "-") return writeCsv(rows, std::cout);
-  std::ofstream out(file);
-  writeCsv(rows, out);
-  out.close();
-  if (!out) throw Error(file + ": cannot be written; give --csv a path in a writable folder.");
-}
-
 /// @returns the exit status
 int run(const Options& options) {
   if (options.pulling_only) {
     const std::vector<ResultRow> ways = runPulling(options.profile, std::cerr);
     printTable(ways, std::cerr);
-    if (!options.csv.empty()) writeRows(options.csv, ways);
+    save(options.csv, [&](std::ostream& out) { writeCsv(ways, out); });
     return 0;
   }
   std::vector<std::string> files = options.cases;
@@ -81,7 +72,7 @@ int run(const Options& options) {
     rows.insert(rows.end(), more.begin(), more.end());
   }
   printTable(rows, std::cerr);
-  if (!options.csv.empty()) writeRows(options.csv, rows);
+  save(options.csv, [&](std::ostream& out) { writeCsv(rows, out); });
   const bool other = std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.branch == Branch::Other; });
   return other ? kOtherBranch : 0;
 }

@@ -8,6 +8,8 @@
 #include "contact/grip_refinement.hpp"
 #include "contact/hard_cases.hpp"
 #include "contact/way_counts.hpp"
+#include "output/result_row.hpp"
+#include "vibe_core/arithmetic/machine.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/program/command_line.hpp"
 #include "vibe_core/program/error.hpp"
@@ -34,16 +36,6 @@ struct Options {
   bool brief = false;
   bool check_reference = false, no_reference = false, stages = false, real_time = false, plain_preparation = false;
 };
-
-template <class Write>
-void save(const std::string& file, const Write& write) {
-  if (file.empty()) return;
-  if (file == "-") return write(std::cout);
-  std::ofstream out(file);
-  write(out);
-  out.close();
-  if (!out) throw Error(file + ": cannot be written; give --csv a path in a writable folder.");
-}
 
 OptionCheck rateOfFrames() {
   return {[](const std::string& text) {
@@ -172,7 +164,7 @@ void runStates(const Options& options) {
   const Scene scene = sceneOf(options);
   const std::string urdf = readTextFile(resolveAddress(scene.scope->urdf), "URDF");
   const auto rows = runContactStates(scene, urdf, planOf(options, scene), std::cerr);
-  std::cerr << "\n" << processorName() << "\n";
+  std::cerr << "\n" << machineInfo().processor << "\n";
   printContactHeader(std::cerr);
   for (const ContactRow& row : rows) printContactRow(row, std::cerr);
   save(options.csv, [&](std::ostream& out) { writeContactRows(rows, out); });

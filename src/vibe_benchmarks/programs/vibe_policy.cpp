@@ -1,8 +1,8 @@
 // Shifts each number that steers a step, and measures what changes.
-#include <fstream>
 #include <iostream>
 #include <string>
 
+#include "output/result_row.hpp"
 #include "policy/policy_study.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/program/command_line.hpp"
@@ -54,11 +54,5 @@ int main(int argc, char** argv) {
       .check(oneOf(numberNames()).hidden());
   line.option("--scene", options.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)").typeName("FILE");
   line.option("--csv", options.csv, "write the rows there (default: - for standard output)").typeName("FILE");
-  return runProgram(line, argc, argv, [&] {
-    if (options.csv == "-") return study(options, std::cout);
-    std::ofstream out(options.csv);
-    study(options, out);
-    out.close();
-    if (!out) throw Error(options.csv + ": cannot be written; give --csv a path in a writable folder.");
-  });
+  return runProgram(line, argc, argv, [&] { save(options.csv, [&](std::ostream& out) { study(options, out); }); });
 }

@@ -1,12 +1,12 @@
 // Simulates complete suturing procedures: the cost of each set, and the effect of stitch patterns on the stomach.
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <string>
 
+#include "output/result_row.hpp"
 #include "suture/outcome_study.hpp"
-#include "suture/pattern_study.hpp"
 #include "suture/set_scenario.hpp"
+#include "vibe_core/arithmetic/machine.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/program/command_line.hpp"
 #include "vibe_core/program/error.hpp"
@@ -21,7 +21,6 @@ const char kAbout[] =
     "Sews whole procedures of sutures.\n"
     "  scenarios  14 sets of 4 bites and 8 sets of 7 to the end: CPU time per step of each set\n"
     "  outcomes   what an idealised sleeve of C, U and Z changes at rest, and which modelling choices matter\n"
-    "  patterns   volume, length and area of the stomach before and after sets of the patterns C, U and Z\n"
     "The program puts bites into the wall as the needle would take them; T-tag and cinch go through their buttons.";
 
 struct Options {
@@ -32,17 +31,17 @@ struct Options {
 };
 
 void addOptions(OptionList& line, Options& o) {
-  line.option("scenarios|outcomes|patterns", o.mode, "what to sew")
+  line.option("scenarios|outcomes", o.mode, "what to sew")
       .typeName("")
       .required()
-      .check(oneOf({"scenarios", "outcomes", "patterns"}).hidden());
+      .check(oneOf({"scenarios", "outcomes"}).hidden());
   line.option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)").typeName("FILE");
   line.option("--repeats", o.repeats, "runs of each scenario (default: 3); of each step the fastest counts")
       .typeName("N")
       .check(wholeFrom(1, 1000));
   line.option("--trial", o.trials, "only these outcomes, by the columns trial and pattern, as in fine_mesh_u")
       .typeName("TRIAL_PATTERN");
-  line.flag("--quick", o.quick, "one run of each scenario; patterns and outcomes once, with nothing varied");
+  line.flag("--quick", o.quick, "one run of each scenario; outcomes with nothing varied");
   line.option("--csv", o.csv, "write the rows there (- for standard output)").typeName("FILE");
 }
 
@@ -51,16 +50,6 @@ Scene sceneOf(const Options& options) {
   if (!scene.gas || !scene.scope || !scene.suture)
     throw Error(options.scene + ": needs the sections gas, scope and suture to be sewn; add them.");
   return scene;
-}
-
-template <class Write>
-void save(const std::string& file, const Write& write) {
-  if (file.empty()) return;
-  if (file == "-") return write(std::cout);
-  std::ofstream out(file);
-  write(out);
-  out.close();
-  if (!out) throw Error(file + ": cannot be written; give --csv a path in a writable folder.");
 }
 
 void runScenarios(const Options& options) {
@@ -74,16 +63,10 @@ void runScenarios(const Options& options) {
   results.back().reference = 17.7;  // Erden et al., on an Intel i7-12700KF
   results.push_back(runScenario(model, many, "14x4", options.repeats, std::cerr));
   results.back().reference = 18.0;
-  std::cerr << processorName() << ", one thread steps, one more prepares factors; the cheapest of " << options.repeats
-            << (options.repeats == 1 ? " run\n" : " runs\n");
+  std::cerr << machineInfo().processor << ", one thread steps, one more prepares factors; the cheapest of "
+            << options.repeats << (options.repeats == 1 ? " run\n" : " runs\n");
   for (const ScenarioResult& result : results) printScenario(result, std::cerr);
   save(options.csv, [&](std::ostream& out) { writeScenarios(results, out); });
-}
-
-void runPatterns(const Options& options) {
-  const auto rows = studyPatterns(sceneOf(options), options.quick, std::cerr);
-  printPatterns(rows, std::cerr);
-  save(options.csv, [&](std::ostream& out) { writePatterns(rows, out); });
 }
 
 std::vector<OutcomeTrial> chosenTrials(const Scene& scene, const Options& options) {
@@ -121,6 +104,5 @@ int main(int argc, char** argv) {
     if (options.quick) options.repeats = 1;
     if (options.mode == "scenarios") runScenarios(options);
     if (options.mode == "outcomes") runOutcomes(options);
-    if (options.mode == "patterns") runPatterns(options);
   });
 }

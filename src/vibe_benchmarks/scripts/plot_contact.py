@@ -1,14 +1,10 @@
 #!/usr/bin/env python3
 """Draws speed against error of states with contact, from the table that `vibe_contact states` writes.
 
-usage: plot_contact.py [--machine=TEXT] [--sutures=TABLE.csv] [--steps=STEPS.csv] TABLE.csv PICTURE.png [PICTURE.svg ...]
+usage: plot_contact.py [--machine=TEXT] [--sutures=TABLE.csv] TABLE.csv PICTURE.png [PICTURE.svg ...]
 
-With the table of `vibe_sutures scenarios` it adds the growth of a step over the sets, with the steps of
-`vibe_contact hard --steps` the cost of a step over its contacts.
+With the table of `vibe_sutures scenarios` it adds the growth of a step over the sets.
 """
-import math
-import statistics
-
 from matplotlib.ticker import LogLocator
 
 from plot_lib import FRAME, label_log_axes, parse_arguments, plt, read_table, save, set_title
@@ -64,50 +60,19 @@ def draw_growth(axis, rows):
     axis.legend(fontsize=7)
 
 
-def slope(points):
-    """Least-squares line: time without contact, time per contact."""
-    x, y = [p[0] for p in points], [p[1] for p in points]
-    mean_x, mean_y = statistics.fmean(x), statistics.fmean(y)
-    square = sum((v - mean_x) ** 2 for v in x)
-    rate = sum((v - mean_x) * (w - mean_y) for v, w in points) / square if square else math.nan
-    return mean_y - rate * mean_x, rate
-
-
-def draw_contacts(axis, rows):
-    by_count = {}
-    for row in rows:
-        by_count.setdefault(int(row["contacts"]), []).append(float(row["ms"]))
-    points = sorted((count, statistics.median(times)) for count, times in by_count.items())
-    axis.plot([p[0] for p in points], [p[1] for p in points], "o", color="tab:red", markersize=4,
-              label="median of the steps with so many contacts")
-    start, rate = slope([(int(row["contacts"]), float(row["ms"])) for row in rows])
-    axis.plot([0, points[-1][0]], [start, start + rate * points[-1][0]], "-", color="0.5", linewidth=0.9,
-              label=f"{1000 * rate:.0f} µs per contact")
-    axis.set_xlabel("contacts of tool and wall")
-    axis.set_ylabel("CPU time of a step [ms]")
-    axis.set_ylim(bottom=0)
-    axis.grid(True, color="0.92")
-    axis.legend(fontsize=7)
-
-
 def main(options, table, pictures):
     rows = read_table(table, "motion_error", "vibe_contact states --csv")
     rows = [row for row in rows if row.get("part", row["state"]) == row["state"]]  # the free pull of other runs
-    extra = [name for name in ("sutures", "steps") if name in options]
-    count = 2 + len(extra)
-    lines, columns = (2, 2) if count == 4 else (1, count)
-    figure, axes = plt.subplots(lines, columns, figsize=(6 * columns, 5.2 * lines), squeeze=False)
-    axes = [axis for line in axes for axis in line]
+    count = 3 if "sutures" in options else 2
+    figure, axes = plt.subplots(1, count, figsize=(6 * count, 5.2))
     set_title(figure, "Steps in contact: speed against error", options)
     draw_errors(axes[0], rows, "motion_error", "error of the motion, worst frame")
     draw_errors(axes[1], rows, "force_error", "error of force or tension, worst frame")
     if "sutures" in options:
         draw_growth(axes[2], read_table(options["sutures"], "pulling_mean", "vibe_sutures scenarios --csv"))
-    if "steps" in options:
-        draw_contacts(axes[count - 1], read_table(options["steps"], "contacts", "vibe_contact hard --steps"))
     figure.tight_layout()
     save(figure, pictures)
 
 
 if __name__ == "__main__":
-    main(*parse_arguments(__doc__, ("machine", "sutures", "steps")))
+    main(*parse_arguments(__doc__, ("machine", "sutures")))

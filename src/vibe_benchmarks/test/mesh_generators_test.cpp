@@ -1,4 +1,4 @@
-#include "fem/mesh_generators.hpp"
+#include "fem/bench_mesh.hpp"
 
 #include <gtest/gtest.h>
 

@@ -37,12 +37,5 @@ TEST(ResultRow, takesPercentilesFromTheSortedTimes) {
   EXPECT_EQ(row.ms_max, 200);
 }
 
-TEST(ResultRow, hashesEveryBit) {
-  const double a[2] = {0.0, 1.0}, b[2] = {-0.0, 1.0};
-  EXPECT_EQ(hashNumbers(a, 2), hashNumbers(a, 2));
-  EXPECT_NE(hashNumbers(a, 2), hashNumbers(b, 2));
-  EXPECT_EQ(hashNumbers(a, 2), hashNumbers(a + 1, 1, hashNumbers(a, 1)));
-}
-
 }  // namespace
 }  // namespace vibe::benchmarks::result_row_test

@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "suture/outcome_study.hpp"
-#include "suture/pattern_study.hpp"
 #include "suture/set_scenario.hpp"
 #include "suture/suture_session.hpp"
 #include "vibe_core/files/files.hpp"
@@ -106,20 +105,14 @@ TEST(Sutures, APlanLiesWhereItSays) {
   EXPECT_THROW(plan.at(0.5 * plan.length(), 0.5), Error);
 }
 
-TEST(Sutures, PatternsAreWhatTheyAreCalled) {
-  for (const int bites : {4, 7, 10})
-    for (const char* pattern : {"u", "z", "c"}) {
-      // for an arc the square is its bounding box: a circle again
-      const Eigen::Vector2d size = pattern[0] == 'c' ? Eigen::Vector2d(0.0067, 0.02) : Eigen::Vector2d(0.018, 0.018);
-      std::vector<Eigen::Vector3d> places;
-      for (const Eigen::Vector2d& p : patternBites(pattern, bites))
-        places.emplace_back(size.x() * p.x(), size.y() * p.y(), 0);
-      ASSERT_EQ(static_cast<int>(places.size()), bites);
-      if (bites == 4 && pattern[0] == 'c') continue;  // four bites of an arc may be a U
-      EXPECT_STREQ(toString(recogniseTechnique(places).technique), pattern) << bites;
-    }
-  EXPECT_THROW(patternBites("u", 5), Error);
-  EXPECT_THROW(patternBites("spiral", 7), Error);
+TEST(Sutures, ASetIsAU) {
+  for (const int bites : {4, 7, 10}) {
+    std::vector<Eigen::Vector3d> places;
+    for (const Eigen::Vector2d& p : bitesOfU(bites)) places.emplace_back(0.018 * p.x(), 0.018 * p.y(), 0);
+    ASSERT_EQ(static_cast<int>(places.size()), bites);
+    EXPECT_STREQ(toString(recogniseTechnique(places).technique), "u") << bites;
+  }
+  EXPECT_THROW(bitesOfU(5), Error);
 }
 
 OutcomeTrial coarseTrial() {

@@ -24,39 +24,36 @@ void addOptions(OptionList& line, Options& options) {
       .check(oneOf({"ring", "sleeve", "centroid", "aruco", "apriltag"}));
   line.flag("--quick", options.quick, "60 frames of one seed of every scene; no sizes, exposures and sensors");
   line.flag("--list", options.list, "print the names of the scenes and end");
-  line.option("--csv", options.csv, "write all numbers to this file");
+  line.option("--csv", options.csv, "write to this file instead of the standard output");
 }
 
 /// What the options name, or without any everything that docs/vision.md shows.
 std::vector<Cell> cellsOf(const Options& options) {
   std::vector<Cell> cells;
+  if (options.scenes.empty() && !options.quick) cells = furtherCells();
   for (const std::string& scene : options.scenes.empty() ? sceneNames() : options.scenes) {
     cells.emplace_back();
     cells.back().scene = scene;
   }
-  if (!options.scenes.empty() || options.quick) return cells;
-  const std::vector<Cell> more = furtherCells();
-  cells.insert(cells.end(), more.begin(), more.end());
   return cells;
 }
 
 int run(const Options& options) {
   if (options.list) {
     for (const std::string& name : sceneNames()) std::cout << name << "\n";
-    for (const std::string& name : harderSceneNames()) std::cout << name << "\n";
+    for (const HarderScene& scene : harderScenes()) std::cout << scene.name << "\n";
     return 0;
   }
-  std::ofstream csv;
-  if (!options.csv.empty()) csv.open(options.csv);
-  if (!csv) throw Error("--csv: cannot write to '" + options.csv + "'; name a file in a folder that exists");
+  std::ofstream file;
+  if (!options.csv.empty()) file.open(options.csv);
+  if (!file) throw Error("--csv: cannot write to '" + options.csv + "'; name a file in a folder that exists");
   if (!pinThread()) std::cerr << "The thread cannot be pinned to one processor: times may vary more.\n";
-  printHeader(std::cout, options.bench.limits);
-  std::vector<CellResult> results;
+  std::ostream& csv = options.csv.empty() ? std::cout : file;
+  writeCsvHeader(csv);
   for (const Cell& cell : cellsOf(options)) {
-    results.push_back(runCell(cell, options.bench));
-    printCell(std::cout, results.back());
+    std::cerr << cell.scene << "\n";
+    writeCsv(csv, runCell(cell, options.bench));
   }
-  if (csv.is_open()) writeCsv(csv, results);
   return 0;
 }
 

@@ -26,12 +26,12 @@ def isStandard(row):
 
 
 def updatePage(path, tables):
-    """Writes between the marks <!-- bench: NAME --> and <!-- end -->. `tables`: {NAME: function of the old text}."""
+    """Writes between the marks <!-- bench: NAME --> and <!-- end -->. `tables`: {NAME: text}."""
     with open(path, encoding='utf-8') as file:
         page = file.read()
-    for name, make in tables.items():
-        page, count = re.subn(rf'(<!-- bench: {name} -->\n)(.*?)(<!-- end -->)',
-                              lambda m, make=make: f'{m[1]}{make(m[2])}\n{m[3]}', page, flags=re.DOTALL)
+    for name, text in tables.items():
+        page, count = re.subn(rf'(<!-- bench: {name} -->\n).*?(<!-- end -->)',
+                              lambda m, text=text: f'{m[1]}{text}\n{m[2]}', page, flags=re.DOTALL)
         if count != 1:
             raise SystemExit(f"'{path}' has {count} places '<!-- bench: {name} -->'; it needs exactly one.")
     with open(path, 'w', encoding='utf-8') as file:

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Makes the tables of docs/vision.md from the table of vibe_vision_bench.
 
-Prints them as Markdown, or with --update writes them between the marks <!-- bench: NAME --> and <!-- end --> of a page.
-There, cells of what the table does not have, methods or scenes that were not run, stay as they are.
+Prints them as Markdown, or with --update writes them between the marks <!-- bench: NAME --> and <!-- end --> of a page. A
+dash is what was not run or cannot be measured.
 """
 import argparse
 import math
@@ -10,7 +10,7 @@ import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from benchmark_rows import isStandard, readRows, updatePage
+from benchmark_rows import readRows, updatePage
 
 SCENES = {
     'static': 'at rest', 'moving': 'moving, 1 ms exposure', 'long_exposure': '4 ms exposure', 'defocus': 'defocus',
@@ -18,7 +18,7 @@ SCENES = {
     'look_alike': 'look-alike', 'all': 'all of these at once', 'tilt': 'tilt and slant of 15°', 'scale': 'scale ±10 %'}
 METHODS = {'ring': 'ring', 'sleeve': 'sleeve', 'centroid': 'centroid', 'aruco': 'ArUco', 'apriltag': 'AprilTag'}
 OWN = ('ring', 'sleeve')
-MISSING = '\0'  # was not run
+MISSING = '–'  # was not run, or cannot be measured
 
 
 class Table:
@@ -34,17 +34,14 @@ class Table:
                 return row
         return None
 
-    def standard(self, method):
-        return [row for row in self.rows if row['method'] == method and isStandard(row) and row['scene'] in SCENES]
-
 
 def number(value, digits):
-    return MISSING if value is None else '–' if math.isnan(value) else f'{value:.{digits}f}'
+    return MISSING if value is None or math.isnan(value) else f'{value:.{digits}f}'
 
 
 def share(part, whole):
     if not whole > 0:
-        return '–'
+        return MISSING
     percent = 100 * part / whole
     return '100' if part == whole else f'{min(percent, 99.9):.1f}'
 
@@ -60,7 +57,7 @@ def cells(table, scene, text):
 
 def withBound(row):
     error = number(row['rms_px'], 4)
-    return f"{error} ({number(row['bound_ratio'], 1)})" if error != '–' else error
+    return f"{error} ({number(row['bound_ratio'], 1)})" if error != MISSING else error
 
 
 def errorTable(table):
@@ -82,7 +79,7 @@ def foundTable(table):
 def consistencyTable(table):
     def text(row):
         if math.isnan(row['nees']):
-            return '–'
+            return MISSING
         inside = row['nees_low'] <= row['nees'] <= row['nees_high']
         return f"{row['nees']:.2f} {'in' if inside else 'outside'} [{row['nees_low']:.2f}, {row['nees_high']:.2f}]"
     rows = []
@@ -163,25 +160,6 @@ TABLES = {'goals': goalTable, 'errors': errorTable, 'found': foundTable, 'consis
           'times': timeTable, 'sizes': sizeTable}
 
 
-def cellsOf(line):
-    return [cell.strip() for cell in line.strip().strip('|').split('|')]
-
-
-def keep(old, new):
-    """The new table, with the old one's cells where the new one has none."""
-    before = [cellsOf(line) for line in old.splitlines()]
-    columns = before[0] if before else []
-    known = {row[0]: dict(zip(columns, row)) for row in before}
-    lines = new.splitlines()
-    header = cellsOf(lines[0])
-    for i, line in enumerate(lines):
-        if MISSING in line:
-            row = cellsOf(line)
-            row = [known.get(row[0], {}).get(name, '–') if cell == MISSING else cell for name, cell in zip(header, row)]
-            lines[i] = '| ' + ' | '.join(row) + ' |'
-    return '\n'.join(lines)
-
-
 def processor():
     try:
         with open('/proc/cpuinfo') as file:
@@ -205,9 +183,9 @@ def main():
     texts = {name: make(table) for name, make in TABLES.items()}
     texts['conditions'] = conditions(table.rows, arguments.machine)
     if not arguments.update:
-        print('\n\n'.join(text.replace(MISSING, '–') for text in texts.values()))
+        print('\n\n'.join(texts.values()))
         return
-    updatePage(arguments.update, {name: lambda old, text=text: keep(old, text) for name, text in texts.items()})
+    updatePage(arguments.update, texts)
 
 
 if __name__ == '__main__':

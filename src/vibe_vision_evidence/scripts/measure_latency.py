@@ -2,7 +2,7 @@
 """Measures the time from the middle of an exposure to the datagram, stage by stage.
 
 Starts a ROS master, a GigE Vision camera in software (or uses the camera that is given) and vision_node, receives the
-datagrams and writes a table with one row per frame. plot_latency.py draws it. Run it on an idle computer, in a sourced
+datagrams, writes a table with one row per frame and prints quantiles. Run it on an idle computer, in a sourced
 workspace: the stages are waiting for the scheduler on a busy one.
 """
 

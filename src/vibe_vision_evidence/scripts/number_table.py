@@ -55,7 +55,7 @@ def main():
     if not arguments.update:
         print(text)
         return
-    updatePage(arguments.update, {'numbers': lambda _: text})
+    updatePage(arguments.update, {'numbers': text})
 
 
 if __name__ == '__main__':

@@ -28,8 +28,7 @@ METHODS = {  # name: (label, colour, marker)
 SCENES = {'static': 'at rest', 'moving': '0.5 m/s, 1 ms exposure', 'all': 'all degradations at once'}
 LIMIT = {'static': None, 'moving': 0.01, 'all': 0.1}  # to reach [px]
 PIXELS_PER_METRE = 1e4
-
-
+PEAK = 0.5  # speed [m/s]
 PLAIN = FuncFormatter(lambda value, _: f'{value:g}')
 
 
@@ -83,7 +82,6 @@ def plotTimes(rows, path):
 
 
 def drawBlur(axes, found, rows):
-    peak = max(row['speed_m_s'] for row in rows)
     for method, (label, colour, marker) in METHODS.items():
         points = sorted((1e3 * row['exposure_s'], row) for row in rows if row['method'] == method)
         times = [time for time, _ in points]
@@ -92,7 +90,6 @@ def drawBlur(axes, found, rows):
         if method in ('ring', 'sleeve'):
             axes.plot(times, [row['bound_px'] for _, row in points], '--', color=colour, linewidth=1,
                       label=f'Cramér-Rao bound, {method}')
-    return peak
 
 
 def plotBlur(rows, path):
@@ -100,7 +97,7 @@ def plotBlur(rows, path):
     if not sweep:
         raise SystemExit('The table has no exposures: make it without --quick and --scene.')
     figure, (axes, found) = plt.subplots(1, 2, figsize=(11.5, 5.0))
-    peak = drawBlur(axes, found, sweep)
+    drawBlur(axes, found, sweep)
     axes.set_ylabel('RMS error along the axis [px]')
     axes.set_yscale('log')
     axes.yaxis.set_major_formatter(PLAIN)
@@ -111,10 +108,10 @@ def plotBlur(rows, path):
         panel.set_xlabel('exposure [ms]')
         panel.xaxis.set_major_formatter(PLAIN)
         panel.grid(alpha=0.3, which='both')
-        pixels = panel.secondary_xaxis('top', functions=(lambda ms: ms * 1e-3 * peak * PIXELS_PER_METRE,
-                                                         lambda px: px / (1e-3 * peak * PIXELS_PER_METRE)))
+        pixels = panel.secondary_xaxis('top', functions=(lambda ms: ms * 1e-3 * PEAK * PIXELS_PER_METRE,
+                                                         lambda px: px / (1e-3 * PEAK * PIXELS_PER_METRE)))
         pixels.xaxis.set_major_formatter(PLAIN)
-        pixels.set_xlabel(f'blur at the peak speed of {peak:g} m/s [px]')
+        pixels.set_xlabel(f'blur at the peak speed of {PEAK:g} m/s [px]')
     handles, labels = legendOf([axes])
     figure.legend(handles, labels, loc='lower center', ncol=4, frameon=False, fontsize=9)
     figure.tight_layout(rect=(0, 0.11, 1, 1))

@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include "fem/mesh_generators.hpp"
+#include "fem/bench_mesh.hpp"
 #include "tetrahedra/tetrahedra.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/tissue/shell.hpp"

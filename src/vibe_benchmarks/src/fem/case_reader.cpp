@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "fem/mesh_generators.hpp"
+#include "fem/bench_mesh.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/words.hpp"
 

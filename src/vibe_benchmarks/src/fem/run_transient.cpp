@@ -4,6 +4,7 @@
 #include "fem/case_runner.hpp"
 #include "fem/static_path.hpp"
 #include "fem/vibration.hpp"
+#include "vibe_core/files/fnv1a.hpp"
 
 namespace vibe::benchmarks {
 namespace {
@@ -114,9 +115,10 @@ Record update(const FemCase& bench_case, const CaseModel& model) {
   // a session computes the first factor while it loads
   if (record.times.size() > 1) record.times.erase(record.times.begin());
   if (released) record.energy_drift = energyOf(stepper.body(), motion.view()) / energy - 1;
-  record.state_hash = 0xcbf29ce484222325ULL;
+  Fnv1a hash;
   for (const auto* part : {&motion.x, &motion.v})
-    for (const auto& values : *part) record.state_hash = hashNumbers(values.data(), values.size(), record.state_hash);
+    for (const auto& values : *part) hash.add(values.data(), values.size() * sizeof(double));
+  record.state_hash = hash.result();
   return record;
 }
 

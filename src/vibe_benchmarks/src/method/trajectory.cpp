@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "vibe_core/files/fnv1a.hpp"
 #include "vibe_core/tissue/shell.hpp"
 
 namespace vibe::benchmarks {
@@ -117,10 +118,10 @@ double energyDrift(const BenchWall& wall, const BodyMotion& start, const BodyMot
 }
 
 std::uint64_t hashOf(const BodyMotion& motion) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  Fnv1a hash;
   for (const auto* part : {&motion.x, &motion.v})
-    for (const auto& values : *part) hash = hashNumbers(values.data(), values.size(), hash);
-  return hash;
+    for (const auto& values : *part) hash.add(values.data(), values.size() * sizeof(double));
+  return hash.result();
 }
 
 }  // namespace vibe::benchmarks

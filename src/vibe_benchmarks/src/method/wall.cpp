@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "fem/mesh_generators.hpp"
+#include "fem/bench_mesh.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/solver/implicit_stepper.hpp"
 #include "vibe_core/tissue/shell.hpp"

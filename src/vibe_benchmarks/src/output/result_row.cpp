@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
-#include <cstring>
+#include <fstream>
+#include <iostream>
 
 #include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks {
 namespace {
@@ -88,10 +90,13 @@ void printTable(const std::vector<ResultRow>& rows, std::ostream& out) {
   }
 }
 
-std::uint64_t hashNumbers(const double* values, std::size_t count, std::uint64_t from) {
-  const auto* bytes = reinterpret_cast<const unsigned char*>(values);
-  for (std::size_t i = 0; i < count * sizeof(double); ++i) from = (from ^ bytes[i]) * 0x100000001b3ULL;
-  return from;
+void save(const std::string& file, const std::function<void(std::ostream&)>& write) {
+  if (file.empty()) return;
+  if (file == "-") return write(std::cout);
+  std::ofstream out(file);
+  write(out);
+  out.close();
+  if (!out) throw Error(file + ": cannot be written; give --csv a path in a writable folder.");
 }
 
 double threadMilliseconds() {

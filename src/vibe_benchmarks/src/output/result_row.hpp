@@ -1,6 +1,7 @@
 #pragma once
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <ostream>
 #include <string>
@@ -36,8 +37,9 @@ void writeCsv(const std::vector<ResultRow>& rows, std::ostream& out);
 /// Prints the same as a readable table, with errors in percent.
 void printTable(const std::vector<ResultRow>& rows, std::ostream& out);
 
-/// FNV-1a, 64 bit, of numbers. To chain calls, pass the previous result.
-std::uint64_t hashNumbers(const double* values, std::size_t count, std::uint64_t from = 0xcbf29ce484222325ULL);
+/// Gives `write` the file of an option --csv, the standard output for "-", and nothing if it is empty.
+/// @throws Error if the file cannot be written
+void save(const std::string& file, const std::function<void(std::ostream&)>& write);
 
 /// CPU time of this thread [ms].
 double threadMilliseconds();

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 #include "suture/suture_session.hpp"
 #include "vibe_core/files/files.hpp"
@@ -14,8 +15,45 @@ namespace vibe::benchmarks {
 
 namespace {
 
-constexpr double kFlow = 5e-4;   // of the insufflator: full within seconds [m^3/s]
-constexpr double kLongest = 60;  // of waiting for equilibrium [s]
+constexpr double kFlow = 5e-4;                    // of the insufflator: full within seconds [m^3/s]
+constexpr double kLongest = 60;                   // of waiting for equilibrium [s]
+constexpr double kMillimetreOfMercury = 133.322;  // [Pa]
+
+double meanStress(const Model& model, const State& state) {
+  const std::size_t n = state.x.size();
+  std::vector<double> fx(n, 0.0), fy(n, 0.0), fz(n, 0.0);
+  model.tissue->addForces(state, fx.data(), fy.data(), fz.data());
+  const auto mean = [&](const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0) / double(n); };
+  const double cx = mean(state.x), cy = mean(state.y), cz = mean(state.z);
+  double virial = 0, wall = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    virial += fx[i] * (state.x[i] - cx) + fy[i] * (state.y[i] - cy) + fz[i] * (state.z[i] - cz);
+    wall += model.area[i] * model.organ.thickness[i];
+  }
+  return -0.5 * virial / wall;
+}
+
+double meanStrain(const Model& model, const State& state) {
+  std::vector<float> strain(state.x.size());
+  model.tissue->strain(state, strain.data());
+  double sum = 0, area = 0;
+  for (std::size_t i = 0; i < strain.size(); ++i) {
+    sum += model.area[i] * static_cast<double>(strain[i]);
+    area += model.area[i];
+  }
+  return sum / area;
+}
+
+WallMeasures measure(const SutureSession& session, OrganRuler& ruler) {
+  const State& state = session.state();
+  return {ruler.measure(state.x, state.y, state.z), meanStrain(session.model(), state),
+          meanStress(session.model(), state)};
+}
+
+/// reduction() for a table: 0 where there is none [%].
+double percentLess(std::optional<double> before, std::optional<double> now) {
+  return 100 * reduction(before, now).value_or(0);
+}
 
 std::shared_ptr<const Model> modelFor(Scene scene, const OutcomeTrial& trial, double pressure) {
   scene.geometry.particles = trial.particles;
@@ -107,7 +145,7 @@ OutcomeRow OutcomeStudy::run(const OutcomeTrial& trial) {
   row.trial = trial;
   const SutureSession untouched = atRest(trial, trial.pressure);
   OrganRuler ruler(untouched.model().organ);
-  row.before = measurePattern(untouched, ruler);
+  row.before = measure(untouched, ruler);
   SutureSession sewing = atRest(trial, trial.sewn_at);
   for (const auto& set : planSleeve(trial, sewing)) {
     const SewnSet sewn = sewing.sew(set, 0.5, trial.drawn);
@@ -116,7 +154,7 @@ OutcomeRow OutcomeStudy::run(const OutcomeTrial& trial) {
   SutureSession session(modelFor(scene_, trial, trial.pressure));
   session.resume(sewing.state());
   settle(session, ruler, row);
-  row.after = measurePattern(session, ruler);
+  row.after = measure(session, ruler);
   noteSets(session.state(), row);
   row.crossed = wallsCross(session.model(), session.state());
   return row;

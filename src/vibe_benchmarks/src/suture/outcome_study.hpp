@@ -6,11 +6,22 @@
 #include <tuple>
 #include <vector>
 
-#include "suture/pattern_study.hpp"
 #include "suture/suture_session.hpp"
+#include "vibe_core/metrics/organ_measures.hpp"
+#include "vibe_core/scene/scene.hpp"
 #include "vibe_core/suture/technique.hpp"
 
 namespace vibe::benchmarks {
+
+/// The stomach at one moment, at equilibrium at a pressure.
+struct WallMeasures {
+  OrganMeasures organ;
+  double mean_strain = 0;  ///< in-plane, over the wall's area
+  /// Mean over the wall of half the sum of the two principal stresses [Pa]. By the virial theorem this is -1/2 of the
+  /// sum of elastic force times position, divided by the volume of the wall. Where ends are held, the holding forces
+  /// make it depend on the origin, which is the centre of the particles.
+  double mean_stress = 0;
+};
 
 /// One idealised sleeve: where its bites are and how it is cinched.
 struct OutcomeTrial {
@@ -28,7 +39,7 @@ struct OutcomeTrial {
 /// Before and after it at the same pressure.
 struct OutcomeRow {
   OutcomeTrial trial;
-  PatternMeasures before, after;
+  WallMeasures before, after;
   double mean_tension = 0, min_tension = 0;  ///< over the sets, of the largest in each at rest [N]
   double drawn = 0;                          ///< thread drawn by all sets [m]
   double settled = 0;                        ///< time after the last set until `after` is measured [s]

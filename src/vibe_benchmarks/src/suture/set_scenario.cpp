@@ -4,7 +4,6 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <numeric>
 
 #include "suture/suture_session.hpp"
@@ -130,14 +129,6 @@ ScenarioResult runScenario(const std::shared_ptr<const Model>& model, const SetL
   result.crossed = runs.front().crossed;
   result.real_time_factor = realTimeFactor(*model, runs);
   return result;
-}
-
-std::string processorName() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.compare(0, 10, "model name") == 0 && line.find(':') != std::string::npos)
-      return line.substr(line.find(':') + 2);
-  return "unknown processor";
 }
 
 namespace {

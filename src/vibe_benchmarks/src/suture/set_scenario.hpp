@@ -48,7 +48,4 @@ ScenarioResult runScenario(const std::shared_ptr<const Model>& model, const SetL
 void printScenario(const ScenarioResult& result, std::ostream& out);
 void writeScenarios(const std::vector<ScenarioResult>& results, std::ostream& out);  ///< CSV, a line per set
 
-/// Name of the processor as reported by the system.
-std::string processorName();
-
 }  // namespace vibe::benchmarks

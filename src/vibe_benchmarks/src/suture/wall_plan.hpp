@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -50,8 +49,6 @@ class WallPlan {
 /// Placement of the sets of a procedure: along the greater curvature of the body, distal to proximal, each across it
 /// from the anterior to the posterior wall. Spacings of 15 to 20 mm are usual; all values here are design choices.
 struct SetLayout {
-  std::string pattern =
-      "u";  ///< "u" and "z": legs across joined by a bar along; "c": an arc, open to the anterior wall
   int sets = 6;
   int bites = 7;              ///< per set: 4, or 7 (two bite vectors on each leg and on the bar)
   double half_width = 0.018;  ///< extent of a leg to both sides of the greater curvature [m]
@@ -59,9 +56,10 @@ struct SetLayout {
       0.6;  ///< length of a set along the organ from first to last leg, relative to the length available per set
 };
 
-/// Bites of one pattern in the square [-1, 1] across (anterior to posterior) and [0, 1] along (distal to proximal).
-/// @throws Error for another pattern or number of bites
-std::vector<Eigen::Vector2d> patternBites(const std::string& pattern, int bites);
+/// Bites of a U, legs across joined by a bar along, in the square [-1, 1] across (anterior to posterior) and [0, 1]
+/// along (distal to proximal).
+/// @throws Error for another number of bites than 4, 7, 10, ...
+std::vector<Eigen::Vector2d> bitesOfU(int bites);
 
 /// The bites of every set.
 std::vector<std::vector<WallSpot>> planSets(const WallPlan& plan, const SetLayout& layout);

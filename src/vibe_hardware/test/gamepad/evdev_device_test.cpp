@@ -1,4 +1,4 @@
-#include "gamepad/evdev_device.hpp"
+#include "gamepad/evdev_pad.hpp"
 
 #include <gtest/gtest.h>
 

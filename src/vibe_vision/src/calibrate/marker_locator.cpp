@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "calibrate/fitting.hpp"
-#include "tag/tag_place.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_vision/tag/tag_reader.hpp"
 #include "vibe_vision/track/tracker.hpp"

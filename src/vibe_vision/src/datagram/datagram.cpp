@@ -1,5 +1,6 @@
 #include "vibe_vision/datagram/datagram.hpp"
 
+#include <boost/endian/conversion.hpp>
 #include <cerrno>
 #include <cstring>
 #include <memory>
@@ -8,7 +9,6 @@
 #include <netdb.h>
 #include <unistd.h>
 
-#include "datagram/little_endian.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
@@ -17,45 +17,90 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x54424956;  // the bytes "VIBT"
 
-void write(const CoordinateSample& sample, ByteWriter& writer) {
-  writer.putDouble(sample.position);
-  writer.putDouble(sample.velocity);
-  writer.putDouble(sample.acceleration);
-  writer.putDouble(sample.jerk);
-  for (const float value : sample.covariance) writer.putFloat(value);
+namespace endian = boost::endian;
+
+/// Takes little-endian numbers from bytes, on any machine. After the end or a number that may not be there, they stay.
+class Reader {
+ public:
+  Reader(const std::uint8_t* bytes, std::size_t size) : bytes_(bytes), left_(size) {}
+
+  template <class T>
+  void operator()(T& value) {
+    valid_ = valid_ && left_ >= sizeof(T);
+    if (!valid_) return;
+    value = endian::endian_load<T, sizeof(T), endian::order::little>(bytes_);
+    bytes_ += sizeof(T);
+    left_ -= sizeof(T);
+  }
+  void operator()(bool& value) {
+    std::uint8_t byte = 0;
+    (*this)(byte);
+    valid_ = valid_ && byte <= 1;
+    value = byte == 1;
+  }
+  template <class T>
+  void constant(T expected) {
+    T value{};
+    (*this)(value);
+    valid_ = valid_ && value == expected;
+  }
+  bool isWhole() const { return valid_ && left_ == 0; }
+
+ private:
+  const std::uint8_t* bytes_;
+  std::size_t left_;
+  bool valid_ = true;
+};
+
+/// Appends little-endian numbers.
+struct Writer {
+  template <class T>
+  void operator()(const T& value) {
+    bytes.resize(bytes.size() + sizeof(T));
+    endian::endian_store<T, sizeof(T), endian::order::little>(&bytes.back() + 1 - sizeof(T), value);
+  }
+  void operator()(const bool& value) { (*this)(static_cast<std::uint8_t>(value)); }
+  template <class T>
+  void constant(T value) {
+    (*this)(value);
+  }
+  std::vector<std::uint8_t> bytes;
+};
+
+// The layout, for both ways.
+
+template <class Way, class Datagram>
+void passHeader(Way& way, Datagram& datagram, std::uint8_t& count) {
+  way.constant(kMagic);
+  way.constant(kDatagramVersion);
+  way(count);
+  way.constant(std::uint8_t{0});
+  way(datagram.sequence);
+  way(datagram.exposure);
+  way(datagram.frame_sequence);
+  way(datagram.stamp);
+  way(datagram.age);
+  way(datagram.jerk_time);
 }
 
-void write(const InstrumentSample& sample, ByteWriter& writer) {
-  writer.putUnsigned<std::uint8_t>(sample.tracked);
-  writer.putUnsigned(sample.reason);
-  writer.putUnsigned<std::uint8_t>(sample.has_rotation);
-  writer.putUnsigned<std::uint8_t>(0);
-  writer.putFloat(sample.score);
-  write(sample.slide, writer);
-  write(sample.rotation, writer);
+template <class Way, class Coordinate>
+void passCoordinate(Way& way, Coordinate& sample) {
+  way(sample.position);
+  way(sample.velocity);
+  way(sample.acceleration);
+  way(sample.jerk);
+  for (auto& value : sample.covariance) way(value);
 }
 
-CoordinateSample readCoordinate(ByteReader& reader) {
-  CoordinateSample sample;
-  sample.position = reader.getDouble();
-  sample.velocity = reader.getDouble();
-  sample.acceleration = reader.getDouble();
-  sample.jerk = reader.getDouble();
-  for (float& value : sample.covariance) value = reader.getFloat();
-  return sample;
-}
-
-/// @param valid  becomes false if padding is not 0
-InstrumentSample readInstrument(ByteReader& reader, bool& valid) {
-  InstrumentSample sample;
-  sample.tracked = reader.getFlag();
-  sample.reason = reader.getUnsigned<std::uint8_t>();
-  sample.has_rotation = reader.getFlag();
-  valid = reader.getUnsigned<std::uint8_t>() == 0 && valid;
-  sample.score = reader.getFloat();
-  sample.slide = readCoordinate(reader);
-  sample.rotation = readCoordinate(reader);
-  return sample;
+template <class Way, class Instrument>
+void passInstrument(Way& way, Instrument& sample) {
+  way(sample.tracked);
+  way(sample.reason);
+  way(sample.has_rotation);
+  way.constant(std::uint8_t{0});
+  way(sample.score);
+  passCoordinate(way, sample.slide);
+  passCoordinate(way, sample.rotation);
 }
 
 }  // namespace
@@ -65,38 +110,22 @@ std::vector<std::uint8_t> encode(const TrackDatagram& datagram) {
     throw Error("A datagram cannot hold " + std::to_string(datagram.instruments.size()) +
                 " instruments; configure at most " + std::to_string(kMaxInstruments) + ".");
   }
-  ByteWriter writer;
-  writer.putUnsigned(kMagic);
-  writer.putUnsigned(kDatagramVersion);
-  writer.putUnsigned(static_cast<std::uint8_t>(datagram.instruments.size()));
-  writer.putUnsigned<std::uint8_t>(0);
-  writer.putUnsigned(datagram.sequence);
-  writer.putFloat(datagram.exposure);
-  writer.putUnsigned(datagram.frame_sequence);
-  writer.putDouble(datagram.stamp);
-  writer.putFloat(datagram.age);
-  writer.putFloat(datagram.jerk_time);
-  for (const InstrumentSample& sample : datagram.instruments) write(sample, writer);
-  return writer.take();
+  Writer writer;
+  auto count = static_cast<std::uint8_t>(datagram.instruments.size());
+  passHeader(writer, datagram, count);
+  for (const InstrumentSample& sample : datagram.instruments) passInstrument(writer, sample);
+  return writer.bytes;
 }
 
 std::optional<TrackDatagram> decode(const std::uint8_t* bytes, std::size_t size) {
-  ByteReader reader(bytes, size);
-  bool valid = reader.getUnsigned<std::uint32_t>() == kMagic;
-  valid = reader.getUnsigned<std::uint16_t>() == kDatagramVersion && valid;
-  const std::size_t count = reader.getUnsigned<std::uint8_t>();
-  valid = count <= kMaxInstruments && size == kDatagramHeader + count * kDatagramInstrument && valid;
-  valid = reader.getUnsigned<std::uint8_t>() == 0 && valid;
-  if (!valid || !reader.ok()) return std::nullopt;
+  Reader reader(bytes, size);
   TrackDatagram datagram;
-  datagram.sequence = reader.getUnsigned<std::uint32_t>();
-  datagram.exposure = reader.getFloat();
-  datagram.frame_sequence = reader.getUnsigned<std::uint64_t>();
-  datagram.stamp = reader.getDouble();
-  datagram.age = reader.getFloat();
-  datagram.jerk_time = reader.getFloat();
-  for (std::size_t i = 0; i < count; ++i) datagram.instruments.push_back(readInstrument(reader, valid));
-  if (!valid || !reader.ok() || !reader.atEnd()) return std::nullopt;
+  std::uint8_t count = 0;
+  passHeader(reader, datagram, count);
+  if (count > kMaxInstruments || size != kDatagramHeader + count * kDatagramInstrument) return std::nullopt;
+  datagram.instruments.resize(count);
+  for (InstrumentSample& sample : datagram.instruments) passInstrument(reader, sample);
+  if (!reader.isWhole()) return std::nullopt;
   return datagram;
 }
 

@@ -1,12 +1,15 @@
 #include "vibe_vision/tag/tag_reader.hpp"
 
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/aruco.hpp>
+
 #include <apriltag/apriltag.h>
 #include <apriltag/tag36h11.h>
 
-#include <algorithm>
-#include <opencv2/aruco.hpp>
-
 namespace vibe::vision {
+
 namespace {
 
 #if CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR < 407
@@ -144,6 +147,23 @@ std::vector<TagCorners> TagReader::find(const ImageView& view) {
   constexpr int kLeast = 8;  // the detectors do not look at less [px]
   if (view.width <= kLeast || view.height <= kLeast) return {};
   return detector_->find(view);
+}
+
+TagPlace TagPlace::of(const CameraModel& camera, const TagCorners& corners, const Eigen::Vector2d& shift, double side) {
+  std::array<Eigen::Vector2d, 4> p;
+  for (std::size_t i = 0; i < 4; ++i) p[i] = undistort(camera, corners[i] + shift);
+  const auto u = [&] { return Eigen::Vector2d((p[1] + p[2] - p[0] - p[3]) / (2 * side)); };
+  const auto v = [&] { return Eigen::Vector2d((p[2] + p[3] - p[0] - p[1]) / (2 * side)); };
+  TagPlace place;
+  place.picture << u(), v();
+  if (place.picture.determinant() < 0) {  // corners the other way round
+    std::swap(p[1], p[3]);
+    place.picture << u(), v();
+  }
+  place.centre = (p[0] + p[1] + p[2] + p[3]) / 4;
+  place.pixels_per_metre = std::sqrt(std::abs(place.picture.determinant()));
+  place.misfit = ((p[0] - p[1] + p[2] - p[3]) / 4).norm();
+  return place;
 }
 
 }  // namespace vibe::vision

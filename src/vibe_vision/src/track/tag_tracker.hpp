@@ -1,8 +1,8 @@
 #pragma once
 
-#include "tag/tag_place.hpp"
 #include "track/axis_map.hpp"
 #include "track/outcome.hpp"
+#include "vibe_vision/tag/tag_reader.hpp"
 
 namespace vibe::vision {
 

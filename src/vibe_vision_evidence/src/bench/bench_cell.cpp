@@ -10,7 +10,6 @@
 #include "vibe_vision/track/tracker.hpp"
 
 namespace vibe::vision::evidence {
-
 namespace {
 
 using Frames = std::vector<RenderedFrame>;
@@ -82,6 +81,35 @@ CellResult runCell(const Cell& cell, const BenchOptions& options) {
   CellResult result{cell, {}, summarise(track), summarise(search)};
   for (const Scorer& scorer : scorers) result.scores.push_back(scorer.score());
   return result;
+}
+
+void writeCsvHeader(std::ostream& out) {
+  out << "scene,marker_px,exposure_s,width,height,method,frames,visible,tracked,reports,wrong,hidden,phantom,rms_px,"
+         "bias_px,"
+         "rotation_rms_deg,bound_px,bound_ratio,nees,nees_low,nees_high,lead_rms_m,track_min_s,track_median_s,search_"
+         "min_s,"
+         "search_median_s,searched,search_found,search_wrong\n";
+}
+
+void writeCsv(std::ostream& out, const CellResult& result) {
+  constexpr double kDegrees = 180 / 3.14159265358979323846;
+  const Cell& c = result.cell;
+  const auto begin = [&](const std::string& method) -> std::ostream& {
+    return out << c.scene << ',' << c.marker << ',' << c.exposure.value_or(0) << ',' << c.width << ',' << c.height
+               << ',' << method;
+  };
+  for (const Score& s : result.scores) {
+    begin(s.method);
+    for (const double value : {s.frames,   s.visible,      s.tracked,      s.reports,      s.wrong,
+                               s.hidden,   s.phantom,      s.rms,          s.bias,         kDegrees * s.rotation_rms,
+                               s.bound,    s.boundRatio(), s.nees,         s.nees_low,     s.nees_high,
+                               s.lead_rms, s.track.least,  s.track.median, s.search.least, s.search.median,
+                               s.searched, s.search_found, s.search_wrong})
+      out << ',' << value;
+    out << '\n';
+  }
+  begin("both") << std::string(17, ',') << result.track.least << ',' << result.track.median << ','
+                << result.search.least << ',' << result.search.median << ",,," << std::endl;
 }
 
 }  // namespace vibe::vision::evidence

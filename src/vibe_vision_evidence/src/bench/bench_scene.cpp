@@ -1,13 +1,9 @@
 #include "bench/bench_scene.hpp"
 
-#include <cmath>
-#include <cstdio>
-
 namespace vibe::vision::evidence {
 namespace {
 
 constexpr double kNominalMarker = 40;                      // [px]
-constexpr double kNominalSpeed = 0.5;                      // [m/s]
 constexpr double kTagSide = 4e-3;                          // [m]
 constexpr double kArucoBelow = 132, kAprilTagBelow = 232;  // the ring; look-alikes pass between them [px]
 
@@ -31,12 +27,11 @@ void resize(TagDesign& tag, double factor) {
 }
 
 /// Another part of the motion for each seed, and of the pixel grid.
-void changeMotion(SyntheticMotion& motion, double speed, std::uint64_t seed) {
-  const double factor = speed / kNominalSpeed, later = 0.613 * static_cast<double>(seed - 1);
+void changeMotion(SyntheticMotion& motion, std::uint64_t seed) {
+  const double later = 0.613 * static_cast<double>(seed - 1);
   const auto slide = motion.slide, rotation = motion.rotation;
-  motion.slide = [=](double time) { return slide(factor * time + later); };
-  if (!rotation) return;
-  motion.rotation = [=](double time) { return rotation(factor * time + later); };
+  motion.slide = [=](double time) { return slide(time + later); };
+  if (rotation) motion.rotation = [=](double time) { return rotation(time + later); };
 }
 
 }  // namespace
@@ -79,20 +74,6 @@ void addTags(BenchScene& bench, double factor) {
 
 }  // namespace
 
-std::string Cell::name() const {
-  std::string text = scene;
-  char part[64];
-  const auto append = [&](const char* format, double value) {
-    std::snprintf(part, sizeof part, format, value);
-    text += part;
-  };
-  append(", marker %.0f px", marker);
-  if (exposure) append(", exposure %.2f ms", 1e3 * *exposure);
-  append(", peak %.2f m/s", speed);
-  if (width > 0) append(", sensor %.0f", width), append(" x %.0f", height);
-  return text;
-}
-
 BenchScene makeBenchScene(const Cell& cell, std::uint64_t seed) {
   BenchScene bench;
   const HarderScene* harder = findHarderScene(cell.scene);
@@ -103,7 +84,7 @@ BenchScene makeBenchScene(const Cell& cell, std::uint64_t seed) {
   const double factor = cell.marker / kNominalMarker;
   for (SyntheticInstrument& instrument : bench.scene.instruments) {
     std::visit([&](auto& marker) { resize(marker, factor); }, instrument.nominal.marker);
-    changeMotion(instrument.motion, cell.speed, seed);
+    changeMotion(instrument.motion, seed);
     instrument.nominal.axis.origin += static_cast<double>(seed - 1) * Eigen::Vector2d(0.37, 0.21);
   }
   indexMarkers(bench);

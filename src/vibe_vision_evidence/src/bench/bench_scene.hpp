@@ -13,12 +13,10 @@ namespace vibe::vision::evidence {
 
 /// What to measure: a scene and how it differs from the standard one.
 struct Cell {
-  std::string scene;               ///< of sceneNames() or harderSceneNames()
+  std::string scene;               ///< of sceneNames() or harderScenes()
   double marker = 40;              ///< side of the tags and outer diameter of the ring [px]; the sleeve goes with it
   std::optional<double> exposure;  ///< instead of the scene's [s]
-  double speed = 0.5;              ///< peak [m/s]
   int width = 0, height = 0;       ///< of the sensor [px]; 0: the scene's
-  std::string name() const;        ///< for tables, with everything that differs
 };
 
 /// A scene with four markers on axes of their own, side by side in every frame: sleeve, ring, ArUco, AprilTag.
@@ -33,12 +31,11 @@ constexpr int kArucoId = 7, kAprilTagId = 7;
 BenchScene makeBenchScene(const Cell& cell, std::uint64_t seed);
 /// A larger sensor around the same picture.
 void enlarge(SyntheticScene& scene, int width, int height);
-/// Scenes beyond the standard ones: conditions that no parameter was chosen for.
-std::vector<std::string> harderSceneNames();
 /// Sizes, exposures and sensors of the whole table.
 std::vector<Cell> furtherCells();
 
-/// A scene beyond the standard ones: one of those, changed. `seed` varies what a scene may vary.
+/// A scene beyond the standard ones, of conditions that no parameter was chosen for: one of those, changed. `seed`
+/// varies what a scene may vary.
 struct HarderScene {
   std::string name;
   std::string base;  ///< of sceneNames()

@@ -215,10 +215,4 @@ const HarderScene* findHarderScene(const std::string& name) {
   return nullptr;
 }
 
-std::vector<std::string> harderSceneNames() {
-  std::vector<std::string> names;
-  for (const HarderScene& scene : harderScenes()) names.push_back(scene.name);
-  return names;
-}
-
 }  // namespace vibe::vision::evidence

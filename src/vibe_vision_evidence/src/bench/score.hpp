@@ -1,7 +1,5 @@
 #pragma once
 
-#include <limits>
-#include <ostream>
 #include <string>
 #include <vector>
 
@@ -32,14 +30,12 @@ struct ScoreLimits {
 struct Score {
   std::string method;
   double frames = 0, visible = 0, tracked = 0;  ///< numbers of frames
-  double clear = 0, clear_tracked = 0;          ///< fully visible ones
   double reports = 0, wrong = 0, doubted = 0;
   double hidden = 0, phantom = 0;
   double searched = 0, search_found = 0, search_wrong = 0;
   double rms = 0, bias = 0, rotation_rms = 0;    ///< [px], [px], [rad]
-  double bound = 0, rotation_bound = 0;          ///< Cramer-Rao, RMS of the frames where it was computed [px], [rad]
+  double bound = 0;                              ///< Cramer-Rao, RMS of the frames where it was computed [px]
   double nees = 0, nees_low = 0, nees_high = 0;  ///< mean over the degrees of freedom, and its 95 % band around 1
-  double nees_inside = 0;                        ///< share of frames within their own 95 % ellipse
   double lead_rms = 0;                           ///< of the slide, extrapolated by kLead [m]
   TimeSummary track, search;                     ///< [s]
 
@@ -65,22 +61,10 @@ class Scorer {
   Score sum_;
   double errors_ = 0, squares_ = 0, count_ = 0;
   double turn_squares_ = 0;
-  double nees_sum_ = 0, nees_count_ = 0, nees_inside_ = 0;
-  double bound_squares_ = 0, rotation_bound_squares_ = 0, bound_count_ = 0;
+  double nees_sum_ = 0, nees_count_ = 0;
+  double bound_squares_ = 0, bound_count_ = 0;
   double lead_squares_ = 0, lead_count_ = 0;
   std::vector<double> track_times_, search_times_;
 };
-
-struct CellResult {
-  Cell cell;
-  std::vector<Score> scores;  ///< by method
-  TimeSummary track, search;  ///< one tracker for both instruments, per frame [s]
-};
-
-/// The table for people: one line per method.
-void printHeader(std::ostream& out, const ScoreLimits& limits);
-void printCell(std::ostream& out, const CellResult& result);
-/// One row per cell and method, SI units except pixels.
-void writeCsv(std::ostream& out, const std::vector<CellResult>& results);
 
 }  // namespace vibe::vision::evidence

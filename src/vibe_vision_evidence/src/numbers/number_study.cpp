@@ -56,10 +56,6 @@ void addDifference(const Score& score, const Score& before, const std::string& w
 
 }  // namespace
 
-bool NumberEffect::isNone() const {
-  return tracked == 0 && search_found == 0 && wrong == 0 && phantom == 0 && doubted == 0 && std::abs(error) < 5e-4;
-}
-
 std::vector<std::string> studyScenes() {
   std::vector<std::string> scenes = sceneNames();
   for (const char* harder : {"stops", "spin", "twins", "decoys", "spoilt_frames", "parked_bar", "rolling", "60_hz"})

@@ -24,8 +24,6 @@ struct NumberEffect {
   double tracked = 0, search_found = 0, wrong = 0, phantom = 0, doubted = 0;  ///< frames more than with the defaults
   double error = 0;         ///< greatest change of an RMS along the axis, relative; of scenes with as many frames
   std::string error_where;  ///< scene and instrument of it
-
-  bool isNone() const;
 };
 
 /// The scenes that a study shows by default: those of the benchmark and of its harder ones what makes a tracker decide.

@@ -112,11 +112,11 @@ TEST(ReachControl, NothingIsReportedWhereNoInstrumentIs) {
 
 TEST(ReachControl, NothingIsWrongBeyondTheStandardScenes) {
   if (std::getenv("VIBE_SLOW_TESTS") == nullptr) GTEST_SKIP() << "takes minutes; scripts/test --slow runs it";
-  for (const std::string& scene : harderSceneNames())
+  for (const HarderScene& scene : harderScenes())
     for (const char* method : {"ring", "sleeve"}) {
-      const Score& score = measure(scene, method, 150);
-      EXPECT_LE(score.wrong, 1e-3 * score.reports) << scene << ", " << method;
-      EXPECT_EQ(score.phantom, 0) << scene << ", " << method;
+      const Score& score = measure(scene.name, method, 150);
+      EXPECT_LE(score.wrong, 1e-3 * score.reports) << scene.name << ", " << method;
+      EXPECT_EQ(score.phantom, 0) << scene.name << ", " << method;
     }
 }
 

@@ -69,7 +69,6 @@ TEST(Score, CountsReportsOfHiddenMarkersAsPhantoms) {
   EXPECT_EQ(score.hidden, 2);
   EXPECT_EQ(score.phantom, 1);
   EXPECT_EQ(score.visible, 0);
-  EXPECT_EQ(score.clear, 0);
 }
 
 TEST(Score, ComparesWithTheBound) {

@@ -1,5 +1,5 @@
-// Pictures of a renderer that is not ours, Blender's Cycles: scripts/render_with_blender.py draws them from the printed
-// sheet with light, paper and lens of its own. Three frames each of five situations, cut around the markers, and of
+// Pictures of a renderer that is not ours, Blender's Cycles, drawn from the printed sheet with light, paper and lens of
+// its own (docs/vision.md, "Another renderer"). Three frames each of five situations, cut around the markers, and of
 // a sixth with the sleeve alone: shade, gloss, gamma and a lens out of focus at once.
 #include <gtest/gtest.h>
 
