@@ -37,10 +37,16 @@ def numbers():
                 yield (section, *row)
 
 
-def effect(row, total):
+def numbers_of_walls():
+    """Names of the numbers that act where walls meet, which those of a coarse mesh do not."""
+    return [name for section, name, *_ in numbers() if "walls" in section.lower()]
+
+
+def effect(row, totals):
     """What one shift changes, in a few words."""
     if row is None:
         return "not measured yet"
+    total = totals[row["part"]]
     if not row["states"]:
         return NO_EFFECT
     parts = [("force", number(row["force_change"])), ("stiffness", number(row["stiffness_change"]))]
@@ -60,16 +66,17 @@ def effect(row, total):
 @made_from("policy")
 def policy(store):
     rows = {(row["number"], row["factor"]): row for row in store.rows("policy")}
-    total = rows["defaults", "1"]
+    totals = {row["part"]: row for row in store.rows("policy") if row["number"] == "defaults"}
     sections = {}
     for section, name, default, unit, meaning, reason in numbers():
-        less, more = (effect(rows.get((name, factor)), total) for factor in ("0.8", "1.2"))
+        less, more = (effect(rows.get((name, factor)), totals) for factor in ("0.8", "1.2"))
         change = less if less == more else f"−20 %: {less}; +20 %: {more}"
         value = " ".join(filter(None, (default, unit)))
         sections.setdefault(section, []).append((f"`{name}`", value, meaning, reason, change))
-    said = [sentence(f"With the defaults, the states have {total['steps']} steps with {total['iterations']} iterations and "
-                     f"{total['evaluations']} evaluations of the elastic energy; {total['solved_again']} steps are solved "
-                     f"again, {total['fallback_steps']} by backward Euler.")]  # fmt: skip
+    said = [sentence(f"With the defaults, the states of {particles} particles have {total['steps']} steps with "
+                     f"{total['iterations']} iterations and {total['evaluations']} evaluations of the elastic energy; "
+                     f"{total['solved_again']} steps are solved again, {total['fallback_steps']} by backward Euler.")
+            for particles, part in (("900", "numbers"), ("3,618", "walls")) if (total := totals.get(part))]  # fmt: skip
     for section, lines in sections.items():
         said += [f"## {section}", table(("number", "default", "meaning", "source", "effect of a shift"), lines)]
     return "\n\n".join(said), [("", row) for row in rows.values()]

@@ -10,6 +10,8 @@ import resource
 import subprocess
 import tempfile
 
+import measured_policy
+
 SESSION_TEXT = "first_session.txt"  # what the first session printed, which first_run.md shows
 STOMACH = "package://vibe_core/scenes/stomach.yaml"
 SCENES = {  # variants of the default scene: a text that follows its line, or (line to remove, None)
@@ -156,7 +158,8 @@ def sections(root, meshes=()):
         Section("refinement", "force of a grip on finer meshes", ("grip", "site"), (), tuple(refinement_parts())),
         Section("hard", "hard cases of contact", ("case",), (), tuple(hard_parts())),
         Section("policy", "what each number that steers a step changes", ("number", "factor"), (),
-                (Part("numbers", ("vibe_policy", "--scene", "{coarse}"), 20),)),
+                (Part("numbers", ("vibe_policy", "--scene", "{coarse}"), 20),
+                 Part("walls", ("vibe_policy", *measured_policy.numbers_of_walls()), 10))),
         Section("scenarios", "time of each suture set", ("scenario", "set"), (),
                 (Part("scenarios", ("vibe_sutures", "scenarios", "--quick"), 12),)),
         Section("outcomes", "idealised sleeves in C, U and Z", ("trial", "pattern"), (),
