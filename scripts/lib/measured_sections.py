@@ -72,6 +72,11 @@ def ways_parts():
     yield Part("sleeve", ("vibe_contact", "ways", "sleeve"), 6)
 
 
+def rest_parts():
+    for particles, minutes in (("3618", 3), ("1000", 1), ("680", 1), ("300", 1)):
+        yield Part(particles, ("vibe_contact", "rest", "--particles", particles, "--poses", "100"), minutes)
+
+
 def threads_parts():
     for count in ("2", "4", "8"):
         words = ("vibe_contact", "states", "free", "pressed", "wound", "--no-reference", "--real-time", "--repeats", "3")
@@ -153,6 +158,7 @@ def sections(root, meshes=()):
                 (Part("pulling", ("vibe_bench", "--pulling"), 3),)),
         Section("states", "steps in contact", ("state", "rate", "iterations"), STATE_ERRORS, tuple(contact_parts())),
         Section("ways", "ways on which steps go on otherwise than foreseen", ("case", "way"), (), tuple(ways_parts())),
+        Section("rest", "whether the wall rests while the scope is held", ("particles", "pose"), (), tuple(rest_parts())),
         Section("threads", "wall time of steps by number of threads", ("state", "threads"), (), tuple(threads_parts())),
         Section("instructions", "instructions of steps in contact", ("state",), (), tuple(instructions_parts())),
         Section("refinement", "force of a grip on finer meshes", ("grip", "site"), (), tuple(refinement_parts())),

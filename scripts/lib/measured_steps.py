@@ -185,6 +185,22 @@ def ways(store):
     return table(("of 1,000 steps", *(f"`{case}`" for case in cases)), lines), [(f"`{row['case']}`", row) for row in rows]
 
 
+@made_from("rest")
+def rest(store):
+    """Of each mesh: how many poses rest, creep, tremble, and those that move most."""
+    meshes, lines = {}, []
+    for row in store.rows("rest"):
+        meshes.setdefault(row["particles"], []).append(row)
+    for particles, rows in meshes.items():
+        moving = sorted((row for row in rows if row["wall"] == "trembles"), key=lambda row: -number(row["motion_mm"]))
+        worst = ["{} mm at {} N{}".format(digits(row["motion_mm"]), digits(row["force_N"]), "" if row["period_steps"] == "0"
+                 else ", every {} steps".format(row["period_steps"])) for row in moving[:3]]  # fmt: skip
+        counts = (sum(row["wall"] == word for row in rows) for word in ("rests", "creeps", "trembles"))
+        lines.append((whole(particles), len(rows), *counts, "; ".join(worst)))
+    header = ("particles", "poses", "rest", "creep", "tremble", "those that tremble most")
+    return table(header, lines), [("", rows[0]) for rows in meshes.values()]
+
+
 @made_from("threads")
 def threads(store):
     """Of a state the row with one thread of the first part; ratios are those within a part, which is one run."""

@@ -7,9 +7,11 @@
 #include "contact/contact_table.hpp"
 #include "contact/grip_refinement.hpp"
 #include "contact/hard_cases.hpp"
+#include "contact/rest_search.hpp"
 #include "contact/way_counts.hpp"
 #include "output/result_row.hpp"
 #include "vibe_core/arithmetic/machine.hpp"
+#include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/program/command_line.hpp"
 #include "vibe_core/program/error.hpp"
@@ -32,7 +34,8 @@ struct Options {
   double duration = 1e9;
   std::vector<std::uint64_t> seeds{1};
   std::vector<int> particles{1000, 2000, 3618, 8000, 16000};
-  int sites = 6;
+  int sites = 6, poses = 30;
+  double hold = 4;
   bool brief = false;
   bool check_reference = false, no_reference = false, stages = false, real_time = false, plain_preparation = false;
 };
@@ -126,6 +129,20 @@ OptionList addRefinement(OptionList& line, Options& o) {
       .check(wholeFrom(1, 30));
   refinement.option("--csv", o.csv, "write the rows there (- for standard output)").typeName("FILE");
   return refinement;
+}
+
+OptionList addRest(OptionList& line, Options& o) {
+  OptionList rest =
+      line.subcommand("rest", "whether the wall rests while the scope is held still, in poses drawn at random");
+  rest.option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)").typeName("FILE");
+  rest.option("--particles", o.particles, "meshes (default: that of the scene)")
+      .typeName("N")
+      .check(wholeFrom(100, 200000));
+  rest.option("--poses", o.poses, "of each mesh (default: 30)").typeName("N").check(wholeFrom(1, 100000));
+  rest.option("--seed", o.seeds, "of the poses (default: 1); several: so many poses for each").typeName("N");
+  rest.option("--hold", o.hold, "until the second that counts (default: 4) [s]").typeName("S").check(finiteFrom(0));
+  rest.option("--csv", o.csv, "write the rows there (default: - for standard output)").typeName("FILE");
+  return rest;
 }
 
 template <class T>
@@ -222,6 +239,29 @@ void runRefinement(const Options& options) {
   save(options.csv, [&](std::ostream& out) { writeRefinement(rows, out); });
 }
 
+void runRest(const Options& options, bool one_mesh) {
+  Scene scene = sceneOf(options);
+  const std::string urdf = readTextFile(resolveAddress(scene.scope->urdf), "URDF");
+  std::vector<HeldPose> found;
+  for (const int particles : one_mesh ? std::vector<int>{scene.geometry.particles} : options.particles) {
+    scene.geometry.particles = particles;
+    const auto model = buildModel(scene, urdf);
+    std::array<int, 3> count{};
+    for (const std::uint64_t seed : options.seeds)
+      searchRest(model, options.poses, seed, options.hold, [&](const HeldPose& pose) {
+        found.push_back(pose);
+        ++count[static_cast<std::size_t>(pose.wall)];
+        std::cerr << "\r" << particles << " particles: " << count[0] << " poses rest, " << count[1] << " creep, "
+                  << count[2] << " tremble" << std::flush;
+      });
+    std::cerr << "\n";
+  }
+  save(options.csv.empty() ? "-" : options.csv, [&](std::ostream& out) {
+    writeHeldHeader(out);
+    for (const HeldPose& pose : found) writeHeldPose(pose, out);
+  });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -231,11 +271,13 @@ int main(int argc, char** argv) {
   const OptionList hard = addHard(line, options);
   const OptionList refinement = addRefinement(line, options);
   const OptionList ways = addWays(line, options);
+  const OptionList rest = addRest(line, options);
   line.requireSubcommand();
   return runProgram(line, argc, argv, [&] {
     if (states.isChosen()) runStates(options);
     if (hard.isChosen()) runHard(options);
     if (refinement.isChosen()) runRefinement(options);
     if (ways.isChosen()) runWays(options);
+    if (rest.isChosen()) runRest(options, !rest.isGiven("--particles"));
   });
 }
