@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "camera/recording_source.hpp"
+#include "camera/frame_table.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_vision/calibrate/stop_list.hpp"
 

@@ -6,28 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "camera/frame_table.hpp"
 #include "camera/picture_reader.hpp"
 #include "camera/pixels.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 
 namespace vibe::vision {
-
-/// What a recording knows about its frames, from a text file with one row per frame and commas between columns. The
-/// first line names the columns: "stamp" (middle of the exposure, Unix time [s]) is needed, "sequence" and "exposure"
-/// [s] may be there, others are ignored.
-struct FrameTable {
-  struct Row {
-    std::uint64_t sequence = 0;
-    double stamp = 0;
-    double exposure = 0;
-  };
-  std::vector<Row> rows;
-  std::string file;
-
-  /// @param exposure  of all frames if the file does not say
-  /// @throws Error with file, line and remedy: no such column, not a number, stamps or sequence that do not increase
-  static FrameTable load(const std::string& file, double exposure);
-};
 
 /// A recording as a source. Stamps are those of its table. Without one, frame k is at k / rate; if the recording is
 /// paced, this counts from the time at which it was first read, as if a camera took it now.
