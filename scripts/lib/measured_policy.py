@@ -65,7 +65,9 @@ def effect(row, totals):
 
 @made_from("policy")
 def policy(store):
-    rows = {(row["number"], row["factor"]): row for row in store.rows("policy")}
+    of_walls = set(numbers_of_walls())
+    rows = {(row["number"], row["factor"]): row for row in store.rows("policy")
+            if (row["number"] in of_walls) == (row["part"] == "walls")}  # fmt: skip
     totals = {row["part"]: row for row in store.rows("policy") if row["number"] == "defaults"}
     sections = {}
     for section, name, default, unit, meaning, reason in numbers():

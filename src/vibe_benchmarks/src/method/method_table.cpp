@@ -105,7 +105,7 @@ void addSettings(const BenchWall& wall, const Truth& truth, bool quick, std::ost
       keepQuicker(update(wall, truth.start, truth.pull, choice), trajectory);
     addPull(trajectory, truth, "implicit", choice.name, rows);
     rows.back().energy_drift = energyDrift(wall, truth.start, truth.let_go, choice);
-    if (trajectory.fallback > 0) log << "wall:   " << trajectory.fallback << " careful steps\n";
+    if (trajectory.fallback > 0) log << "wall:   " << trajectory.fallback << " steps with backward Euler\n";
   }
 }
 
@@ -129,7 +129,7 @@ void addLongPull(const BenchWall& wall, const BodyMotion& start, const BodyMotio
       distanceBetween(trajectory.frames.back(), equilibrium) / distanceBetween(start, equilibrium);
   rows.back().force_error = std::abs(trajectory.force.back() - force) / std::abs(force);
   rows.back().state_hash = hashOf(trajectory.frames.back());
-  if (trajectory.fallback > 0) log << "wall:   " << trajectory.fallback << " careful steps\n";
+  if (trajectory.fallback > 0) log << "wall:   " << trajectory.fallback << " steps with backward Euler\n";
 }
 
 void addLongPulls(const BenchWall& wall, const BodyMotion& start, bool quick, std::ostream& log,

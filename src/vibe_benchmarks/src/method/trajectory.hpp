@@ -16,7 +16,7 @@ struct Trajectory {
   std::vector<double> force;  ///< of the disc, mean over each frame; force[0] belongs to the first frame [N]
   std::vector<double> times;  ///< thread CPU of each step but the first [ms]
   double first_time = 0;      ///< of the first step, which includes the first factor [ms]
-  int fallback = 0;           ///< number of steps repeated with more careful settings
+  int fallback = 0;           ///< steps taken with backward Euler, because one of the last did not arrive
   bool finite = true;
 };
 

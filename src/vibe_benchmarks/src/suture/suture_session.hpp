@@ -30,7 +30,7 @@ struct SewnSet {
   double max_tension = 0;  ///< in any segment of any set during this time [N]
   double volume = 0;       ///< at the end [m^3]
   double balance = 0;      ///< energyBalance() since the start of the session [J]
-  int fallback_steps = 0;  ///< steps that the solver repeated because of low confidence
+  int fallback_steps = 0;  ///< steps after which the next one takes backward Euler
   int tear_outs = 0, breaks = 0, recoveries = 0, refusals = 0, loose = 0;  ///< events
 };
 

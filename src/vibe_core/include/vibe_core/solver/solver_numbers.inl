@@ -63,7 +63,7 @@ VIBE_REAL(nearly_arrived, 0.1, "", "as `arrived`, where no part of the last dire
           "near the end that may be due to rounding")
 VIBE_REAL(position_roundings, 10, "", "as `nearly_arrived`, over the rounding error of a position instead of the first direction",
           "in some directions energies are less certain")
-VIBE_COUNT(fallback_steps, 3, "steps with backward Euler after a step that did not arrive",
+VIBE_COUNT(fallback_steps, 3, "steps with backward Euler after a step that did not arrive, which may be one of them",
            "measured: ten cost twice as many iterations each, and an error of 6.5 instead of 5.6 % in the cinch of a "
            "sixth set")
 VIBE_REAL(fallback_max_move, 0.05, "",

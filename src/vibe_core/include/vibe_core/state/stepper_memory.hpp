@@ -33,7 +33,7 @@ struct StepperMemory {
   int rest_steps = 0;            ///< consecutive steps in which nothing moved
   int recovery_steps = 0;        ///< that remain of a recovery, straight to rest
   int jammed_steps = 0;          ///< in which walls were jammed, less those in which they were not; 0 or more
-  int backward_euler_steps = 0;  ///< that remain, after a step that did not arrive
+  int backward_euler_steps = 0;  ///< that remain since a step that did not arrive, and begin anew with the next
 };
 
 }  // namespace vibe
