@@ -74,7 +74,7 @@ def ways_parts():
 
 def rest_parts():
     for particles, minutes in (("3618", 3), ("1000", 1), ("680", 1), ("300", 1)):
-        yield Part(particles, ("vibe_contact", "rest", "--particles", particles, "--poses", "100"), minutes)
+        yield Part(particles, ("vibe_contact", "rest", "--particles", particles, "--poses", "30"), minutes)
 
 
 def threads_parts():
