@@ -193,10 +193,10 @@ def rest(store):
         meshes.setdefault(row["particles"], []).append(row)
     for particles, rows in meshes.items():
         moving = sorted((row for row in rows if row["wall"] == "trembles"), key=lambda row: -number(row["motion_mm"]))
-        worst = ["{} mm at {} N{}".format(digits(row["motion_mm"]), digits(row["force_N"]), "" if row["period_steps"] == "0"
+        worst = ["{} mm at {} N{}".format(digits(row["motion_mm"]), digits(row["force_N"]), "" if row["period_steps"] in "01"
                  else ", every {} steps".format(row["period_steps"])) for row in moving[:3]]  # fmt: skip
         counts = (sum(row["wall"] == word for row in rows) for word in ("rests", "creeps", "trembles"))
-        lines.append((whole(particles), len(rows), *counts, "; ".join(worst)))
+        lines.append((whole(particles), str(len(rows)), *map(str, counts), "; ".join(worst)))
     header = ("particles", "poses", "rest", "creep", "tremble", "those that tremble most")
     return table(header, lines), [("", rows[0]) for rows in meshes.values()]
 
