@@ -81,4 +81,4 @@ def policy(store):
             for particles, part in (("900", "numbers"), ("3,618", "walls")) if (total := totals.get(part))]  # fmt: skip
     for section, lines in sections.items():
         said += [f"## {section}", table(("number", "default", "meaning", "source", "effect of a shift"), lines)]
-    return "\n\n".join(said), [("", row) for row in rows.values()]
+    return "\n\n".join(said), [("walls" if row["part"] == "walls" else "other numbers", row) for row in rows.values()]
