@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <tuple>
 
 namespace vibe {
@@ -31,7 +30,8 @@ std::array<int, 3> keyOf(const SurfacePoint& point) {
   return {a, b, c};
 }
 
-// Whether the deeper of two contacts at one point counts alone.
+// Whether the deeper of two contacts at one point counts alone: where shapes share a round end, both say the same, and a
+// point inside a shape has one way out.
 bool isCoveredBy(const SurfaceContact& deeper, const SurfaceContact& contact) {
   return deeper.distance < 0 || deeper.normal.dot(contact.normal) > stepPolicy().touch_same_side;
 }
@@ -60,7 +60,6 @@ SurfaceContacts::SurfaceContacts(const ToolModel& tool, const SurfaceMesh& surfa
     half_thickness_.push_back(0.5 * t);
     max_half_thickness_ = std::max(max_half_thickness_, 0.5 * t);
   }
-  half_ = std::accumulate(half_thickness_.begin(), half_thickness_.end(), 0.0) / static_cast<double>(thickness.size());
   for (const std::array<int, 3>& n : triangles_) {
     std::array<double, 3> length{};
     for (std::size_t k = 0; k < 3; ++k) length[k] = (surface.vertices[n[(k + 1) % 3]] - surface.vertices[n[k]]).norm();
@@ -186,7 +185,7 @@ void SurfaceContacts::addAlong(const SurfacePoint& point, int shape, const Eigen
   contact.distance = gap.distance - tool_.radius(shape);
   contact.normal = ((1 - when_) * before.distance * from + when_ * gap.distance * gap.normal).normalized();
   contact.tool_point = end - contact.distance * contact.normal;
-  if (!isBuried(contact)) contacts_.push_back(contact);
+  addOutside(contact, gap.core);
 }
 
 void SurfaceContacts::add(const SurfacePoint& point, int shape, double fraction, const TriangleGap& gap,
@@ -198,21 +197,39 @@ void SurfaceContacts::add(const SurfacePoint& point, int shape, double fraction,
   contact.clearance = clearance;
   contact.distance = gap.distance - tool_.radius(shape);
   contact.normal = tool_.directionAtEnd(shape, fraction, gap.normal);
-  contact.tool_point = tool_.pointAtEnd(shape, fraction, gap.core) + tool_.radius(shape) * contact.normal;
-  if (!isBuried(contact)) contacts_.push_back(contact);
+  const Eigen::Vector3d core = tool_.pointAtEnd(shape, fraction, gap.core);
+  contact.tool_point = core + tool_.radius(shape) * contact.normal;
+  addOutside(contact, core);
 }
 
-// Whether another shape of the tool covers the point of this one, so that the wall cannot touch it.
-bool SurfaceContacts::isBuried(const SurfaceContact& contact) const {
+// Adds a contact unless another shape of the tool covers the point of this one, so that the wall cannot touch it. In a
+// corner between two shapes the wall is nearer to the other one by at least the depth in it, and the contact keeps so
+// much less: when it goes it has no force. A round end that goes on into another shape meets it without a corner.
+// @param core  the point of the core, at the end of the step
+void SurfaceContacts::addOutside(SurfaceContact& contact, const Eigen::Vector3d& core) {
   const Eigen::Vector3d& p = contact.tool_point;
-  for (int s = 0; s < tool_.count(); ++s)
-    if (s != contact.shape && tool_.box(s).contains(p) &&
-        tool_.gap(s, 1, p).distance < tool_.radius(s) - policy_.touch_buried)
-      return true;
-  return false;
+  double deepest = 0;
+  for (int s = 0; s < tool_.count(); ++s) {
+    if (s == contact.shape || !tool_.box(s).contains(p)) continue;
+    const double depth = tool_.radius(s) - tool_.gap(s, 1, p).distance;
+    if (depth > policy_.touch_corner) return;
+    if (depth > policy_.touch_buried && goesOnInto(s, contact.shape, core)) return;
+    deepest = std::max(deepest, depth);
+  }
+  contact.clearance -= std::min(deepest, 0.5 * contact.clearance);
+  contacts_.push_back(contact);
 }
 
-// Where two shapes touch a point, the deepest contact counts, and others only from another side.
+// Whether a point of a shape's core is an end whose round is all within another shape.
+bool SurfaceContacts::goesOnInto(int other, int shape, const Eigen::Vector3d& core) const {
+  if (!tool_.hasSegment(shape)) return true;
+  const auto ends = tool_.segment(shape, 1);
+  const double from_end = std::min((core - ends[0]).squaredNorm(), (core - ends[1]).squaredNorm());
+  return from_end < policy_.touch_buried * policy_.touch_buried &&
+         tool_.gap(other, 1, core).distance + tool_.radius(shape) <= tool_.radius(other) + policy_.touch_buried;
+}
+
+// Contacts that say the same as a deeper one at their point do not count.
 void SurfaceContacts::removeDuplicates() {
   std::sort(contacts_.begin(), contacts_.end(), [](const SurfaceContact& one, const SurfaceContact& other) {
     const auto a = keyOf(one.point), b = keyOf(other.point);

@@ -29,15 +29,19 @@ struct SurfaceContact {
   Eigen::Vector3d tool_point;  ///< of the shape's surface, at the end of the step [m]
 };
 
-/// Contacts of a tool with the triangles of a wall, continuous in time. A normal is that of a point at the moment of
+/// Contacts of a tool with the triangles of a wall, continuous in time and in the state: a contact that comes or goes has
+/// no force, so that a wall that is held can come to rest. A normal is that of a point at the moment of
 /// the step at which its forces act, if nothing stops it; or it is taken just before the wall would pass through the
 /// shape, so that wall and tool keep their sides however fast they move.
 ///
 /// Contacts are points of the wall that stay the same from step to step: the vertices, and where these leave room for
 /// the shape between them, because it is thin or the triangles are large, points that divide edges and triangles
-/// evenly. A shape wider than the triangles therefore has one contact per vertex within reach. The nearest points of a
+/// evenly: into the parts of the usual stretch, and into twice, four times as many where they are stretched more, where
+/// the added points begin with what the others leave. A shape wider than the triangles therefore has one contact per vertex within reach. The nearest points of a
 /// triangle and a shape would be fewer, but they move with the tilt of the triangle, and a force that follows that from
-/// step to step does not come to rest. Where two shapes touch one point from one side, the deeper contact counts.
+/// step to step does not come to rest. Where two shapes touch one point, both
+/// contacts count: between shapes that meet at an angle the wall rests against both, and each alone would push it to the
+/// other.
 ///
 /// A contact asks of its point p, with the shape's point q, the normal n and the clearance c,
 ///   n . (p - q) >= c,  n along (1 - w) d0 n0 + w d1 n1
@@ -73,22 +77,27 @@ class SurfaceContacts {
     int triangle;
     ToolApproach approach;
   };
+  // Of an edge, or of all edges of a triangle, into even parts.
+  struct Division {
+    int parts = 1;
+    double share = 1;  // of their distance that points keep which halve what was a part with less stretch
+  };
   double halfThickness(const std::array<int, 3>& node, const Eigen::Vector3d& weight) const;
   void followPairs(const SurfacePath& path, double margin, std::size_t first, std::size_t last);
   void addVertices(const SurfacePath& path, double margin, int shape, const std::vector<char>& excluded);
   bool isDrawnIn(int shape, std::initializer_list<int> vertices, const std::vector<char>& excluded) const;
   void addBetween(const SurfacePath& path, double margin, int shape, const std::vector<char>& excluded);
   void addNearest(int shape, const std::vector<char>& excluded);
-  int partsOf(int shape, double length) const;
-  double spacing(int shape) const;
-  double shareOfMiddle(int shape, double length) const;
-  void addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge, int parts, double share);
-  void addInterior(const SurfacePath& path, double margin, int shape, const Pair& pair, int parts);
+  double spacing(int shape, double half) const;
+  Division divide(double rest, double length, double spacing) const;
+  void addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge, const Division& division);
+  void addInterior(const SurfacePath& path, double margin, int shape, const Pair& pair, const Division& division);
   void offer(const SurfacePoint& point, const SurfacePath& path, int shape, bool hit, double margin, double share = 1);
   void add(const SurfacePoint& point, int shape, double fraction, const TriangleGap& gap, double clearance);
   void addAlong(const SurfacePoint& point, int shape, const Eigen::Vector3d& start, const Eigen::Vector3d& end,
                 const TriangleGap& gap, double clearance);
-  bool isBuried(const SurfaceContact& contact) const;
+  void addOutside(SurfaceContact& contact, const Eigen::Vector3d& core);
+  bool goesOnInto(int other, int shape, const Eigen::Vector3d& core) const;
   void removeDuplicates();
 
   const StepPolicy& policy_;
@@ -98,7 +107,7 @@ class SurfaceContacts {
   const std::vector<std::array<int, 3>>& triangles_;
   std::vector<std::array<int, 3>> neighbour_;  // of each triangle across the edge after its k-th vertex, -1: none
   std::vector<double> half_thickness_;         // per vertex
-  double max_half_thickness_ = 0, half_ = 0;   // the latter: mean
+  double max_half_thickness_ = 0;
   std::vector<std::array<double, 3>> length_;  // of the triangles' edges at rest [m]
   std::vector<NearTriangles::Pair> near_;
   std::vector<Pair> pairs_;    // of the shape in turn
