@@ -52,22 +52,14 @@ class ToolContactBlock : public ConstraintBlock {
   }
 
  private:
-  // Predicts where the wall goes if nothing stops it. What goes to and fro from step to step goes nowhere: normals of
-  // places beyond its turning points would keep it going.
+  // Predicts where the wall goes if nothing stops it.
   void lookAhead(const StepContext& context) {
     const State& state = context.state;
-    const std::array<const std::vector<double>*, 3> x{&state.x, &state.y, &state.z}, v{&state.vx, &state.vy, &state.vz},
-        a{&state.ax, &state.ay, &state.az};
-    const double h = context.step;
-    for (std::size_t k = 0; k < 3; ++k) path_.from[k] = x[k]->data(), path_.to[k] = ahead_[k].data();
-    for (std::size_t i = 0; i < ahead_[0].size(); ++i) {
-      double square = 0, with_last = 0;  // of the velocity; its product with about that of the last step
-      for (std::size_t k = 0; k < 3; ++k) {
-        square += (*v[k])[i] * (*v[k])[i];
-        with_last += (*v[k])[i] * ((*v[k])[i] - h * (*a[k])[i]);
-      }
-      const double part = square > 0 ? std::clamp(stepPolicy().touch_goes_on * with_last / square, 0.0, 1.0) : 0;
-      for (std::size_t k = 0; k < 3; ++k) ahead_[k][i] = (*x[k])[i] + part * h * (*v[k])[i];
+    const std::array<const std::vector<double>*, 3> x{&state.x, &state.y, &state.z}, v{&state.vx, &state.vy, &state.vz};
+    for (std::size_t k = 0; k < 3; ++k) {
+      path_.from[k] = x[k]->data();
+      path_.to[k] = ahead_[k].data();
+      for (std::size_t i = 0; i < ahead_[k].size(); ++i) ahead_[k][i] = (*x[k])[i] + context.step * (*v[k])[i];
     }
   }
 

@@ -30,12 +30,6 @@ std::array<int, 3> keyOf(const SurfacePoint& point) {
   return {a, b, c};
 }
 
-// Whether the deeper of two contacts at one point counts alone: where shapes share a round end, both say the same, and a
-// point inside a shape has one way out.
-bool isCoveredBy(const SurfaceContact& deeper, const SurfaceContact& contact) {
-  return deeper.distance < 0 || deeper.normal.dot(contact.normal) > stepPolicy().touch_same_side;
-}
-
 bool isSamePoint(const SurfacePoint& one, const SurfacePoint& other) {
   return one.count == other.count && one.node == other.node && one.weight == other.weight;
 }
@@ -92,7 +86,7 @@ const std::vector<SurfaceContact>& SurfaceContacts::find(const std::vector<Eigen
     addNearest(shape, excluded);
     for (const Pair& pair : pairs_) pair_of_[pair.triangle] = -1;
   }
-  removeDuplicates();
+  removeBeside();
   return kept_;
 }
 
@@ -185,7 +179,7 @@ void SurfaceContacts::addAlong(const SurfacePoint& point, int shape, const Eigen
   contact.distance = gap.distance - tool_.radius(shape);
   contact.normal = ((1 - when_) * before.distance * from + when_ * gap.distance * gap.normal).normalized();
   contact.tool_point = end - contact.distance * contact.normal;
-  addOutside(contact, gap.core);
+  addOutside(contact, end, gap.core);
 }
 
 void SurfaceContacts::add(const SurfacePoint& point, int shape, double fraction, const TriangleGap& gap,
@@ -199,49 +193,52 @@ void SurfaceContacts::add(const SurfacePoint& point, int shape, double fraction,
   contact.normal = tool_.directionAtEnd(shape, fraction, gap.normal);
   const Eigen::Vector3d core = tool_.pointAtEnd(shape, fraction, gap.core);
   contact.tool_point = core + tool_.radius(shape) * contact.normal;
-  addOutside(contact, core);
+  addOutside(contact, core + gap.distance * contact.normal, core);
 }
 
 // Adds a contact unless another shape of the tool covers the point of this one, so that the wall cannot touch it. In a
 // corner between two shapes the wall is nearer to the other one by at least the depth in it, and the contact keeps so
-// much less: when it goes it has no force. A round end that goes on into another shape meets it without a corner.
-// @param core  the point of the core, at the end of the step
-void SurfaceContacts::addOutside(SurfaceContact& contact, const Eigen::Vector3d& core) {
-  const Eigen::Vector3d& p = contact.tool_point;
+// much less: when it goes it has no force.
+// @param wall, core  the point of the wall and that of the core, at the end of the step
+void SurfaceContacts::addOutside(SurfaceContact& contact, const Eigen::Vector3d& wall, const Eigen::Vector3d& core) {
   double deepest = 0;
   for (int s = 0; s < tool_.count(); ++s) {
-    if (s == contact.shape || !tool_.box(s).contains(p)) continue;
-    const double depth = tool_.radius(s) - tool_.gap(s, 1, p).distance;
-    if (depth > policy_.touch_corner) return;
-    if (depth > policy_.touch_buried && goesOnInto(s, contact.shape, core)) return;
-    deepest = std::max(deepest, depth);
+    if (s == contact.shape || !tool_.box(s).contains(contact.tool_point)) continue;
+    if (isLeftTo(s, contact.shape, wall, core)) return;
+    deepest = std::max(deepest, tool_.radius(s) - tool_.gap(s, 1, contact.tool_point).distance);
   }
+  if (deepest > policy_.touch_corner) return;
   contact.clearance -= std::min(deepest, 0.5 * contact.clearance);
   contacts_.push_back(contact);
 }
 
-// Whether a point of a shape's core is an end whose round is all within another shape.
-bool SurfaceContacts::goesOnInto(int other, int shape, const Eigen::Vector3d& core) const {
-  if (!tool_.hasSegment(shape)) return true;
-  const auto ends = tool_.segment(shape, 1);
-  const double from_end = std::min((core - ends[0]).squaredNorm(), (core - ends[1]).squaredNorm());
-  return from_end < policy_.touch_buried * policy_.touch_buried &&
-         tool_.gap(other, 1, core).distance + tool_.radius(shape) <= tool_.radius(other) + policy_.touch_buried;
+// Whether the contact of a shape is that of another one: where its round end goes on into the other without a corner.
+// Where both go on into each other, the first of them has it.
+bool SurfaceContacts::isLeftTo(int other, int shape, const Eigen::Vector3d& wall, const Eigen::Vector3d& core) const {
+  if (!goesOnInto(other, shape, core)) return false;
+  return other < shape || !goesOnInto(shape, other, tool_.gap(other, 1, wall).core);
 }
 
-// Contacts that say the same as a deeper one at their point do not count.
-void SurfaceContacts::removeDuplicates() {
+// Whether a point of a shape's core is an end whose round is all within another shape.
+bool SurfaceContacts::goesOnInto(int other, int shape, const Eigen::Vector3d& core) const {
+  if (!tool_.hasSegment(shape)) return false;
+  const auto ends = tool_.segment(shape, 1);
+  const double from_end = std::min((core - ends[0]).norm(), (core - ends[1]).norm());
+  return from_end < policy_.touch_within &&
+         tool_.gap(other, 1, core).distance + tool_.radius(shape) <= tool_.radius(other) + policy_.touch_within;
+}
+
+// A point inside a shape has one way out: that of the shape in which it is deepest.
+void SurfaceContacts::removeBeside() {
   std::sort(contacts_.begin(), contacts_.end(), [](const SurfaceContact& one, const SurfaceContact& other) {
     const auto a = keyOf(one.point), b = keyOf(other.point);
     return std::tie(a, one.point.weight, one.distance, one.shape) <
            std::tie(b, other.point.weight, other.distance, other.shape);
   });
-  std::size_t first = 0;  // kept at the present point
+  const SurfaceContact* deepest = nullptr;  // of the present point
   for (const SurfaceContact& contact : contacts_) {
-    if (kept_.empty() || !isSamePoint(kept_.back().point, contact.point)) first = kept_.size();
-    const bool covered = std::any_of(kept_.begin() + static_cast<std::ptrdiff_t>(first), kept_.end(),
-                                     [&contact](const SurfaceContact& deeper) { return isCoveredBy(deeper, contact); });
-    if (!covered) kept_.push_back(contact);
+    if (deepest == nullptr || !isSamePoint(deepest->point, contact.point)) deepest = &contact;
+    if (deepest == &contact || deepest->distance >= 0) kept_.push_back(contact);
   }
 }
 

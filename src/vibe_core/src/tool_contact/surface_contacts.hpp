@@ -96,9 +96,10 @@ class SurfaceContacts {
   void add(const SurfacePoint& point, int shape, double fraction, const TriangleGap& gap, double clearance);
   void addAlong(const SurfacePoint& point, int shape, const Eigen::Vector3d& start, const Eigen::Vector3d& end,
                 const TriangleGap& gap, double clearance);
-  void addOutside(SurfaceContact& contact, const Eigen::Vector3d& core);
+  void addOutside(SurfaceContact& contact, const Eigen::Vector3d& wall, const Eigen::Vector3d& core);
+  bool isLeftTo(int other, int shape, const Eigen::Vector3d& wall, const Eigen::Vector3d& core) const;
   bool goesOnInto(int other, int shape, const Eigen::Vector3d& core) const;
-  void removeDuplicates();
+  void removeBeside();
 
   const StepPolicy& policy_;
   SweptTool tool_;

@@ -184,9 +184,9 @@ TEST(SurfaceContacts, PointsOfAStretchedWallComeAndGoWithoutAJump) {
 }
 
 /// Shapes with which a wall has contacts in the inner corner between two shapes that share an end.
-/// @param aside  way of the wall along the scope from where it touches both [m]
+/// @param side  1, -1: towards one of them by so much that its foot on the other is in the first; 0: it touches both
 std::set<int> shapesInCorner(const ToolModel& tool, const std::vector<Isometry3d>& poses, int one, int other,
-                             const Vector3d& joint, double aside) {
+                             const Vector3d& joint, double side) {
   SweptTool at(tool);
   at.place(poses, poses);
   const auto away = [&](int shape) {
@@ -195,6 +195,7 @@ std::set<int> shapesInCorner(const ToolModel& tool, const std::vector<Isometry3d
   };
   const Vector3d a = away(one), b = away(other), inner = (a + b).normalized(), along = (b - a).normalized();
   const double from_joint = (at.radius(one) + kThickness / 2) / inner.cross(a).norm();
+  const double aside = side * (kThickness / 2 * inner.dot(a) / inner.cross(a).norm() + 50e-6);
   const Vector3d p = joint + from_joint * inner + aside * along, across = 6e-3 * a.cross(b).normalized();
   SurfaceMesh mesh;
   mesh.vertices = {p, p + across + 3e-3 * inner, p - across + 3e-3 * inner};
@@ -232,14 +233,15 @@ TEST(SurfaceContacts, InACornerBetweenShapesTheWallRestsAgainstBoth) {
     std::vector<Isometry3d> poses;
     tool.forwardKinematics(inputs, poses);
     forCorners(tool, poses, [&](int one, int other, const Vector3d& joint) {
-      for (const double aside : {-50e-6, 0.0, 50e-6}) {
-        const auto shapes = [&] { return shapesInCorner(tool, poses, one, other, joint, aside); };
-        EXPECT_EQ(shapes().count(one), 1u) << "bent by " << bend << ", aside by " << aside;
+      for (const double side : {-1.0, 0.0, 1.0}) {
+        const auto shapes = [&] { return shapesInCorner(tool, poses, one, other, joint, side); };
+        EXPECT_EQ(shapes().count(one), 1u) << "bent by " << bend << ", on side " << side;
         EXPECT_EQ(shapes().count(other), 1u);
+        if (side == 0) continue;
         StepPolicy nearest_only = stepPolicy();
-        nearest_only.touch_same_side = 0.7;
+        nearest_only.touch_corner = 0;
         const ScopedStepPolicy scoped(nearest_only);
-        one_only += shapes().size() == 1 ? 1 : 0;
+        one_only += shapes().count(one) + shapes().count(other) == 1 ? 1 : 0;
         ++corners;
       }
     });

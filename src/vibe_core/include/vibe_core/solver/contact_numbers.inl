@@ -132,8 +132,6 @@ VIBE_COUNT(stop_sweeps, 100, "sweeps over the triangles while stops spread, at m
 VIBE_POLICY_SECTION("Contacts of the tool")
 VIBE_REAL(touch_margin, 2e-3, "m", "predicted distance up to which points of the wall become contacts",
           "design choice: covers 0.12 m/s that the prediction from velocities does not foresee in a step of 1/60 s")
-VIBE_REAL(touch_goes_on, 2, "", "part of the way that a velocity predicts, over that of the last step along it, 1 at most",
-          "design choice: a velocity that no more than doubles in a step is believed, one that turns round is not")
 VIBE_REAL(touch_confined, 17, "", "stiffness of tissue that cannot yield sideways over its Young's modulus",
           "(1 - nu) / ((1 + nu) (1 - 2 nu)) for nu = 0.49: soft tissue hardly changes its volume, and the scene's ratio "
           "is that of the membrane")
@@ -160,13 +158,11 @@ VIBE_REAL(touch_deepest, 0.5, "radii", "depth below a shape's surface up to whic
           "design choice: the axis itself has none")
 VIBE_REAL(touch_deepest_in_wall, 0.5, "half walls", "the same where a shape has no radius",
           "design choice: halfway between touching and crossing")
-VIBE_REAL(touch_same_side, 1 - 1e-9, "", "cosine between normals of two shapes above which the deeper contact counts alone",
-          "far above rounding: shapes that share a round end; with 0.7, walls between two shapes trembled")
 VIBE_REAL(touch_along, 0.9, "", "cosine between the normals at the ends of a step up to which one between is taken",
           "design choice: 25 degrees, which a tip reaches at 0.2 m/s; beyond, the distance is far from linear")
 VIBE_REAL(touch_corner, 1e-4, "m", "depth within another shape from which a shape cannot touch",
           "walls that are held move less in a step once they come to rest; with 10 um some between shapes trembled")
-VIBE_REAL(touch_buried, 1e-6, "m", "the same at a round end that goes on into the other shape",
+VIBE_REAL(touch_within, 1e-6, "m", "distance up to which the round end of a shape counts as inside another shape",
           "design choice: far above rounding of shapes in single precision")
 
 VIBE_POLICY_SECTION("Tool and wall on their ways")
