@@ -73,8 +73,9 @@ def ways_parts():
 
 
 def rest_parts():
-    for particles, minutes in (("3618", 3), ("1000", 1), ("680", 1), ("300", 1)):
-        yield Part(particles, ("vibe_contact", "rest", "--particles", particles, "--poses", "30"), minutes)
+    for particles, poses, minutes in (("3618", "50", 7), ("2000", "50", 4), ("1000", "100", 5), ("680", "100", 4), ("300", "200", 4)):
+        words = ("vibe_contact", "rest", "--particles", particles, "--poses", poses, "--hold", "19")
+        yield Part(particles, words, minutes)
 
 
 def threads_parts():
