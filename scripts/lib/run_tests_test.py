@@ -78,7 +78,8 @@ class RunnerTest(unittest.TestCase):
 
     def run_it(self, *options, status=0, **environment):
         """Runs the tests; returns what was said."""
-        environment = dict(os.environ, **environment)
+        inherited = {name: value for name, value in os.environ.items() if name not in ("VIBE_TEST_RETRY", "VIBE_TEST_VERBOSE")}
+        environment = dict(inherited, **environment)
         ended = subprocess.run(self.arguments(*options), env=environment, text=True, stdout=subprocess.PIPE,
                                stderr=subprocess.STDOUT, timeout=60)
         self.assertEqual(ended.returncode, status, ended.stdout)

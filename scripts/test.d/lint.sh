@@ -3,7 +3,7 @@
 # cost: 60
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-for name in format door rooms names launch links catkin bash python; do
+for name in door rooms names launch links catkin bash python; do
   check "lint $name" "$root/scripts/lint" --only "$name"
 done
 
@@ -12,7 +12,24 @@ findsBadFormat() {
   cp "$root/.clang-format" "$scratch/"
   ! "$root/scripts/lint" --only format "$scratch/bad.cpp"
 }
-check 'lint sees a file that is not formatted' findsBadFormat
+if "$root/scripts/lint" --only format "$root/src/vibe_core/include/vibe_core/program/error.hpp" | grep -q '^format: skipped'; then
+  echo 'skipped lint format (clang-format is not of the version that formats the code)'
+else
+  check 'lint format' "$root/scripts/lint" --only format
+  check 'lint sees a file that is not formatted' findsBadFormat
+fi
+
+# refusesToFix: a clang-format of another version is not let loose on the code
+refusesToFix() {
+  local tree bin=$scratch/other_bin
+  tree=$(copyOfTree)
+  mkdir "$bin"
+  printf '#!/bin/sh\n[ "$1" = --version ] && echo "clang-format version 99.1.0" || touch "%s/ran"\n' "$bin" >"$bin/clang-format"
+  chmod +x "$bin/clang-format"
+  sed -i "s#export PATH=#export PATH=$bin:#; s#^format_version=.*#format_version=98#" "$tree/scripts/lib/common.sh" "$tree/scripts/lint"
+  "$tree/scripts/lint" --only format | grep -E '^format: skipped, .* clang-format 98, .*version 99' || return 1
+  refuses 1 'not clean: format' bash -c '"$1" --only format --fix 2>&1 >/dev/null' - "$tree/scripts/lint" && [ ! -e "$bin/ran" ]
+}
 
 # Makes a small workspace without a problem, in a folder with a space in its name, and prints the folder.
 copyOfTree() {
@@ -28,6 +45,8 @@ copyOfTree() {
   echo '#include "solver/stepper.hpp"' >"$tree/src/vibe_core/src/solver/stepper.cpp"
   echo "$tree"
 }
+
+check 'lint lets no other clang-format judge or rewrite the code' refusesToFix
 
 # findsRosIn FILE LINE: adds a file with this line below src/ of a tree that passes; lint must name the file
 findsRosIn() {

@@ -45,9 +45,9 @@ std::string textOf(const Json& object, const char* key) {
   return found != object.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-const Json& objectOf(const Json& object, const char* key, const std::string& where) {
+const Json& objectOf(const Json& object, const char* key, std::string_view where) {
   const auto found = object.find(key);
-  if (found == object.end() || !found->is_object()) failGltf(where + " has no '" + key + "'");
+  if (found == object.end() || !found->is_object()) failGltf(std::string(where) + " has no '" + key + "'");
   return *found;
 }
 

@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 std::uint64_t wholeOf(const Json& object, const char* key, const std::string& where, std::int64_t otherwise = -1);
 /// Empty if the key is absent.
 std::string textOf(const Json& object, const char* key);
-const Json& objectOf(const Json& object, const char* key, const std::string& where);
+const Json& objectOf(const Json& object, const char* key, std::string_view where);
 /// A list, or an empty one.
 const Json& listIn(const Json& object, const char* key);
 /// Exactly so many numbers, or nothing if the key is absent.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "arithmetic/elementary.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
@@ -93,7 +94,7 @@ std::vector<int> trianglesOfDisc(const SurfaceMesh& mesh, int triangle, const Ei
     const std::array<int, 3> from = mesh.triangles[disc[k]];
     const auto isNext = [&](int t) { return shareAnEdge(from, mesh.triangles[t]); };
     const auto rest = std::stable_partition(near.begin(), near.end(), [&](int t) { return !isNext(t); });
-    disc.insert(disc.end(), rest, near.end());
+    std::copy(rest, near.end(), std::back_inserter(disc));
     near.erase(rest, near.end());
   }
   return disc;

@@ -1,6 +1,7 @@
 #include "trainee/ik_solution.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>

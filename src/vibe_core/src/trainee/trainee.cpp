@@ -6,7 +6,15 @@
 #include <utility>
 #include <variant>
 
+// GCC 14 warns in this header: it does not see what its constructor writes on the new stack
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 #include <boost/coroutine2/coroutine.hpp>
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
 
 #include "trainee/operator.hpp"
 #include "vibe_core/program/error.hpp"

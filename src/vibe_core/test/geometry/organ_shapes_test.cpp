@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <string>
+#include <string_view>
 
 #include "geometry/mesh_quality.hpp"
 #include "geometry/regions.hpp"
@@ -23,10 +26,11 @@ Scene shipped(const std::string& name) {
   return loadScene(VIBE_CORE_DIR "/scenes/" + name + ".yaml");
 }
 
-const Organ& organOf(const std::string& name) {
-  static std::map<std::string, Organ> organs;
+const Organ& organOf(std::string_view name) {
+  static std::map<std::string, Organ, std::less<>> organs;
   const auto known = organs.find(name);
-  return known != organs.end() ? known->second : organs.emplace(name, buildOrgan(shipped(name))).first->second;
+  return known != organs.end() ? known->second
+                               : organs.emplace(name, buildOrgan(shipped(std::string(name)))).first->second;
 }
 
 double alongOf(const Organ& organ, const StomachAxis& axis, const Eigen::Vector3d& place) {

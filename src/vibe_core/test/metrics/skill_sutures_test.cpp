@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "vibe_testing/worlds.hpp"
 
 namespace vibe::skill_sutures_test {

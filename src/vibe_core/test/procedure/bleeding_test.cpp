@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "procedure/procedure_bench.hpp"
 
 namespace vibe::bleeding_test {

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "vibe_core/thermal/argon_beam.hpp"

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <random>
 
 #include "sparse/closed_mesh.hpp"

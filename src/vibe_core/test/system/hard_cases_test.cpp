@@ -2,6 +2,7 @@
 // the organ comes back to its shape.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <random>
 

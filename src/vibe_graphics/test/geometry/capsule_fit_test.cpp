@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "vibe_graphics/geometry/tube.hpp"
 
 namespace vibe::graphics::capsule_fit_test {

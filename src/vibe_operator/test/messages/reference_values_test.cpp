@@ -6,16 +6,19 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <stdexcept>
+#include <string>
+#include <string_view>
 
 namespace vibe::operating::reference_values_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-const ShownMeasure& find(const std::string& label) {
+const ShownMeasure& find(std::string_view label) {
   const auto& all = measures();
   const auto found = std::find_if(all.begin(), all.end(), [&](const ShownMeasure& m) { return m.label == label; });
-  if (found == all.end()) throw std::runtime_error("no measure " + label);
+  if (found == all.end()) throw std::runtime_error("no measure " + std::string(label));
   return *found;
 }
 

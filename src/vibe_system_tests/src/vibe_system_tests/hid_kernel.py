@@ -15,6 +15,7 @@ import stat
 import struct
 import subprocess
 import sys
+import tarfile
 import tempfile
 import time
 
@@ -28,6 +29,9 @@ root. The guest sees the files of this machine, read-only."""
 EPILOG = "Exit status: 0 all tests passed, 1 some did not, 77 the virtual machine cannot be started here."
 
 MODULES = ['hid-generic', 'evdev', 'joydev', 'uinput', 'xhci-pci', 'usbhid', 'virtio-pci', '9pnet-virtio', '9p', 'overlay']
+WANTED = re.compile(  # of a kernel package
+    r'\./(usr/)?(?P<path>boot/vmlinuz-[^/]*|lib/modules/[^/]*/(modules\.builtin|kernel/'
+    r'(drivers/(hid|input|usb|virtio)|net/9p|fs/(9p|netfs|fscache|overlayfs))/.*\.ko))(?P<packed>\.xz)?')
 DEVICES = ['haptic', 'input', 'spare-haptic', 'spare-input', 'image']  # of usb_bridge
 PROGRAMS = ['hid_guest', 'hid_guest_replug']  # of the guest
 APPLETS = ['sh', 'mount', 'insmod', 'cat', 'mkdir', 'cp', 'ifconfig', 'chroot', 'uname', 'poweroff']
@@ -315,16 +319,18 @@ def find_kernel(cache):
 
 
 def unpack_kernel(file, kernel):
-    """What the guest needs of a kernel package."""
-    modules = [f'drivers/{part}' for part in ('hid', 'input', 'usb', 'virtio')] + ['net/9p']
-    modules += [f'fs/{part}' for part in ('9p', 'netfs', 'fscache', 'overlayfs')]
-    wanted = ['./boot/vmlinuz-*', './lib/modules/*/modules.builtin']
-    wanted += [f'./lib/modules/*/kernel/{part}/*' for part in modules]
+    """What the guest needs of a kernel package. Debian 13 has the modules below /usr, and compressed."""
     part = kernel.with_name(kernel.name + '.part')
     shutil.rmtree(part, ignore_errors=True)
-    part.mkdir()
     with subprocess.Popen(['dpkg', '--fsys-tarfile', file], stdout=subprocess.PIPE) as archive:
-        subprocess.run(['tar', '-x', '-C', part, '--wildcards', *wanted], stdin=archive.stdout, check=True)
+        with tarfile.open(fileobj=archive.stdout, mode='r|') as members:
+            for member in members:
+                wanted = WANTED.fullmatch(member.name)
+                if wanted and member.isfile():
+                    target = part / wanted.group('path')
+                    target.parent.mkdir(parents=True, exist_ok=True)
+                    data = members.extractfile(member).read()
+                    target.write_bytes(lzma.decompress(data) if wanted.group('packed') else data)
     part.rename(kernel)
 
 

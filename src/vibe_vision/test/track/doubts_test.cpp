@@ -1,6 +1,7 @@
 // What speaks against camera or calibration although the marker is tracked.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 #include "track/calibration_doubts.hpp"
