@@ -54,8 +54,8 @@ TEST(RestDetector, WhatGoesOneWayCreeps) {
   EXPECT_NEAR(creeps.speed(), 60e-6, 1e-9);
 }
 
-/// Poses under which the wall of a coarse stomach trembles. In one of the first 13 a triangle is stretched until it needs
-/// more points.
+/// Poses under which the wall of a coarse stomach trembles. In one of the first 13 a triangle is stretched until it
+/// needs more points.
 int tremblingPoses() {
   Scene scene = loadScene(resolveAddress("package://vibe_core/scenes/stomach.yaml"));
   scene.geometry.particles = 300;

@@ -29,19 +29,19 @@ struct SurfaceContact {
   Eigen::Vector3d tool_point;  ///< of the shape's surface, at the end of the step [m]
 };
 
-/// Contacts of a tool with the triangles of a wall, continuous in time and in the state: a contact that comes or goes has
-/// no force, so that a wall that is held can come to rest. A normal is that of a point at the moment of
-/// the step at which its forces act, if nothing stops it; or it is taken just before the wall would pass through the
-/// shape, so that wall and tool keep their sides however fast they move.
+/// Contacts of a tool with the triangles of a wall, continuous in time and in the state: a contact that comes or goes
+/// has no force, so that a wall that is held can come to rest. A normal is that of a point at the moment of the step at
+/// which its forces act, if nothing stops it; or it is taken just before the wall would pass through the shape, so that
+/// wall and tool keep their sides however fast they move.
 ///
 /// Contacts are points of the wall that stay the same from step to step: the vertices, and where these leave room for
 /// the shape between them, because it is thin or the triangles are large, points that divide edges and triangles
 /// evenly: into the parts of the usual stretch, and into twice, four times as many where they are stretched more, where
-/// the added points begin with what the others leave. A shape wider than the triangles therefore has one contact per vertex within reach. The nearest points of a
-/// triangle and a shape would be fewer, but they move with the tilt of the triangle, and a force that follows that from
-/// step to step does not come to rest. Where two shapes touch one point, both
-/// contacts count: between shapes that meet at an angle the wall rests against both, and each alone would push it to the
-/// other.
+/// the added points begin with what the others leave. A shape wider than the triangles therefore has one contact per
+/// vertex within reach. The nearest points of a triangle and a shape would be fewer, but they move with the tilt of the
+/// triangle, and a force that follows that from step to step does not come to rest. Where two shapes touch one point,
+/// both contacts count: between shapes that meet at an angle the wall rests against both, and each alone would push it
+/// to the other.
 ///
 /// A contact asks of its point p, with the shape's point q, the normal n and the clearance c,
 ///   n . (p - q) >= c,  n along (1 - w) d0 n0 + w d1 n1

@@ -68,8 +68,8 @@ double SurfaceContacts::spacing(int shape, double half) const {
 SurfaceContacts::Division SurfaceContacts::divide(double rest, double length, double spacing) const {
   const double kept = policy_.touch_kept_between;
   Division division;
-  division.parts =
-      std::clamp(static_cast<int>(std::ceil(policy_.touch_usual_stretch * rest / spacing)), 1, policy_.touch_most_parts);
+  division.parts = std::clamp(static_cast<int>(std::ceil(policy_.touch_usual_stretch * rest / spacing)), 1,
+                              policy_.touch_most_parts);
   while (length > division.parts * spacing && division.parts < policy_.touch_most_parts) {
     const double longer = length / (division.parts * spacing) - 1;
     division.share = kept + (1 - kept) * std::min(longer / policy_.touch_fade_in, 1.0);
