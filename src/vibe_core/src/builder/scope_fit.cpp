@@ -16,8 +16,8 @@ namespace vibe {
 
 namespace {
 
-// How far an open end that is held stretches around a scope. Measured with young_modulus 110 kPa: 1.55 passes with 12 N,
-// 1.66 does not at 20 N (3,618 particles); 1.76 passes with 20 N, 1.97 does not (2,000).
+// How far an open end that is held stretches around a scope. Measured with young_modulus 110 kPa: 1.55 passes with 12
+// N, 1.66 does not at 20 N (3,618 particles); 1.76 passes with 20 N, 1.97 does not (2,000).
 constexpr double kWidestStretch = 1.6;
 constexpr int kOutwards = 64;  // around the axis
 
