@@ -14,6 +14,8 @@ namespace vibe {
 namespace {
 constexpr double kSamplePeriod = 0.1;  // of the costly metrics [s]
 constexpr double kNoForce = 1e-6;      // smaller forces count as none [N]
+constexpr double kDoubtful = 0.01;     // of the work put in: energy of no account that a reader should know of
+constexpr double kLeastWork = 1e-3;    // a session with less counts as one with this much [J]
 }  // namespace
 
 MetricsRecorder::MetricsRecorder(const Model& model, const State& start)
@@ -26,6 +28,7 @@ MetricsRecorder::MetricsRecorder(const Model& model, const State& start, SkillIn
       strain_(start.x.size()),
       skill_(instruments_, model, start, last_tip_) {
   metrics_.time = start.time;
+  metrics_.balance_closes = !model.solver->usesSubsteps();
   metrics_.skill = skill_.metrics();
 }
 
@@ -95,11 +98,38 @@ std::string summariseEnergy(const EnergyAccount& e, double balance) {
   return text;
 }
 
+// What of these energies a reader should not take for mechanics, a line each with a newline at its end.
+std::string doubtsOf(const SessionMetrics& m) {
+  const EnergyAccount& e = m.energy;
+  const double works = std::abs(e.tool_work) + std::abs(e.gas_work) + std::abs(e.thread_work) + std::abs(e.pull_work);
+  const double work = std::max(works, kLeastWork);
+  std::string lines;
+  char text[400];
+  if (std::abs(e.correction_work) > kDoubtful * work) {
+    std::snprintf(
+        text, sizeof text,
+        "                   The corrections are %.3g %% of the work put in: walls or tool were stopped after a step, "
+        "or the wall was led back to rest;\n"
+        "                   forces of that time are doubtful; possibly the scope moves too fast.\n",
+        100 * std::abs(e.correction_work) / work);
+    lines += text;
+  }
+  if (m.balance_closes && std::abs(m.energy_balance) > kDoubtful * work) {
+    std::snprintf(
+        text, sizeof text,
+        "                   The energy balance is off by %.3g %% of the work put in: forces and energies of this "
+        "session are doubtful.\n",
+        100 * std::abs(m.energy_balance) / work);
+    lines += text;
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::string summarise(const SessionMetrics& m) {
   using Kind = Event::Kind;
-  char text[2048];
+  char text[4096];
   std::snprintf(text, sizeof text,
                 "simulated time     %8.2f s\n"
                 "in contact         %8.2f s   holding tissue %.2f s   insufflating %.2f s\n"
@@ -113,7 +143,7 @@ std::string summarise(const SessionMetrics& m) {
                 m.time, m.contact_time, m.grip_time, m.insufflation_time, m.path_length, m.events.of(Kind::Grab),
                 m.events.of(Kind::GrabMissed), m.events.of(Kind::Release), m.events.of(Kind::Slip), m.max_force,
                 m.mean_force, m.volume * 1e6, m.max_volume * 1e6, m.pressure / 133.322, m.max_pressure / 133.322,
-                100 * m.max_strain, summariseEnergy(m.energy, m.energy_balance).c_str(), m.warnings());
+                100 * m.max_strain, (summariseEnergy(m.energy, m.energy_balance) + doubtsOf(m)).c_str(), m.warnings());
   return text + ("\n" + summarise(m.skill));
 }
 

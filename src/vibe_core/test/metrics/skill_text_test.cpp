@@ -131,6 +131,35 @@ TEST(SkillText, zeroHasNoSign) {
   EXPECT_NE(summarise(energies).find("residuals 0.0000 J   energy balance 0.0000 J"), std::string::npos);
 }
 
+TEST(SkillText, saysWhenCorrectionsAreMoreThanAHundredthOfTheWork) {
+  SessionMetrics m;
+  m.energy.tool_work = -0.5, m.energy.gas_work = 0.5;
+  m.energy.correction_work = 0.009;
+  EXPECT_EQ(summarise(m).find("doubtful"), std::string::npos);
+  m.energy.correction_work = 0.25;
+  EXPECT_NE(summarise(m).find("The corrections are 25 % of the work put in: walls or tool were stopped"),
+            std::string::npos);
+  m.energy.correction_work = -0.25;
+  EXPECT_NE(summarise(m).find("The corrections are 25 %"), std::string::npos);
+}
+
+TEST(SkillText, saysWhenTheEnergyBalanceDoesNotClose) {
+  SessionMetrics m;
+  m.energy.thread_work = 1;
+  m.energy_balance = -0.009;
+  EXPECT_EQ(summarise(m).find("doubtful"), std::string::npos);
+  m.energy_balance = -0.02;
+  EXPECT_NE(summarise(m).find("The energy balance is off by 2 % of the work put in"), std::string::npos);
+  m.balance_closes = false;
+  EXPECT_EQ(summarise(m).find("doubtful"), std::string::npos);
+}
+
+TEST(SkillText, doesNotDoubtASessionInWhichNothingHappens) {
+  SessionMetrics m;
+  m.energy.correction_work = m.energy_balance = 9e-6;
+  EXPECT_EQ(summarise(m).find("doubtful"), std::string::npos);
+}
+
 TEST(SkillText, saysWhyAnOrganIsNotMeasured) {
   SkillMetrics m;
   m.organ.fault = "The surface is not closed; close it.";

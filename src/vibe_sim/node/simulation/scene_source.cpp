@@ -4,6 +4,7 @@
 
 #include <ros/console.h>
 
+#include "vibe_core/builder/scope_fit.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulator.hpp"
@@ -27,8 +28,8 @@ SceneModel loadModel(const std::string& scene_address, const std::string& mesh_a
   const std::string guesses = mesh_address.empty() ? "" : useMesh(scene, resolveAddress(mesh_address));
   if (!guesses.empty()) ROS_WARN_STREAM(guesses);
   SceneModel made = build(scene, "");
-  const std::string softness = softnessWarning(*made.model);
-  if (!softness.empty()) ROS_WARN_STREAM(softness);
+  for (const std::string& warning : {softnessWarning(*made.model), fitWarning(*made.model)})
+    if (!warning.empty()) ROS_WARN_STREAM(warning);
   return made;
 }
 
