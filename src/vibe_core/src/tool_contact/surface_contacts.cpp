@@ -197,8 +197,9 @@ void SurfaceContacts::add(const SurfacePoint& point, int shape, double fraction,
 }
 
 // Adds a contact unless another shape of the tool covers the point of this one, so that the wall cannot touch it. In a
-// corner between two shapes the wall is nearer to the other one by at least the depth in it, and the contact keeps so
-// much less: when it goes it has no force.
+// corner between two shapes the wall is nearer to the other one by at least the depth in it, and the contact keeps a
+// part of that less: when it goes it has no force. If it kept all of that less, a wall beyond the corner would be led
+// as far beyond on the other side.
 // @param wall, core  the point of the wall and that of the core, at the end of the step
 void SurfaceContacts::addOutside(SurfaceContact& contact, const Eigen::Vector3d& wall, const Eigen::Vector3d& core) {
   double deepest = 0;
@@ -208,7 +209,7 @@ void SurfaceContacts::addOutside(SurfaceContact& contact, const Eigen::Vector3d&
     deepest = std::max(deepest, tool_.radius(s) - tool_.gap(s, 1, contact.tool_point).distance);
   }
   if (deepest > policy_.touch_corner) return;
-  contact.clearance -= std::min(deepest, 0.5 * contact.clearance);
+  contact.clearance -= std::clamp(policy_.touch_corner_slack * deepest, 0.0, 0.5 * contact.clearance);
   contacts_.push_back(contact);
 }
 
@@ -216,7 +217,16 @@ void SurfaceContacts::addOutside(SurfaceContact& contact, const Eigen::Vector3d&
 // Where both go on into each other, the first of them has it.
 bool SurfaceContacts::isLeftTo(int other, int shape, const Eigen::Vector3d& wall, const Eigen::Vector3d& core) const {
   if (!goesOnInto(other, shape, core)) return false;
-  return other < shape || !goesOnInto(shape, other, tool_.gap(other, 1, wall).core);
+  if (goesOnInto(shape, other, tool_.gap(other, 1, wall).core)) return other < shape;
+  // shapes that share an end have a corner on the side to which they bend
+  const Eigen::Vector3d from_end = wall - core;
+  return !goesOnInto(shape, other, core) || from_end.dot(inwards(shape, core) + inwards(other, core)) <= 0;
+}
+
+// The direction of a shape's core from that of its ends which is at a point.
+Eigen::Vector3d SurfaceContacts::inwards(int shape, const Eigen::Vector3d& end) const {
+  const auto [a, b] = tool_.segment(shape, 1);
+  return ((a - end).squaredNorm() < (b - end).squaredNorm() ? b - a : a - b).normalized();
 }
 
 // Whether a point of a shape's core is an end whose round is all within another shape.

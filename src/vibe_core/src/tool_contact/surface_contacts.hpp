@@ -99,6 +99,7 @@ class SurfaceContacts {
   void addOutside(SurfaceContact& contact, const Eigen::Vector3d& wall, const Eigen::Vector3d& core);
   bool isLeftTo(int other, int shape, const Eigen::Vector3d& wall, const Eigen::Vector3d& core) const;
   bool goesOnInto(int other, int shape, const Eigen::Vector3d& core) const;
+  Eigen::Vector3d inwards(int shape, const Eigen::Vector3d& end) const;
   void removeBeside();
 
   const StepPolicy& policy_;

@@ -160,8 +160,10 @@ VIBE_REAL(touch_deepest_in_wall, 0.5, "half walls", "the same where a shape has 
           "design choice: halfway between touching and crossing")
 VIBE_REAL(touch_along, 0.9, "", "cosine between the normals at the ends of a step up to which one between is taken",
           "design choice: 25 degrees, which a tip reaches at 0.2 m/s; beyond, the distance is far from linear")
-VIBE_REAL(touch_corner, 1e-4, "m", "depth within another shape from which a shape cannot touch",
-          "walls that are held move less in a step once they come to rest; with 10 um some between shapes trembled")
+VIBE_REAL(touch_corner, 3e-4, "m", "depth within another shape from which a shape cannot touch",
+          "walls that are held in a corner move less in a step before they rest; with 0.1 mm some trembled")
+VIBE_REAL(touch_corner_slack, 0.3, "", "part of this depth by which such a contact keeps less",
+          "design choice: what is beyond a corner is so far beyond it in the next step; from 0.5 on some walls trembled")
 VIBE_REAL(touch_within, 1e-6, "m", "distance up to which the round end of a shape counts as inside another shape",
           "design choice: far above rounding of shapes in single precision")
 
