@@ -213,8 +213,9 @@ void SurfaceContacts::addOutside(SurfaceContact& contact, const Eigen::Vector3d&
   contacts_.push_back(contact);
 }
 
-// Whether the contact of a shape is that of another one: where its round end goes on into the other without a corner.
-// Where both go on into each other, the first of them has it.
+// Whether the other shape has the contact instead: where a round end goes on into it without a corner, as on the
+// outside of a bend. Two contacts that say the same would share the load like two springs. Where both ends are nearest
+// to the wall, the first shape has it.
 bool SurfaceContacts::isLeftTo(int other, int shape, const Eigen::Vector3d& wall, const Eigen::Vector3d& core) const {
   if (!goesOnInto(other, shape, core)) return false;
   if (goesOnInto(shape, other, tool_.gap(other, 1, wall).core)) return other < shape;

@@ -22,10 +22,10 @@ std::vector<char> passableVertices(const Organ& organ);
 /// A point of the wall that a tool shape touches or may reach within the step.
 struct SurfaceContact {
   SurfacePoint point;
-  int shape = -1;              ///< of the tool
-  double clearance = 0;        ///< distance of the mid-surface from the shape where it touches: half the wall [m]
-  double distance = 0;         ///< of the mid-surface from the shape when `normal` was taken [m]
-  Eigen::Vector3d normal;      ///< unit, out of the shape, as the shape is turned at the end of the step
+  int shape = -1;          ///< of the tool
+  double clearance = 0;    ///< distance of the mid-surface from the shape where it touches: half the wall, or less [m]
+  double distance = 0;     ///< of the mid-surface from the shape when `normal` was taken [m]
+  Eigen::Vector3d normal;  ///< unit, out of the shape, as the shape is turned at the end of the step
   Eigen::Vector3d tool_point;  ///< of the shape's surface, at the end of the step [m]
 };
 
@@ -45,9 +45,10 @@ struct SurfaceContact {
 ///
 /// A contact asks of its point p, with the shape's point q, the normal n and the clearance c,
 ///   n . (p - q) >= c,  n along (1 - w) d0 n0 + w d1 n1
-///   c       half the thickness of the wall, in the middle of a stretched edge a share of it [m]
-///   d, n    distance of p from the core of the shape, and the direction out of it, at the start (0) and the end (1)
-///   w       the moment at which the forces of the step act, as a part of it (Gonzalez 1996; docs/computation.md, (10))
+///   c       half the thickness of the wall; less where a point divides what is stretched, and in corners of the tool
+///   [m] d, n    distance of p from the core of the shape, and the direction out of it, at the start (0) and the end
+///   (1) w       the moment at which the forces of the step act, as a part of it (Gonzalez 1996; docs/computation.md,
+///   (10))
 /// Points of a spacing s that keep R + h from the core of a shape keep the wall between them, with h = half the wall,
 ///   sqrt((R + h)^2 - s^2 / 3) >= R + touch_kept_between h
 /// from it, because the square of the distance from a convex set grows no faster than that from a point.

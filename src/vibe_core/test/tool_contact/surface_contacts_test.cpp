@@ -183,10 +183,11 @@ TEST(SurfaceContacts, PointsOfAStretchedWallComeAndGoWithoutAJump) {
   EXPECT_GT(largestJump(8e-3, 1, ignored), 2 * kJump) << "what this guards against is seen";
 }
 
-/// Shapes with which a wall has contacts in the inner corner between two shapes that share an end.
+/// Shapes with which a wall has contacts where two shapes that share an end meet at an angle.
 /// @param side  1, -1: towards one of them by so much that its foot on the other is in the first; 0: it touches both
-std::set<int> shapesInCorner(const ToolModel& tool, const std::vector<Isometry3d>& poses, int one, int other,
-                             const Vector3d& joint, double side) {
+/// @param outside  of the bend; otherwise in its inner corner
+std::set<int> shapesAtBend(const ToolModel& tool, const std::vector<Isometry3d>& poses, int one, int other,
+                           const Vector3d& joint, double side, bool outside = false) {
   SweptTool at(tool);
   at.place(poses, poses);
   const auto away = [&](int shape) {
@@ -194,11 +195,13 @@ std::set<int> shapesInCorner(const ToolModel& tool, const std::vector<Isometry3d
     return ((a - joint).norm() > (b - joint).norm() ? a - joint : b - joint).normalized().eval();
   };
   const Vector3d a = away(one), b = away(other), inner = (a + b).normalized(), along = (b - a).normalized();
-  const double from_joint = (at.radius(one) + kThickness / 2) / inner.cross(a).norm();
+  const double touching = at.radius(one) + kThickness / 2,
+               from_joint = outside ? -touching : touching / inner.cross(a).norm();
   const double aside = side * (kThickness / 2 * inner.dot(a) / inner.cross(a).norm() + 50e-6);
   const Vector3d p = joint + from_joint * inner + aside * along, across = 6e-3 * a.cross(b).normalized();
   SurfaceMesh mesh;
-  mesh.vertices = {p, p + across + 3e-3 * inner, p - across + 3e-3 * inner};
+  const Vector3d away_from_tool = (outside ? -3e-3 : 3e-3) * inner;
+  mesh.vertices = {p, p + across + away_from_tool, p - across + away_from_tool};
   mesh.triangles = {{0, 1, 2}};
   const Points wall = pointsOf(mesh);
   SurfaceContacts contacts(tool, mesh, std::vector<double>(3, kThickness), std::vector<char>(3, 0));
@@ -234,7 +237,7 @@ TEST(SurfaceContacts, InACornerBetweenShapesTheWallRestsAgainstBoth) {
     tool.forwardKinematics(inputs, poses);
     forCorners(tool, poses, [&](int one, int other, const Vector3d& joint) {
       for (const double side : {-1.0, 0.0, 1.0}) {
-        const auto shapes = [&] { return shapesInCorner(tool, poses, one, other, joint, side); };
+        const auto shapes = [&] { return shapesAtBend(tool, poses, one, other, joint, side); };
         EXPECT_EQ(shapes().count(one), 1u) << "bent by " << bend << ", on side " << side;
         EXPECT_EQ(shapes().count(other), 1u);
         if (side == 0) continue;
@@ -248,6 +251,26 @@ TEST(SurfaceContacts, InACornerBetweenShapesTheWallRestsAgainstBoth) {
   }
   EXPECT_GT(corners, 20);
   EXPECT_EQ(one_only, corners) << "what this guards against is seen";
+}
+
+// Two would share the load like two springs, and one of them would come and go with its share.
+TEST(SurfaceContacts, OnTheOutsideOfABendOneShapeHasTheContact) {
+  const ToolModel tool = ToolModel::fromUrdf(scopeText(), "scope");
+  int bends = 0;
+  for (const double bend : {0.5, 1.0, 2.5}) {
+    std::array<double, kJointCount> inputs{};
+    inputs[TipUpDown] = bend;
+    std::vector<Isometry3d> poses;
+    tool.forwardKinematics(inputs, poses);
+    forCorners(tool, poses, [&](int one, int other, const Vector3d& joint) {
+      for (const double side : {-2.0, -1.0, 0.0, 1.0, 2.0}) {
+        const std::set<int> shapes = shapesAtBend(tool, poses, one, other, joint, side, true);
+        EXPECT_EQ(shapes.count(one) + shapes.count(other), 1u) << "bent by " << bend << ", on side " << side;
+        ++bends;
+      }
+    });
+  }
+  EXPECT_GT(bends, 20);
 }
 
 TEST(SurfaceContacts, ANormalKeepsItsSideHoweverFastTheToolIs) {
