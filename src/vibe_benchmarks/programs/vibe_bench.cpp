@@ -23,7 +23,7 @@ constexpr int kOtherBranch = 1;  // exit status if a case has buckled away from 
 
 struct Options {
   std::vector<std::string> cases;
-  std::string csv, profile;
+  std::string csv, profile, values;
   bool quick = false, list = false, methods_only = false, pulling_only = false;
 };
 
@@ -34,6 +34,8 @@ void addOptions(OptionList& line, Options& o) {
   line.option("--profile", o.profile, "with --pulling: write the mid-line of each way there (CSV)").typeName("FILE");
   line.flag("--quick", o.quick, "fewer repeats and sizes: about 50 seconds");
   line.option("--csv", o.csv, "write the rows there (- for standard output)").typeName("FILE");
+  line.option("--values", o.values, "write every sample of the cases at every level or time there (CSV)")
+      .typeName("FILE");
   line.flag("--list", o.list, "print the names of the shipped cases and end");
 }
 
@@ -64,15 +66,17 @@ int run(const Options& options) {
     return 0;
   }
   std::vector<ResultRow> rows;
+  std::vector<CaseValue> values;
   if (options.cases.empty()) rows = runMethods(options.quick, std::cerr);
   for (const std::string& file : files) {
     const FemCase bench_case = readCase(file);
     if (options.quick && options.cases.empty() && bench_case.slow) continue;
-    const auto more = runCase(bench_case, std::cerr);
+    const auto more = runCase(bench_case, std::cerr, values);
     rows.insert(rows.end(), more.begin(), more.end());
   }
   printTable(rows, std::cerr);
   save(options.csv, [&](std::ostream& out) { writeCsv(rows, out); });
+  save(options.values, [&](std::ostream& out) { writeValues(values, out); });
   const bool other = std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.branch == Branch::Other; });
   return other ? kOtherBranch : 0;
 }

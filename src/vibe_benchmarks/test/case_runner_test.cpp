@@ -12,7 +12,8 @@ namespace {
 std::vector<ResultRow> run(const std::string& text, std::string* log = nullptr) {
   const CaseFile file(text);
   std::ostringstream out;
-  const auto rows = runCase(readCase(file.path()), out);
+  std::vector<CaseValue> values;
+  const auto rows = runCase(readCase(file.path()), out, values);
   if (log != nullptr) *log = out.str();
   return rows;
 }

@@ -132,7 +132,6 @@ NumberTable readTable(const std::string& file) {
 
 namespace {
 
-constexpr int kFewest = 5;  // nodes of a ring
 
 using Corner = std::array<int, 3>;
 
@@ -183,73 +182,6 @@ void nameFaces(const std::array<int, 3>& cells, BenchMesh& mesh) {
   }
 }
 
-/// eta (from one pole to the other) at equal steps of the arc length of the ellipse; the total length comes last.
-std::vector<double> equalSteps(double radius, double half_length, int rings) {
-  constexpr int kFine = 20000;
-  const double pi = std::acos(-1.0);
-  std::vector<double> length(kFine + 1, 0.0);
-  for (int i = 1; i <= kFine; ++i) {
-    const double eta = pi * (i - 0.5) / kFine;
-    length[i] = length[i - 1] + std::hypot(radius * std::cos(eta), half_length * std::sin(eta)) * pi / kFine;
-  }
-  std::vector<double> eta;
-  for (int r = 0, i = 0; r < rings; ++r) {
-    const double wanted = length[kFine] * (r + 1) / (rings + 1);
-    while (length[i + 1] < wanted) ++i;
-    eta.push_back(pi * (i + (wanted - length[i]) / (length[i + 1] - length[i])) / kFine);
-  }
-  eta.push_back(length[kFine]);
-  return eta;
-}
-
-/// Number of nodes of each ring, proportional to its circumference, that add up to `nodes`.
-std::vector<int> ringCounts(const std::vector<double>& circumference, int nodes) {
-  const double total = std::accumulate(circumference.begin(), circumference.end(), 0.0);
-  std::vector<int> count;
-  for (const double c : circumference)
-    count.push_back(std::max(kFewest, static_cast<int>(std::lround(c / total * nodes))));
-  int missing = nodes - std::accumulate(count.begin(), count.end(), 0);
-  // the longest rings are the least sensitive to one node more or less
-  std::vector<int> order(count.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return circumference[a] > circumference[b]; });
-  for (std::size_t k = 0; missing != 0; k = (k + 1) % order.size()) {
-    if (missing < 0 && count[order[k]] <= kFewest) continue;
-    count[order[k]] += missing > 0 ? 1 : -1;
-    missing += missing > 0 ? -1 : 1;
-  }
-  return count;
-}
-
-/// Triangles between two rings of consecutive nodes; each step takes the shorter of the two possible sides.
-void stitch(int first, int first_count, int second, int second_count, BenchMesh& mesh) {
-  const auto a = [&](int i) { return first + i % first_count; };
-  const auto b = [&](int i) { return second + i % second_count; };
-  int start = 0;  // the node of the second ring nearest to the first node of the first ring
-  for (int j = 1; j < second_count; ++j) {
-    if ((mesh.nodes[b(j)] - mesh.nodes[a(0)]).norm() < (mesh.nodes[b(start)] - mesh.nodes[a(0)]).norm()) start = j;
-  }
-  for (int i = 0, j = 0; i < first_count || j < second_count;) {
-    const double along = (mesh.nodes[a(i + 1)] - mesh.nodes[b(start + j)]).norm();
-    const double across = (mesh.nodes[a(i)] - mesh.nodes[b(start + j + 1)]).norm();
-    if (j == second_count || (i < first_count && along < across)) {
-      mesh.triangles.push_back({a(i), b(start + j), a(i + 1)});
-      ++i;
-    } else {
-      mesh.triangles.push_back({a(i), b(start + j), b(start + j + 1)});
-      ++j;
-    }
-  }
-}
-
-void addRing(double radius, double z, int count, bool shifted, BenchMesh& mesh) {
-  const double pi = std::acos(-1.0);
-  for (int i = 0; i < count; ++i) {
-    const double angle = 2 * pi * (i + (shifted ? 0.5 : 0.0)) / count;
-    mesh.nodes.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
-  }
-}
-
 }  // namespace
 
 BenchMesh makeBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& size, const std::array<int, 3>& cells,
@@ -282,43 +214,6 @@ BenchMesh makeBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& size, co
     }
   }
   nameFaces(cells, mesh);
-  return mesh;
-}
-
-BenchMesh makeEllipsoid(double radius, double half_length, int nodes) {
-  if (nodes < 14) throw Error("mesh.ellipsoid.nodes: " + std::to_string(nodes) + " is too few; give at least 14.");
-  if (!(radius > 0) || !(half_length > 0))
-    throw Error("mesh.ellipsoid: a semi-axis is not positive; give both in metres.");
-  const double pi = std::acos(-1.0);
-  // edge length of equilateral triangles on the surface: area / nodes = edge^2 sqrt(3)/2
-  double area = 0;
-  for (int i = 0; i < 2000; ++i) {
-    const double eta = pi * (i + 0.5) / 2000;
-    area +=
-        2 * pi * radius * std::sin(eta) * std::hypot(radius * std::cos(eta), half_length * std::sin(eta)) * pi / 2000;
-  }
-  const double edge = std::sqrt(area / nodes / std::sqrt(0.75));
-  const double length = equalSteps(radius, half_length, 1).back();
-  const int wanted_rings = static_cast<int>(std::lround(length / (edge * std::sqrt(0.75)))) - 1;
-  const int rings = std::clamp(wanted_rings, 2, (nodes - 2) / kFewest);
-  const auto eta = equalSteps(radius, half_length, rings);
-  std::vector<double> circumference;
-  for (int r = 0; r < rings; ++r) circumference.push_back(2 * pi * radius * std::sin(eta[r]));
-  const auto count = ringCounts(circumference, nodes - 2);
-
-  BenchMesh mesh;
-  mesh.nodes.emplace_back(0, 0, half_length);
-  std::vector<int> first;
-  for (int r = 0; r < rings; ++r) {
-    first.push_back(static_cast<int>(mesh.nodes.size()));
-    addRing(radius * std::sin(eta[r]), half_length * std::cos(eta[r]), count[r], r % 2 == 1, mesh);
-  }
-  mesh.nodes.emplace_back(0, 0, -half_length);
-  const int last = static_cast<int>(mesh.nodes.size()) - 1;
-  for (int i = 0; i < count[0]; ++i) mesh.triangles.push_back({0, first[0] + i, first[0] + (i + 1) % count[0]});
-  for (int r = 0; r + 1 < rings; ++r) stitch(first[r], count[r], first[r + 1], count[r + 1], mesh);
-  const int end = first[rings - 1], end_count = count[rings - 1];
-  for (int i = 0; i < end_count; ++i) mesh.triangles.push_back({end + i, last, end + (i + 1) % end_count});
   return mesh;
 }
 

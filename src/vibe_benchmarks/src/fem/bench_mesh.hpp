@@ -51,6 +51,16 @@ BenchMesh makeBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& size, co
 /// @throws Error for fewer than 14 nodes or semi-axes that are not positive
 BenchMesh makeEllipsoid(double radius, double half_length, int nodes);
 
+/// The same with triangles whose sides are `pole_edge` long at the poles, grow by a quarter of the distance from the
+/// nearer pole, and are nowhere longer than `edge`.
+/// @throws Error for lengths that are not positive, or an `edge` shorter than `pole_edge`
+BenchMesh makeGradedEllipsoid(double radius, double half_length, double edge, double pole_edge);
+
+/// A solid cylinder about z from z = 0: rings of 6, 12, 18, ... nodes in equal layers, three tetrahedra per prism. Sets:
+/// z_min, z_max.
+/// @throws Error for lengths or numbers that are not positive
+BenchMesh makeCylinder(double radius, double height, int rings, int layers);
+
 /// Divides every triangle into four at the midpoints of its sides. A new node joins the sets that contain both ends of
 /// its side.
 /// @param project  semi-axes of an ellipsoid about the origin onto which the new nodes are projected; zero: no

@@ -124,16 +124,17 @@ ElasticBody CaseModel::body(double level) const {
   if (!case_.forces.empty()) body.load.assign(mesh_.nodes.size(), Eigen::Vector3d::Zero());
   for (const AttachmentForce& force : case_.forces) {
     const NodeMean& mean = spot(force.spot);
-    for (std::size_t i = 0; i < mean.node.size(); ++i) body.load[mean.node[i]] += level * mean.weight[i] * force.force;
+    for (std::size_t i = 0; i < mean.node.size(); ++i) body.load[mean.node[i]] += force.ramp.at(level) * mean.weight[i] * force.force;
   }
   return body;
 }
 
 Eigen::Vector3d CaseModel::moved(const SetMotion& motion, const Eigen::Vector3d& rest, double level) const {
+  const double part = motion.ramp.at(level);
   Eigen::Vector3d to = rest;
   if (motion.angle != 0)
-    to = motion.centre + Eigen::AngleAxisd(level * motion.angle, motion.axis) * (rest - motion.centre);
-  return to + level * motion.translation;
+    to = motion.centre + Eigen::AngleAxisd(part * motion.angle, motion.axis) * (rest - motion.centre);
+  return to + part * motion.translation;
 }
 
 std::vector<std::pair<int, Eigen::Vector3d>> CaseModel::prescribed(double level) const {
@@ -158,15 +159,16 @@ BodyLoads CaseModel::loads(double level) const {
         rest += constraint.coefficient.back().dot(mesh_.nodes[mean.node[i]]);
       }
     }
-    constraint.target = rest + level * (case_.cinch->distance - rest);
+    constraint.target = rest + case_.cinch->ramp.at(level) * (case_.cinch->distance - rest);
     loads.constraints.push_back(constraint);
   }
   addPullConstraints(level, loads);
   addMotionConstraints(level, loads);
   if (case_.gas) {
     loads.gas.control = case_.gas->by_volume ? GasLoad::Control::Volume : GasLoad::Control::Pressure;
-    loads.gas.pressure = level * case_.gas->pressure;
-    loads.gas.target_volume = restVolume() * (1 + level * (case_.gas->volume_ratio - 1));
+    const double part = case_.gas->ramp.at(level);
+    loads.gas.pressure = part * case_.gas->pressure;
+    loads.gas.target_volume = restVolume() * (1 + part * (case_.gas->volume_ratio - 1));
     loads.gas.volume = restVolume();
   }
   return loads;
@@ -178,7 +180,7 @@ void CaseModel::addPullConstraints(double level, BodyLoads& loads) const {
     for (int axis = 0; axis < 3; ++axis) {
       LinearConstraint constraint;
       constraint.node = mean.node;
-      constraint.target = level * pull.displacement[axis];
+      constraint.target = pull.ramp.at(level) * pull.displacement[axis];
       for (std::size_t i = 0; i < mean.node.size(); ++i) {
         constraint.coefficient.push_back(mean.weight[i] * Eigen::Vector3d::Unit(axis));
         constraint.target += mean.weight[i] * mesh_.nodes[mean.node[i]][axis];

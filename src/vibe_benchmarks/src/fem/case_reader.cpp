@@ -76,14 +76,33 @@ void readBox(const CaseReader& reader, const YamlField& field, BenchMesh& mesh) 
 }
 
 void readEllipsoid(const CaseReader& reader, const YamlField& field, BenchMesh& mesh) {
-  double radius = 0, half_length = 0;
+  double radius = 0, half_length = 0, edge = 0, pole_edge = 0;
   int nodes = 0;
   reader.readMap(
-      field, {"radius", "half_length", "nodes"},
+      field, {"radius", "half_length"},
       {{"radius", [&](const YamlField& f) { radius = reader.number(f, "m", 1e-9, 1e9); }},
        {"half_length", [&](const YamlField& f) { half_length = reader.number(f, "m", 1e-9, 1e9); }},
-       {"nodes", [&](const YamlField& f) { nodes = static_cast<int>(reader.source().integer(f, 14, 1000000)); }}});
-  mesh = makeEllipsoid(radius, half_length, nodes);
+       {"nodes", [&](const YamlField& f) { nodes = static_cast<int>(reader.source().integer(f, 14, 1000000)); }},
+       {"edge", [&](const YamlField& f) { edge = reader.number(f, "m", 1e-9, 1e9); }},
+       {"pole_edge", [&](const YamlField& f) { pole_edge = reader.number(f, "m", 1e-9, 1e9); }}});
+  if ((nodes > 0) == (edge > 0 && pole_edge > 0))
+    reader.source().fail(field, "needs either 'nodes' or both 'edge' and 'pole_edge'; give those");
+  mesh = nodes > 0 ? makeEllipsoid(radius, half_length, nodes)
+                   : makeGradedEllipsoid(radius, half_length, edge, pole_edge);
+}
+
+void readCylinder(const CaseReader& reader, const YamlField& field, BenchMesh& mesh) {
+  double radius = 0, height = 0;
+  int rings = 0, layers = 0;
+  const auto count = [&reader](int& target) {
+    return [&reader, &target](const YamlField& f) { target = static_cast<int>(reader.source().integer(f, 1, 200)); };
+  };
+  reader.readMap(field, {"radius", "height", "rings", "layers"},
+                 {{"radius", [&](const YamlField& f) { radius = reader.number(f, "m", 1e-9, 1e9); }},
+                  {"height", [&](const YamlField& f) { height = reader.number(f, "m", 1e-9, 1e9); }},
+                  {"rings", count(rings)},
+                  {"layers", count(layers)}});
+  mesh = makeCylinder(radius, height, rings, layers);
 }
 
 /// The nodes of a set given by a box in space, or the node nearest to a point.
@@ -117,6 +136,7 @@ void readMesh(const CaseReader& reader, const YamlField& field, BenchMesh& mesh)
   reader.readMap(field, {},
                  {{"box", [&](const YamlField& f) { readBox(reader, f, mesh); }},
                   {"ellipsoid", [&](const YamlField& f) { readEllipsoid(reader, f, mesh); }},
+                  {"cylinder", [&](const YamlField& f) { readCylinder(reader, f, mesh); }},
                   {"nodes", [&](const YamlField& f) { mesh.nodes = readNodes(reader.path(f)); }},
                   {"tets", [&](const YamlField& f) { tets = reader.path(f); }},
                   {"tris", [&](const YamlField& f) { tris = reader.path(f); }},
@@ -125,7 +145,7 @@ void readMesh(const CaseReader& reader, const YamlField& field, BenchMesh& mesh)
                      for (const YamlField& entry : reader.source().map(f)) named.push_back(entry);
                    }}});
   const int count = static_cast<int>(mesh.nodes.size());
-  if (count == 0) reader.source().fail(field, "has no nodes; give 'nodes' with 'tets' or 'tris', 'box' or 'ellipsoid'");
+  if (count == 0) reader.source().fail(field, "has no nodes; give 'nodes' with 'tets' or 'tris', 'box', 'cylinder' or 'ellipsoid'");
   if (!tets.empty()) {
     const auto numbers = readElements(tets, 4, count);
     for (std::size_t i = 0; i < numbers.size(); i += 4)

@@ -53,7 +53,7 @@ void printSample(const Sample& sample, std::size_t level, const std::string& at,
   log << line;
 }
 
-std::vector<ResultRow> runModes(const FemCase& bench_case, std::ostream& log) {
+std::vector<ResultRow> runModes(const FemCase& bench_case, std::ostream& log, std::vector<CaseValue>& values) {
   const CaseModel model(bench_case, Hold::AsFixed);
   const double start = threadMilliseconds();
   const Modes modes = slowestModes(model.body(0), bench_case.modes->count);
@@ -65,6 +65,7 @@ std::vector<ResultRow> runModes(const FemCase& bench_case, std::ostream& log) {
                   "' asks for a mode beyond modes.count; raise the count.");
     const double value = modes.frequency[static_cast<std::size_t>(sample.mode - 1)];
     printSample(sample, 0, "", value, log);
+    values.push_back({bench_case.name, sample.name, double(sample.mode), value, time});
     rows.push_back(caseRow(bench_case, sample.name, model.nodeCount()));
     rows.back().reference_error = referenceError(sample, 0, value);
     setTimes({time}, rows.back());
@@ -72,11 +73,11 @@ std::vector<ResultRow> runModes(const FemCase& bench_case, std::ostream& log) {
   return rows;
 }
 
-std::vector<ResultRow> runCase(const FemCase& bench_case, std::ostream& log) {
+std::vector<ResultRow> runCase(const FemCase& bench_case, std::ostream& log, std::vector<CaseValue>& values) {
   log << bench_case.name << " (" << bench_case.file << ")\n";
-  if (bench_case.statics) return runStatic(bench_case, log);
-  if (bench_case.transient) return runTransient(bench_case, log);
-  return runModes(bench_case, log);
+  if (bench_case.statics) return runStatic(bench_case, log, values);
+  if (bench_case.transient) return runTransient(bench_case, log, values);
+  return runModes(bench_case, log, values);
 }
 
 namespace {
@@ -99,7 +100,7 @@ double largest(const std::vector<double>& values) {
 
 }  // namespace
 
-std::vector<ResultRow> runStatic(const FemCase& bench_case, std::ostream& log) {
+std::vector<ResultRow> runStatic(const FemCase& bench_case, std::ostream& log, std::vector<CaseValue>& out) {
   const CaseModel model(bench_case, Hold::AsFixed);
   const CaseProbe probe(model);
   StaticPath path(model, bench_case.statics->tolerance);
@@ -110,15 +111,19 @@ std::vector<ResultRow> runStatic(const FemCase& bench_case, std::ostream& log) {
   std::vector<double> times;
   for (const double level : bench_case.statics->levels) {
     const double start = threadMilliseconds();
-    if (!path.advanceTo(level, bench_case.statics->substeps)) log << "  NOT CONVERGED at " << levelName(level) << "\n";
+    const bool converged = path.advanceTo(level, bench_case.statics->substeps);
+    if (!converged) log << "  NOT CONVERGED at " << levelName(level) << "\n";
     times.push_back(threadMilliseconds() - start);
     if (const auto lost = symmetry.lost(path.motion())) {
       branch = Branch::Other;
       log << "  WARNING: ANOTHER BRANCH at " << levelName(level) << ": the equilibrium is no mirror image of itself in "
           << kPlanes[*lost] << ", as it is for small loads; it has buckled, and the reference may not have\n";
     }
-    for (std::size_t s = 0; s < count; ++s)
+    for (std::size_t s = 0; s < count; ++s) {
       values[s].push_back(probe.measure(s, path.motion(), path.body(), path.loads(), level));
+      const double value = converged ? values[s].back() : kNotApplicable;
+      out.push_back({bench_case.name, bench_case.samples[s].name, level, value, times.back()});
+    }
   }
   std::vector<ResultRow> rows;
   for (std::size_t s = 0; s < count; ++s) {

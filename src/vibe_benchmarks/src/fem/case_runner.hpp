@@ -39,13 +39,13 @@ class CaseProbe {
 
 /// Runs a case and returns one row per sample: `setting` is the sample, `reference_error` the largest relative error
 /// over its levels. Prints the result of each level, and a warning where an equilibrium has lost a symmetry of the
-/// case.
-std::vector<ResultRow> runCase(const FemCase& bench_case, std::ostream& log);
+/// case. Appends every value to `values`.
+std::vector<ResultRow> runCase(const FemCase& bench_case, std::ostream& log, std::vector<CaseValue>& values);
 
 /// The parts of runCase.
-std::vector<ResultRow> runStatic(const FemCase& bench_case, std::ostream& log);
-std::vector<ResultRow> runTransient(const FemCase& bench_case, std::ostream& log);
-std::vector<ResultRow> runModes(const FemCase& bench_case, std::ostream& log);
+std::vector<ResultRow> runStatic(const FemCase& bench_case, std::ostream& log, std::vector<CaseValue>& values);
+std::vector<ResultRow> runTransient(const FemCase& bench_case, std::ostream& log, std::vector<CaseValue>& values);
+std::vector<ResultRow> runModes(const FemCase& bench_case, std::ostream& log, std::vector<CaseValue>& values);
 
 /// A row of this case without results.
 ResultRow caseRow(const FemCase& bench_case, const std::string& setting, int particles);

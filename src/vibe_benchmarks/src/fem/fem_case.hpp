@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <map>
@@ -20,7 +21,13 @@ struct SpotRule {
   Eigen::Vector3d along = Eigen::Vector3d::Zero();   ///< r is measured perpendicular to this direction; zero: in space
 };
 
-/// Motion of a set of nodes: a rotation about an axis, then a translation, both scaled by the level.
+/// Factor of a load at a level: the level itself, or 0 up to `from` and 1 from `to` on, linear between.
+struct Ramp {
+  double from = 0, to = 0;  ///< equal: the level itself
+  double at(double level) const { return from == to ? level : std::clamp((level - from) / (to - from), 0.0, 1.0); }
+};
+
+/// Motion of a set of nodes: a rotation about an axis, then a translation, both scaled by the ramp.
 struct SetMotion {
   std::string set;
   std::array<bool, 3> held{{true, true, true}};           ///< which of x, y, z are prescribed
@@ -28,31 +35,36 @@ struct SetMotion {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();       ///< point on the axis [m]
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();         ///< unit; zero: no rotation
   double angle = 0;                                       ///< [rad]
+  Ramp ramp;
 };
 
-/// Moves the mean of a spot by displacement times the level.
+/// Moves the mean of a spot by displacement times the ramp.
 struct AttachmentPull {
   std::string spot;
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< [m]
+  Ramp ramp;
 };
 
 /// A dead load distributed over a spot by its weights.
 struct AttachmentForce {
   std::string spot;
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< times the level [N]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< times the ramp [N]
+  Ramp ramp;
 };
 
 /// An inextensible thread along a direction between two spots: (mean of first - mean of second) . direction.
 struct Cinch {
   std::string first, second;
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
-  double distance = 0;  ///< at level 1; the distance at rest is that of level 0 [m]
+  double distance = 0;  ///< where the ramp is 1; where it is 0, the distance is that at rest [m]
+  Ramp ramp;
 };
 
 struct GasRule {
   bool by_volume = false;
-  double pressure = 0;      ///< times the level [Pa]
-  double volume_ratio = 1;  ///< ratio of the volume at level 1 to that at rest
+  double pressure = 0;      ///< times the ramp [Pa]
+  double volume_ratio = 1;  ///< ratio of the volume where the ramp is 1 to that at rest
+  Ramp ramp;
 };
 
 enum class SampleKind {

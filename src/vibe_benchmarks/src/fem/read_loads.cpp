@@ -6,6 +6,15 @@ namespace vibe::benchmarks {
 
 namespace {
 
+/// The key 'ramp' of a load.
+CaseReader::Readers::value_type ramp(const CaseReader& reader, Ramp& out) {
+  return {"ramp", [&](const YamlField& f) {
+            const auto levels = reader.source().quantities(f, 2, "1", -kHuge, kHuge);
+            out = {levels[0], levels[1]};
+            if (!(out.from < out.to)) reader.source().fail(f, "does not rise; give two levels, for example [0, 1]");
+          }};
+}
+
 void readMotion(const CaseReader& reader, const YamlField& field, FemCase& out) {
   SetMotion motion;
   const YamlSource& source = reader.source();
@@ -21,7 +30,8 @@ void readMotion(const CaseReader& reader, const YamlField& field, FemCase& out) 
                   {"translation", [&](const YamlField& f) { motion.translation = reader.vector(f, "m"); }},
                   {"centre", [&](const YamlField& f) { motion.centre = reader.vector(f, "m"); }},
                   {"axis", [&](const YamlField& f) { motion.axis = reader.direction(f); }},
-                  {"angle", [&](const YamlField& f) { motion.angle = reader.number(f, "rad", -100, 100); }}});
+                  {"angle", [&](const YamlField& f) { motion.angle = reader.number(f, "rad", -100, 100); }},
+                  ramp(reader, motion.ramp)});
   if ((motion.angle != 0) != (motion.axis.norm() > 0))
     source.fail(field, "has one of 'axis' and 'angle'; give both or none");
   out.motions.push_back(motion);
@@ -31,7 +41,8 @@ void readPull(const CaseReader& reader, const YamlField& field, FemCase& out) {
   AttachmentPull pull;
   reader.readMap(field, {"spot", "displacement"},
                  {{"spot", [&](const YamlField& f) { pull.spot = reader.source().text(f); }},
-                  {"displacement", [&](const YamlField& f) { pull.displacement = reader.vector(f, "m"); }}});
+                  {"displacement", [&](const YamlField& f) { pull.displacement = reader.vector(f, "m"); }},
+                  ramp(reader, pull.ramp)});
   out.pulls.push_back(pull);
 }
 
@@ -39,7 +50,8 @@ void readForce(const CaseReader& reader, const YamlField& field, FemCase& out) {
   AttachmentForce force;
   reader.readMap(field, {"spot", "force"},
                  {{"spot", [&](const YamlField& f) { force.spot = reader.source().text(f); }},
-                  {"force", [&](const YamlField& f) { force.force = reader.vector(f, "N"); }}});
+                  {"force", [&](const YamlField& f) { force.force = reader.vector(f, "N"); }},
+                  ramp(reader, force.ramp)});
   out.forces.push_back(force);
 }
 
@@ -49,7 +61,8 @@ void readCinch(const CaseReader& reader, const YamlField& field, FemCase& out) {
                  {{"first", [&](const YamlField& f) { cinch.first = reader.source().text(f); }},
                   {"second", [&](const YamlField& f) { cinch.second = reader.source().text(f); }},
                   {"direction", [&](const YamlField& f) { cinch.direction = reader.direction(f); }},
-                  {"distance", [&](const YamlField& f) { cinch.distance = reader.number(f, "m", 0, kHuge); }}});
+                  {"distance", [&](const YamlField& f) { cinch.distance = reader.number(f, "m", 0, kHuge); }},
+                  ramp(reader, cinch.ramp)});
   out.cinch = cinch;
 }
 
@@ -62,10 +75,12 @@ void readGas(const CaseReader& reader, const YamlField& field, FemCase& out) {
                      gas.pressure = reader.number(f, "Pa", -kHuge, kHuge);
                      by_pressure = true;
                    }},
-                  {"volume_ratio", [&](const YamlField& f) {
+                  {"volume_ratio",
+                   [&](const YamlField& f) {
                      gas.volume_ratio = reader.number(f, "1", 0.01, 100);
                      gas.by_volume = true;
-                   }}});
+                   }},
+                  ramp(reader, gas.ramp)});
   if (by_pressure == gas.by_volume) reader.source().fail(field, "needs one of 'pressure' and 'volume_ratio'; give one");
   out.gas = gas;
 }

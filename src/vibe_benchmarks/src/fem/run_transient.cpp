@@ -112,8 +112,6 @@ Record update(const FemCase& bench_case, const CaseModel& model) {
       if (!wait) record.values[s].push_back(probe.measure(s, motion.view(), stepper.body(), loads, end_level));
     }
   }
-  // a session computes the first factor while it loads
-  if (record.times.size() > 1) record.times.erase(record.times.begin());
   if (released) record.energy_drift = energyOf(stepper.body(), motion.view()) / energy - 1;
   Fnv1a hash;
   for (const auto* part : {&motion.x, &motion.v})
@@ -131,7 +129,7 @@ double reduce(const Sample& sample, const std::vector<double>& values, double st
 
 }  // namespace
 
-std::vector<ResultRow> runTransient(const FemCase& bench_case, std::ostream& log) {
+std::vector<ResultRow> runTransient(const FemCase& bench_case, std::ostream& log, std::vector<CaseValue>& values) {
   const CaseModel model(bench_case, Hold::AsConditions);
   const Record record = update(bench_case, model);
   if (record.unfinished > 0) log << "  NOT FINITE in " << record.unfinished << " steps\n";
@@ -140,8 +138,14 @@ std::vector<ResultRow> runTransient(const FemCase& bench_case, std::ostream& log
     const Sample& sample = bench_case.samples[s];
     const double value = reduce(sample, record.values[s], bench_case.transient->step);
     printSample(sample, 0, "", value, log);
+    const std::size_t steps = record.times.size(), after = steps + 1 - record.values[s].size();
+    for (std::size_t i = 1; i <= steps; ++i)
+      if (i >= after)
+        values.push_back({bench_case.name, sample.name, double(i) * bench_case.transient->step,
+                          record.values[s][i - after], record.times[i - 1]});
     rows.push_back(caseRow(bench_case, sample.name, model.nodeCount()));
-    setTimes(record.times, rows.back());
+    // a session computes the first factor while it loads
+    setTimes({record.times.begin() + (record.times.size() > 1 ? 1 : 0), record.times.end()}, rows.back());
     rows.back().reference_error = referenceError(sample, 0, value);
     rows.back().energy_drift = record.energy_drift;
     rows.back().state_hash = record.state_hash;

@@ -72,6 +72,13 @@ void writeCsv(const std::vector<ResultRow>& rows, std::ostream& out) {
   }
 }
 
+void writeValues(const std::vector<CaseValue>& values, std::ostream& out) {
+  out << "case,sample,at,value,cpu_ms\n";
+  for (const CaseValue& v : values)
+    out << field(v.bench_case) << ',' << field(v.sample) << ',' << show("%.9g", v.at) << ',' << show("%.9g", v.value)
+        << ',' << show("%.4f", v.cpu_ms) << '\n';
+}
+
 void printTable(const std::vector<ResultRow>& rows, std::ostream& out) {
   char line[320];
   std::snprintf(line, sizeof line, "%-26s %-16s %-24s %7s %8s %8s %8s | %9s %9s %9s %9s %9s  %-6s %s\n", "case",

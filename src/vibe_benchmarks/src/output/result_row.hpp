@@ -29,11 +29,21 @@ struct ResultRow {
   Branch branch = Branch::Unknown;          ///< of the equilibria of a case
 };
 
+/// The value of one sample of a case at one level or time.
+struct CaseValue {
+  std::string bench_case, sample;
+  double at = 0;                    ///< level of a static case, time of a transient one [s], number of a mode
+  double value = kNotApplicable;    ///< in the unit of the sample; NaN where the solution did not converge
+  double cpu_ms = kNotApplicable;   ///< thread CPU time from the value before to this one [ms]
+};
+
 /// Sets the three times from those of all steps [ms].
 void setTimes(std::vector<double> times, ResultRow& row);
 
 /// Writes "case,method,...,branch" and one line per row; empty where a quantity does not apply.
 void writeCsv(const std::vector<ResultRow>& rows, std::ostream& out);
+/// Writes "case,sample,at,value,cpu_ms" and one line per value; empty where a value does not exist.
+void writeValues(const std::vector<CaseValue>& values, std::ostream& out);
 /// Prints the same as a readable table, with errors in percent.
 void printTable(const std::vector<ResultRow>& rows, std::ostream& out);
 
