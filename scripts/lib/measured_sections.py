@@ -24,6 +24,7 @@ SCENES = {  # variants of the default scene: a text that follows its line, or (l
 ORGANS = ("stomach", "stomach_small", "stomach_large", "stomach_j", "stomach_steer_horn", "stomach_8mmhg",
           "stomach_12mmhg")
 QUICK_CASES = ("case4_sphere", "case5_inflation", "case5_limit", "case6_bite", "case6_bite_refined", "case7_cinch")
+QUICK_EXPERIMENTS = ("shell_stiffness", "rubber_balloon", "rubber_width_held", "silicone_beam", "porcine_filling")
 MEASURES = ("time", "sets", "sets_as_planned", "bites", "bites_full_thickness", "tear_outs", "missed_bites", "slips",
             "bites_per_5_min", "max_force", "max_pressure", "area_reduction", "volume_reduction", "length_reduction",
             "tool_work", "gas_work", "thread_work", "correction_work", "energy_balance")
@@ -54,6 +55,12 @@ def case_parts(root):
         name = os.path.splitext(os.path.basename(case))[0]
         words = ("vibe_bench", "--case", "{root}/src/vibe_benchmarks/cases/" + name + ".yaml")
         yield Part(name, words, 0.1, name in QUICK_CASES)
+
+
+def experiment_parts(root):
+    for file in sorted(glob.glob(os.path.join(root, "src/vibe_benchmarks/measurements/*.yaml"))):
+        name = os.path.splitext(os.path.basename(file))[0]
+        yield Part(name, ("{root}/src/vibe_benchmarks/scripts/experiment.py", name), 0.1, name in QUICK_EXPERIMENTS)
 
 
 def contact_parts():
@@ -153,6 +160,8 @@ def sections(root, meshes=()):
                 ("state", "grip", "site"), (*STATE_ERRORS, "iterations_mean", "force_N"), tuple(guard_parts())),
         Section("fem", "shell and tetrahedra against finite elements", case, ("reference_error", "energy_drift"),
                 tuple(case_parts(root))),
+        Section("measurements", "published experiments that nothing was fitted to", ("experiment", "run", "quantity", "at"),
+                ("predicted",), tuple(experiment_parts(root))),
         Section("motion", "speed and error of settings, cost by number of particles", (*case, "particles"), (),
                 (Part("methods", ("vibe_bench", "--methods"), 8),)),
         Section("pulling", "two bites pulled together by thread and by groups", case, (),
