@@ -104,7 +104,8 @@ def run_scene(scene, log):
     except ImportError as failure:
         raise ValueError(f"{failure}; build the workspace and source devel/setup.bash") from failure
     function, arguments = next(iter(scene.items()))
-    return getattr(experiment_scenes, function)(log=log, **arguments)
+    samples = getattr(experiment_scenes, function)(log=log, **arguments)
+    return {name: Sample(value) if isinstance(value, dict) else value for name, value in samples.items()}
 
 
 def predictions(name, experiment, log):

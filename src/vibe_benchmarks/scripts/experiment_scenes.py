@@ -36,7 +36,8 @@ def rising(model, triangles, rest):
 
 
 def filled_stomach(litres, log, scale=1.0, particles=2000, **tissue):
-    """Strains of regions of the default stomach, alone and without weight, filled to a volume; pressure [mmHg]."""
+    """The default stomach, alone and without weight, filled to volumes [L]: pressure [mmHg] by volume, and at the last
+    volume the strain (along, around) of regions [%]."""
     model = vibe.load(geometry={"particles": particles, "scale": scale}, tissue=tissue,
                       gas={"regulated_pressure": "20 kPa", "flow_limit": "20 L/min"},
                       gravity={"acceleration": [0, 0, 0]}, foundation={"stiffness": 0})
@@ -44,14 +45,16 @@ def filled_stomach(litres, log, scale=1.0, particles=2000, **tissue):
     axis = rising(model, triangles, rest)
     simulation = vibe.Simulation(model)
     log.write(f"  {1e3 * simulation.volume:.3f} L at rest\n")
-    while simulation.volume < 1e-3 * litres:
-        simulation.step(insufflate=True)
-        if simulation.time > 120:
-            raise ValueError(f"the stomach holds {1e3 * simulation.volume:.2f} L after two minutes; fill it less")
-    simulation.run(120, insufflate=False)
+    samples = {"pressure": {}}
+    for volume in litres:
+        while simulation.volume < 1e-3 * volume:
+            simulation.step(insufflate=True)
+            if simulation.time > 600:
+                raise ValueError(f"the stomach holds {1e3 * simulation.volume:.2f} L after ten minutes; fill it less")
+        simulation.run(120, insufflate=False)
+        samples["pressure"][volume] = simulation.pressure / 133.322
     strain = stretches(triangles, rest, numpy.array(simulation.positions), axis) - 1
     region, wall = numpy.array(model.region)[triangles[:, 0]], numpy.array(model.area)[triangles].sum(1)
-    samples = {"pressure": simulation.pressure / 133.322}
     for name, number in REGIONS.items():
         inside = (region == number) & (strain[:, 0] > -1)  # where the axis has no direction, at its ends, there is none
         samples[name] = tuple(100 * numpy.average(strain[inside], axis=0, weights=wall[inside]))
