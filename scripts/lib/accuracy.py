@@ -14,8 +14,9 @@ import signal
 import subprocess
 import sys
 
+import measured_experiments  # noqa: F401: its tables enter themselves in TABLES
 import measured_pages
-import measured_policy  # noqa: F401: its table enters itself in TABLES
+import measured_policy  # noqa: F401: likewise
 import measured_sessions  # noqa: F401: likewise
 import measured_steps  # noqa: F401: likewise
 from measured_sections import SESSION_TEXT, Runner, sections

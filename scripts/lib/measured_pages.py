@@ -4,7 +4,7 @@ scripts/accuracy. A table outside of them is a measurement that somebody typed, 
 
 import re
 
-PAGES = ("README.md", "docs/accuracy.md", "docs/computation.md", "docs/policy.md", "docs/protocols.md",
+PAGES = ("README.md", "docs/accuracy.md", "docs/computation.md", "docs/measurements.md", "docs/policy.md", "docs/protocols.md",
          "docs/tutorials/first_run.md",
          "docs/tutorials/record_and_replay.md")
 STRICT = "docs/accuracy.md"  # where every table is made or in the list

@@ -60,7 +60,7 @@ def case_parts(root):
 def experiment_parts(root):
     for file in sorted(glob.glob(os.path.join(root, "src/vibe_benchmarks/measurements/*.yaml"))):
         name = os.path.splitext(os.path.basename(file))[0]
-        yield Part(name, ("{root}/src/vibe_benchmarks/scripts/experiment.py", name), 0.1, name in QUICK_EXPERIMENTS)
+        yield Part(name, ("src/vibe_benchmarks/scripts/experiment.py", name), 0.1, name in QUICK_EXPERIMENTS)
 
 
 def contact_parts():
@@ -224,7 +224,7 @@ class Runner:
         self.root, self.devel, self.log = root, devel, log
 
     def program(self, name):
-        if name.startswith("scripts/"):
+        if "/" in name:
             return os.path.join(self.root, name)
         package = "vibe_core" if name == "vibe_headless" else "vibe_benchmarks"
         return os.path.join(self.devel, "lib", package, name)
@@ -238,9 +238,11 @@ class Runner:
             words = [re.sub(r"\{(\w+)\}", lambda found: self.file(found.group(1), folder), word) for word in part.words]
             table = os.path.join(folder, "table")
             option = "--measures" if words[0] == "vibe_headless" else "--csv"
+            python = [os.path.join(self.devel, "lib/python3/dist-packages"), os.environ.get("PYTHONPATH")]
+            environment = {**os.environ, "VIBE_DEVEL": self.devel, "PYTHONPATH": os.pathsep.join(filter(None, python))}
             before = resource.getrusage(resource.RUSAGE_CHILDREN)
             done = subprocess.run([self.program(words[0]), *words[1:], option, table], stdout=subprocess.PIPE,
-                                  stderr=self.log, check=True, text=True)
+                                  stderr=self.log, check=True, text=True, env=environment)
             after = resource.getrusage(resource.RUSAGE_CHILDREN)
             with open(table, newline="", encoding="utf-8") as stream:
                 if option == "--csv":

@@ -7,7 +7,7 @@ packagesOf() {
     session) echo vibe_cmake vibe_msgs vibe_core vibe_description vibe_ros_utils vibe_sim vibe_graphics vibe_endoscope vibe_operator vibe_rviz_plugins vibe_sessions vibe_bringup ;;
     devices) echo vibe_firmware vibe_hardware ;;
     vision) echo vibe_vision vibe_vision_evidence ;;
-    measurements) echo vibe_latency vibe_prototype vibe_testing vibe_benchmarks ;;
+    measurements) echo vibe_latency vibe_prototype vibe_testing vibe_benchmarks vibe_python ;;
     python) echo vibe_python ;;
     web) echo vibe_web ;;
     tests) echo vibe_testing vibe_system_tests ;;

@@ -11,7 +11,8 @@ An experiment is a YAML file:
   predict         quantity: {unit, value, reference, at: [..], each: {name: number}}
 
 `value` and `reference` are expressions of the numbers, of `at`, of `each`, and of the samples of the case, which are
-indexed by level: "force[1]". `reference` is a closed form; without it, a measurement or another program is the judge: see
+indexed by level: "force[1]". `reference` is a closed form, or a list of
+results of another program in the order of `at`; without it, a measurement is the judge: see
 ../measurements/measured.csv. Nothing here reads that file.
 """
 
@@ -123,7 +124,9 @@ def predictions(name, experiment, log):
             for at in rule.get("at", [""]):
                 for each, number in rule.get("each", {"": None}).items():
                     known = {**names, **samples, "at": at, "each": number}
-                    value, reference = (show(rule.get(word), known) for word in ("value", "reference"))
+                    truth = rule.get("reference")
+                    value = show(rule["value"], known)
+                    reference = show(truth[rule["at"].index(at)] if isinstance(truth, list) else truth, known)
                     what = " ".join(filter(None, (quantity, each)))
                     yield dict(zip(COLUMNS, (name, label, what, at, rule["unit"], value, reference)))
 

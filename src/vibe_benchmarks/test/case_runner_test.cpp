@@ -58,6 +58,23 @@ TEST(CaseRunner, stretchesABlockAsTheClosedFormSays) {
   EXPECT_LE(rows[0].ms_max, whole.count());
 }
 
+// A load with a ramp rests before it, is full behind it, and every value is kept with its level.
+TEST(CaseRunner, rampsALoadBetweenTwoLevels) {
+  std::string loads = stretchLoads();
+  loads.insert(loads.rfind('}'), ", ramp: [1, 2]");
+  const CaseFile file(blockCase(loads,
+                                "static: {levels: [0.5, 1, 1.5, 2, 3], substeps: 2, tolerance: 1.0e-8 m}\n"
+                                "sample: [{name: force, kind: reaction, set: x_max, direction: [1, 0, 0]}]\n"));
+  std::ostringstream log;
+  std::vector<CaseValue> values;
+  runCase(readCase(file.path()), log, values);
+  ASSERT_EQ(values.size(), 5U);
+  const double expected[] = {0, 0, uniaxialForce(1.25), uniaxialForce(1.5), uniaxialForce(1.5)};
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(values[i].value, expected[i], 1e-3) << i;
+  EXPECT_EQ(values[2].at, 1.5);
+  EXPECT_EQ(values[2].sample, "force");
+}
+
 // A block pressed to half of its length between sliding ends. Free to, it bows to a side long before; held along an
 // edge at both ends, it stays on the branch of the closed form.
 std::vector<ResultRow> pressed(const std::string& held_too, std::string& log) {

@@ -61,6 +61,41 @@ TEST(MeshGenerators, makeClosedEllipsoidsOfExactlySoManyNodes) {
   }
 }
 
+TEST(MeshGenerators, gradeEllipsoidsTowardsTheirPoles) {
+  const BenchMesh mesh = makeGradedEllipsoid(0.05, 0.08, 0.005, 0.0005);
+  std::map<std::array<int, 2>, int> sides;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++sides[{t[k], t[(k + 1) % 3]}];
+  for (const auto& side : sides) {
+    EXPECT_EQ(sides.count({side.first[1], side.first[0]}), 1U);
+    const Eigen::Vector3d &a = mesh.nodes[side.first[0]], &b = mesh.nodes[side.first[1]];
+    const double from_pole = std::hypot(a.x(), a.y());
+    EXPECT_LT((a - b).norm(), std::min(0.0075, 1.6 * (0.0005 + 0.3 * from_pole)));
+  }
+  const double whole = 4.0 / 3 * std::acos(-1.0) * 0.05 * 0.05 * 0.08;
+  EXPECT_NEAR(enclosedVolume(SurfaceMesh{mesh.nodes, mesh.triangles}) / whole, 1, 0.01);
+}
+
+TEST(MeshGenerators, fillACylinderWithPositiveTetrahedraThatMatch) {
+  const BenchMesh mesh = makeCylinder(0.025, 0.03, 3, 4);
+  double volume = 0;
+  std::map<std::array<int, 3>, int> faces;
+  for (const auto& t : mesh.tets) {
+    EXPECT_GT(volumeOf(mesh, t), 0);
+    volume += volumeOf(mesh, t);
+    for (std::size_t skip = 0; skip < 4; ++skip) {
+      std::array<int, 3> face{t[(skip + 1) % 4], t[(skip + 2) % 4], t[(skip + 3) % 4]};
+      std::sort(face.begin(), face.end());
+      ++faces[face];
+    }
+  }
+  const double corners = 18;  // of the outline
+  EXPECT_NEAR(volume, 0.03 * corners / 2 * 0.025 * 0.025 * std::sin(2 * std::acos(-1.0) / corners), 1e-12);
+  const auto outside = std::count_if(faces.begin(), faces.end(), [](const auto& f) { return f.second == 1; });
+  EXPECT_EQ(outside, 2 * 54 + 2 * 18 * 4);  // both ends and the side
+  EXPECT_EQ(mesh.sets.at("z_max").size(), 1U + 6 + 12 + 18);
+}
+
 TEST(MeshGenerators, refiningKeepsSidesAndSets) {
   BenchMesh mesh = makeEllipsoid(0.04, 0.04, 200);
   mesh.sets["pair"] = {mesh.triangles[0][0], mesh.triangles[0][1]};

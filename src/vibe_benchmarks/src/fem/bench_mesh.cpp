@@ -132,7 +132,6 @@ NumberTable readTable(const std::string& file) {
 
 namespace {
 
-
 using Corner = std::array<int, 3>;
 
 // corner paths 000 -> 111 of the six tetrahedra; odd permutations are reversed for positive orientation

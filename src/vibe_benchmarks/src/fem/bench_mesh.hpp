@@ -56,8 +56,8 @@ BenchMesh makeEllipsoid(double radius, double half_length, int nodes);
 /// @throws Error for lengths that are not positive, or an `edge` shorter than `pole_edge`
 BenchMesh makeGradedEllipsoid(double radius, double half_length, double edge, double pole_edge);
 
-/// A solid cylinder about z from z = 0: rings of 6, 12, 18, ... nodes in equal layers, three tetrahedra per prism. Sets:
-/// z_min, z_max.
+/// A solid cylinder about z from z = 0: rings of 6, 12, 18, ... nodes in equal layers, three tetrahedra per prism.
+/// Sets: z_min, z_max.
 /// @throws Error for lengths or numbers that are not positive
 BenchMesh makeCylinder(double radius, double height, int rings, int layers);
 

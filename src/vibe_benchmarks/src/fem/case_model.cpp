@@ -124,7 +124,8 @@ ElasticBody CaseModel::body(double level) const {
   if (!case_.forces.empty()) body.load.assign(mesh_.nodes.size(), Eigen::Vector3d::Zero());
   for (const AttachmentForce& force : case_.forces) {
     const NodeMean& mean = spot(force.spot);
-    for (std::size_t i = 0; i < mean.node.size(); ++i) body.load[mean.node[i]] += force.ramp.at(level) * mean.weight[i] * force.force;
+    for (std::size_t i = 0; i < mean.node.size(); ++i)
+      body.load[mean.node[i]] += force.ramp.at(level) * mean.weight[i] * force.force;
   }
   return body;
 }

@@ -87,8 +87,8 @@ void readEllipsoid(const CaseReader& reader, const YamlField& field, BenchMesh& 
        {"pole_edge", [&](const YamlField& f) { pole_edge = reader.number(f, "m", 1e-9, 1e9); }}});
   if ((nodes > 0) == (edge > 0 && pole_edge > 0))
     reader.source().fail(field, "needs either 'nodes' or both 'edge' and 'pole_edge'; give those");
-  mesh = nodes > 0 ? makeEllipsoid(radius, half_length, nodes)
-                   : makeGradedEllipsoid(radius, half_length, edge, pole_edge);
+  mesh =
+      nodes > 0 ? makeEllipsoid(radius, half_length, nodes) : makeGradedEllipsoid(radius, half_length, edge, pole_edge);
 }
 
 void readCylinder(const CaseReader& reader, const YamlField& field, BenchMesh& mesh) {
@@ -145,7 +145,8 @@ void readMesh(const CaseReader& reader, const YamlField& field, BenchMesh& mesh)
                      for (const YamlField& entry : reader.source().map(f)) named.push_back(entry);
                    }}});
   const int count = static_cast<int>(mesh.nodes.size());
-  if (count == 0) reader.source().fail(field, "has no nodes; give 'nodes' with 'tets' or 'tris', 'box', 'cylinder' or 'ellipsoid'");
+  if (count == 0)
+    reader.source().fail(field, "has no nodes; give 'nodes' with 'tets' or 'tris', 'box', 'cylinder' or 'ellipsoid'");
   if (!tets.empty()) {
     const auto numbers = readElements(tets, 4, count);
     for (std::size_t i = 0; i < numbers.size(); i += 4)

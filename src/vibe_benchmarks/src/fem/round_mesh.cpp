@@ -14,7 +14,7 @@ namespace {
 
 const double kPi = std::acos(-1.0);
 constexpr double kGrading = 0.25;  // growth of the sides of triangles per length away from a pole (ratio)
-constexpr int kFewest = 5;  // nodes of a ring
+constexpr int kFewest = 5;         // nodes of a ring
 
 /// The length of the meridian from one pole, in sides of triangles, at kFine + 1 equal steps of the angle eta.
 /// @param edge  side of the triangles at an arc length from the nearer pole [m]

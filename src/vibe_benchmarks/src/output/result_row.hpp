@@ -32,9 +32,9 @@ struct ResultRow {
 /// The value of one sample of a case at one level or time.
 struct CaseValue {
   std::string bench_case, sample;
-  double at = 0;                    ///< level of a static case, time of a transient one [s], number of a mode
-  double value = kNotApplicable;    ///< in the unit of the sample; NaN where the solution did not converge
-  double cpu_ms = kNotApplicable;   ///< thread CPU time from the value before to this one [ms]
+  double at = 0;                   ///< level of a static case, time of a transient one [s], number of a mode
+  double value = kNotApplicable;   ///< in the unit of the sample; NaN where the solution did not converge
+  double cpu_ms = kNotApplicable;  ///< thread CPU time from the value before to this one [ms]
 };
 
 /// Sets the three times from those of all steps [ms].
