@@ -40,7 +40,8 @@ class Sample(dict):
         for known, value in self.items():
             if math.isclose(known, level, rel_tol=1e-7):
                 return value
-        raise ValueError(f"there is no level {level}; the case has {', '.join(map(str, self))}")
+        raise ValueError(f"level {level} is missing, or no equilibrium was found there; the sample has "
+                         f"{', '.join(map(str, self))}")
 
 
 def evaluate(expression, names):
@@ -93,9 +94,9 @@ def run_case(case, log):
         samples = {}
         with open(values, newline="", encoding="utf-8") as stream:
             for row in csv.DictReader(stream):
-                if not row["value"]:
-                    raise ValueError(f"no equilibrium was found at level {row['at']}")
-                samples.setdefault(row["sample"], Sample())[float(row["at"])] = float(row["value"])
+                sample = samples.setdefault(row["sample"], Sample())
+                if row["value"]:
+                    sample[float(row["at"])] = float(row["value"])
         return samples
 
 
