@@ -11,9 +11,8 @@ An experiment is a YAML file:
   predict         quantity: {unit, value, reference, at: [..], each: {name: number}}
 
 `value` and `reference` are expressions of the numbers, of `at`, of `each`, and of the samples of the case, which are
-indexed by level: "force[1]". `reference` is a closed form, or a list of
-results of another program in the order of `at`; without it, a measurement is the judge: see
-../measurements/measured.csv. Nothing here reads that file.
+indexed by level: "force[1]". `reference` is a closed form or the result of another program; without it, a measurement is the
+judge: see ../measurements/measured.csv. Nothing here reads that file.
 """
 
 import argparse
@@ -49,7 +48,7 @@ def evaluate(expression, names):
     if not isinstance(expression, str):
         return expression
     try:
-        return eval(expression, {"__builtins__": {"abs": abs, "max": max, "min": min, "sum": sum}}, names)
+        return eval(expression, {"__builtins__": {"abs": abs, "max": max, "min": min, "sum": sum}, **names})
     except Exception as failure:
         raise ValueError(f"'{expression}' cannot be computed: {failure}") from failure
 
@@ -125,9 +124,7 @@ def predictions(name, experiment, log):
             for at in rule.get("at", [""]):
                 for each, number in rule.get("each", {"": None}).items():
                     known = {**names, **samples, "at": at, "each": number}
-                    truth = rule.get("reference")
-                    value = show(rule["value"], known)
-                    reference = show(truth[rule["at"].index(at)] if isinstance(truth, list) else truth, known)
+                    value, reference = (show(rule.get(word), known) for word in ("value", "reference"))
                     what = " ".join(filter(None, (quantity, each)))
                     yield dict(zip(COLUMNS, (name, label, what, at, rule["unit"], value, reference)))
 
