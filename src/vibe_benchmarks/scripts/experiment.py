@@ -29,7 +29,18 @@ import yaml
 HERE = os.path.dirname(os.path.realpath(__file__))
 FOLDER = os.path.join(HERE, "..", "measurements")
 COLUMNS = ("experiment", "run", "quantity", "at", "unit", "predicted", "reference")
-WORDS = {name: getattr(math, name) for name in ("pi", "sqrt", "log", "exp", "sin", "cos", "atan", "atanh", "inf")}
+
+
+def interpolate(at, places, values):
+    """The value at a place, linear between those given in ascending order."""
+    for (a, left), (b, right) in zip(zip(places, values), list(zip(places, values))[1:]):
+        if a <= at <= b:
+            return left + (right - left) * (at - a) / (b - a)
+    raise ValueError(f"{at:g} is not between {places[0]:g} and {places[-1]:g}")
+
+
+WORDS = {"interpolate": interpolate, "range": range}
+WORDS.update((name, getattr(math, name)) for name in ("pi", "sqrt", "log", "exp", "sin", "cos", "atan", "atanh", "inf"))
 
 
 class Sample(dict):
@@ -54,11 +65,12 @@ def evaluate(expression, names):
 
 
 def show(expression, names):
-    return "" if expression is None else "{:.6g}".format(evaluate(expression, names))
+    value = evaluate(expression, names)
+    return "" if value is None else "{:.6g}".format(value)
 
 
 def numbers_of(experiment, run):
-    names = {**WORDS, **run}
+    names = {**WORDS, **run, "run": run}
     for name, value in experiment.get("numbers", {}).items():
         names[name] = evaluate(value, names)
     return names
@@ -126,7 +138,8 @@ def predictions(name, experiment, log):
                     known = {**names, **samples, "at": at, "each": number}
                     value, reference = (show(rule.get(word), known) for word in ("value", "reference"))
                     what = " ".join(filter(None, (quantity, each)))
-                    yield dict(zip(COLUMNS, (name, label, what, at, rule["unit"], value, reference)))
+                    if value:
+                        yield dict(zip(COLUMNS, (name, label, what, at, rule["unit"], value, reference)))
 
 
 def read(name):
