@@ -15,8 +15,9 @@ def table(readings, predicted):
     for name in COMPARED:
         for at, expected in zip(QUANTITIES[name].at, predicted[name]):
             if name in readings:
-                mean, spread = np.mean(readings[name][at]), np.std(readings[name][at], ddof=1 if len(readings[name][at]) > 1 else 0)
-                spread = max(spread, deviation(name, mean))
+                repeats = readings[name][at]
+                mean = np.mean(repeats)
+                spread = max(np.std(repeats, ddof=1) if len(repeats) > 1 else 0, deviation(name, mean))
                 rows.append((name, at, mean, spread, expected, 100 * (mean / expected - 1), (mean - expected) / spread))
     return rows
 
@@ -32,15 +33,24 @@ def _line(rows, names):
     return slope, offset, np.sqrt(np.linalg.inv(design.T @ design)[1, 1]), ratio
 
 
-def _leak(readings):
+def fall(readings):
+    """How much the pressure falls in a minute with the valve closed [mmHg], of all readings of drop; None without them."""
     if "drop" not in readings:
+        return None
+    pairs = [(at, value) for at, values in readings["drop"].items() for value in values]
+    return float(-60 * np.polyfit(*np.transpose(pairs), 1)[0])
+
+
+def _leak(readings):
+    found = fall(readings)
+    if found is None or found < SILENT_DROP:
         return []
-    times = np.array(QUANTITIES["drop"].at)
-    means = np.array([np.mean(readings["drop"][at]) for at in QUANTITIES["drop"].at])
-    fall = -60 * np.polyfit(times, means, 1)[0]
-    return [] if fall < SILENT_DROP else [
-        f"leak: the pressure falls by {fall:.2f} mmHg in a minute, and {SILENT_DROP:g} is tight; look for bubbles under water "
-        "at collars, pad and seams. Readings of all other measurements may be too low."]
+    rate = ""
+    if "fill" in readings:
+        first = QUANTITIES["fill"].at[0]
+        rate = f" (about {1e3 * first / (np.mean(readings['fill'][first]) - 1) * found:.1f} mL/min)"
+    return [f"leak: the pressure falls by {found:.2f} mmHg in a minute{rate}, and less than {SILENT_DROP:g} is tight; look for "
+            "bubbles at collars, pad and seams under water. All other readings may be too low."]
 
 
 def causes(readings, rows):
@@ -55,8 +65,8 @@ def causes(readings, rows):
         shifted = len(forces) > 1 and abs(offset) > max(SURE * error, 0.05)
         slopes["forces"] = slope if shifted else ratio
         if shifted:
-            said.append(f"offset: all forces are {offset:+.2f} +- {error:.2f} N off, whatever their size; possible cause: the "
-                        "gauge was not set to zero with pad and thread on it.")
+            said.append(f"offset: all forces are {offset:+.2f} +- {error:.2f} N off, whatever their size; possible cause: "
+                        "the gauge was not set to zero with pad and thread on it.")
     return said + _factors(slopes)
 
 
@@ -64,23 +74,23 @@ def _factors(slopes):
     off = {group: factor for group, factor in slopes.items() if abs(factor - 1) > CLEAR}
     if len(off) == 2 and max(off.values()) / min(off.values()) < 1.15:
         factor = np.mean(list(off.values()))
+        other = "stiffer or thicker" if factor > 1 else "softer or thinner"
         return [f"stiff: pressures and forces are both {factor:.2f} times the predicted ones; possible cause: the wall is "
-                f"{'stiffer' if factor > 1 else 'softer'} or {'thicker' if factor > 1 else 'thinner'} than cylinder and places "
-                "of the wall say (another batch, mixing ratio, age)."]
+                f"{other} than the cylinder and the measured places say (another batch, mixing ratio, age)."]
     said = []
     for group, factor in off.items():
         units = OTHER_UNITS["mmHg" if group == "fill" else "N"]
         fitting = [unit for unit, other in units.items() if abs(factor / other - 1) < 0.08]
         what = "pressures of fill" if group == "fill" else "forces"
-        said.append(f"unit: the {what} are {factor:.3g} times the predicted ones, and the others are not; possible cause: they "
-                    f"were read in {' or '.join(fitting)}." if fitting else
+        said.append(f"unit: the {what} are {factor:.3g} times the predicted ones, and the others are not; possible cause: "
+                    f"they were read in {' or '.join(fitting)}." if fitting else
                     f"unexplained: the {what} are {factor:.3g} times the predicted ones, and the others are not.")
     return said
 
 
 def as_text(rows):
     """The table for people."""
-    lines = [f"{'':8}{'at':>10}{'measured':>16}{'predicted':>11}{'deviation':>11}{'of scatter':>11}"]
+    lines = [f"{'':8}{'at':>10}{'measured':>16}{'predicted':>11}{'deviation':>11}{'in s.d.':>11}"]
     for name, at, mean, spread, expected, percent, ratio in rows:
         quantity = QUANTITIES[name]
         lines.append(f"{name:8}{at:>7g} {quantity.at_unit:2}{mean:>8.2f} +- {spread:.2f}{expected:>11.2f}{percent:>+9.1f} %"

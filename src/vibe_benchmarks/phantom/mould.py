@@ -149,7 +149,7 @@ class Mould:
             aside = np.cross([0.0, 0.0, 1.0], way) * np.sign(self.low[1] + self.high[1] - 2 * c[1])  # to the middle
             parts.append(cylinder(self.own, c, way, r + PLAY, 0, 1e3))
             for sign, radius in ((1, 4.0 if number else 1.5), (-1, 1.5)):  # the second end is the pylorus
-                parts.append(cylinder(self.own, c + sign * (r + radius) * aside, way, radius, collar - 2, 1e3))
+                parts.append(cylinder(self.own, c + sign * (r + radius - 0.8) * aside, way, radius, collar - 2, 1e3))
         up = np.array([1.0, 0.0, 0.0])
         return np.min(parts + [cylinder(self.own, top, up, 1.5, 0, 1e3) for top in self.tops], axis=0)
 
@@ -162,9 +162,8 @@ class Mould:
         places = np.argwhere(free)
         corners = [(x, y) for x in (0, free.shape[0]) for y in (0, free.shape[1])]
         nearest = [places[np.linalg.norm(places - corner, axis=1).argmin()] for corner in corners]
-        normal = np.array([0.0, 0.0, 1.0])
-        return [cylinder(self.own, np.array([self.axes[0][i], self.axes[1][j], 0.0]), normal, PIN_RADIUS, -PIN_DEPTH, PIN_DEPTH)
-                for i, j in nearest]
+        middles = [np.array([self.axes[0][i], self.axes[1][j], 0.0]) for i, j in nearest]
+        return [cylinder(self.own, middle, np.array([0.0, 0.0, 1.0]), PIN_RADIUS, -PIN_DEPTH, PIN_DEPTH) for middle in middles]
 
     def parts(self):
         """Name to points and triangles, as they lie on the printer's bed: halves with the parting plane up."""
@@ -181,10 +180,9 @@ class Mould:
         found["half_a"] = (found["half_a"][0] * turned, found["half_a"][1])
         return {name: (points - points.min(axis=0), triangles) for name, (points, triangles) in found.items()}
 
-    def volumes(self):
-        """[mm^3]: the wall alone, without collars and knob, and all that is to be poured, with sprue and vents."""
-        wall = shapes.volume(*shapes.surface(np.maximum(self.middle - self.wall / 2, -self.middle - self.wall / 2), self.axes))
-        return wall, shapes.volume(*shapes.surface(np.maximum(self.hollow(), -self.core()), self.axes))
+    def wall_volume(self):
+        """[mm^3], without collars and knob."""
+        return shapes.volume(*shapes.surface(np.abs(self.middle) - self.wall / 2, self.axes))
 
 
 def cup():
@@ -203,19 +201,21 @@ def write(out, scale, wall, bed):
     mould = Mould(organ, frame, wall)
     size = mould.high - mould.low
     if size[:2].max() > bed:
-        raise SystemExit(f"phantom mould: at --scale {scale:g} a half is {size[0]:.0f} x {size[1]:.0f} mm, more than the bed "
-                         f"of {bed:g} mm; take --scale {np.floor(20 * scale * (bed - 25) / (size[:2].max() - 25)) / 20:g}.")
-    good = True
+        fitting = np.floor(20 * scale * (bed - 25) / (size[:2].max() - 25)) / 20  # 25 mm do not scale
+        raise ValueError(f"phantom mould: at --scale {scale:g} a half is {size[0]:.0f} x {size[1]:.0f} mm, more than the "
+                         f"bed of {bed:g} mm; take --scale {fitting:g}, here and for the scene.")
+    good, poured = True, size.prod() - 8 * np.pi * PIN_RADIUS ** 2 * PIN_DEPTH
     for name, (points, triangles) in {**mould.parts(), "cup": cup()}.items():
         said = shapes.faults(points, triangles)
         good = good and not said
         shapes.write_stl(out / f"{name}.stl", points, triangles)
+        poured -= shapes.volume(points, triangles) if name in ("half_a", "half_b", "core") else 0
         print(f"{name}.stl: {' x '.join(f'{x:.0f}' for x in np.ptp(points, axis=0))} mm, {len(triangles)} triangles, "
               f"{shapes.volume(points, triangles) / 1e3:.0f} cm^3, {'; '.join(said) or 'closed'}")
-    found, poured = mould.volumes()
+    found = mould.wall_volume()
     share = found / (organ.area * wall) - 1
     print(f"parting plane: undercut {least:.1f} mm, {greatest:.0f} mm in the worst plane; silicone gives way to a few")
     print(f"wall: {found / 1e3:.1f} cm^3, {100 * share:+.2f} % of area x thickness ({organ.area * wall / 1e3:.1f} cm^3)")
-    print(f"silicone to pour, with collars, sprue and {len(mould.tops)} vents over tops: {poured / 1e3:.0f} cm^3, "
-          f"{1.07 * poured / 1e3:.0f} g; mix a fifth more, and 63 g for the cylinder")
+    print(f"free between halves and core, with collars and channels (vents over tops: {len(mould.tops)}): {poured / 1e3:.0f} cm^3, "
+          f"{1.07 * poured / 1e3:.0f} g of silicone; mix a fifth more, and 63 g for the cylinder")
     return good and abs(share) < 0.02

@@ -10,8 +10,8 @@ import lab
 import sheet
 from protocol import MODULUS, QUANTITIES, SCALE, WALL, modulus
 
-DEBIAN = {"vtk": "python3-vtk9", "scipy": "python3-scipy", "matplotlib": "python3-matplotlib",
-          "vibe": "nothing, but run scripts/build --part python"}
+REMEDIES = {"vtk": "install python3-vtk9", "scipy": "install python3-scipy", "matplotlib": "install python3-matplotlib",
+            "vibe": "run scripts/build --part python"}
 
 
 def make_mould(arguments):
@@ -62,10 +62,11 @@ def compare_sheet(arguments):
     rows = compare.table(readings, predictions(arguments.sheet, text))
     print(f"modulus of the cylinder {young / 1e3:.1f} kPa, wall {1e3 * wall:.2f} mm\n")
     print(compare.as_text(rows))
+    fall = compare.fall(readings)
+    print("" if fall is None else f"\ntightness: the pressure falls by {fall:.2f} mmHg in a minute")
     pictures.draw_comparison(rows, arguments.sheet.with_suffix(".png"))
     said = compare.causes(readings, rows)
-    print("\n".join(f"possible cause, {sentence}" for sentence in said) if said else
-          "No leak, unit, offset or other stiffness shows.")
+    print("\n".join(said) if said else "No leak, unit, offset or other stiffness shows.")
     return 1 if said else 0
 
 
@@ -77,7 +78,7 @@ def parse():
         added = parts.add_parser(name, help=said, description=said)
         added.add_argument(target, type=pathlib.Path, metavar=target.upper())
         added.set_defaults(act=act)
-        if name not in ("sheet",):
+        if name != "sheet":
             added.add_argument("--scale", type=float, default=SCALE, help="of the default stomach (%(default)s)")
         return added
 
@@ -90,7 +91,8 @@ def parse():
         made.add_argument("--wall", type=float, default=WALL, help="thickness of the wall [m] (%(default)s)")
     part("sheet", make_sheet, "writes an empty sheet of readings (CSV)", "out")
     simulated = part("lab", make_readings, "fills a sheet from the twin, with scatter", "sheet")
-    simulated.add_argument("--fault", choices=list(lab.FAULTS), help="; ".join(f"{k}: {v}" for k, v in lab.FAULTS.items()))
+    faults = "; ".join(f"{name}: {said}" for name, said in lab.FAULTS.items())
+    simulated.add_argument("--fault", choices=list(lab.FAULTS), help=faults)
     simulated.add_argument("--seed", type=int, default=1, help="of the scatter (%(default)s)")
     compared = part("compare", compare_sheet, "compares a sheet with the twin; status 1: a cause is named", "sheet")
     compared.add_argument("--scene", type=pathlib.Path, help="scene instead of the one made of cylinder and wall")
@@ -102,9 +104,9 @@ def main():
     try:
         return arguments.act(arguments)
     except ModuleNotFoundError as error:
-        print(f"phantom: the module {error.name} is missing; install {DEBIAN.get(error.name, error.name)}.", file=sys.stderr)
+        print(f"phantom: the module {error.name} is missing; {REMEDIES.get(error.name, 'install it')}.", file=sys.stderr)
         return 2
-    except (sheet.SheetError, OSError, RuntimeError) as error:  # vibe.Error is a RuntimeError
+    except (sheet.SheetError, OSError, RuntimeError, ValueError) as error:  # vibe.Error is a RuntimeError
         print(error, file=sys.stderr)
         return 2
 

@@ -39,6 +39,7 @@ def draw_mould(folder: pathlib.Path, file):
         mapper.SetInputConnection(reader.GetOutputPort())
         actor.SetMapper(mapper)
         actor.GetProperty().SetColor(colour)
+        actor.GetProperty().SetAmbient(0.3)
         actor.RotateZ(90)
         low, high = actor.GetBounds()[:2]
         actor.AddPosition(left - low, 0, 0)
