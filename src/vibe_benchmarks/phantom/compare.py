@@ -5,16 +5,17 @@ from protocol import COMPARED, FORCES, QUANTITIES, SILENT_DROP, deviation
 from sheet import OTHER_UNITS
 
 CLEAR = 0.12  # deviation in common, as a share, that is said: three times that of thickness, batch and reading together
+ALIKE = 0.4  # of the logarithms of two factors, from which the wall may cause both: forces grow less than the modulus
 SURE = 4.0  # standard errors from which an offset is said
 
 
 def table(readings, predicted):
     """Rows (measurement, at, mean, standard deviation, predicted, deviation in per cent, in standard deviations) of what
-    was measured. The standard deviation is that of the repeats, at least that which protocol.deviation() expects."""
+    was measured and predicted. The standard deviation is that of the repeats, at least that of protocol.deviation()."""
     rows = []
     for name in COMPARED:
         for at, expected in zip(QUANTITIES[name].at, predicted[name]):
-            if name in readings:
+            if name in readings and np.isfinite(expected):
                 repeats = readings[name][at]
                 mean = np.mean(repeats)
                 spread = max(np.std(repeats, ddof=1) if len(repeats) > 1 else 0, deviation(name, mean))
@@ -49,8 +50,8 @@ def _leak(readings):
     if "fill" in readings:
         first = QUANTITIES["fill"].at[0]
         rate = f" (about {1e3 * first / (np.mean(readings['fill'][first]) - 1) * found:.1f} mL/min)"
-    return [f"leak: the pressure falls by {found:.2f} mmHg in a minute{rate}, and less than {SILENT_DROP:g} is tight; look for "
-            "bubbles at collars, pad and seams under water. All other readings may be too low."]
+    return [f"leak: the pressure falls by {found:.2f} mmHg in a minute{rate}, and less than {SILENT_DROP:g} is tight; look "
+            "for bubbles at collars, pad and seams under water. All other readings may be too low."]
 
 
 def causes(readings, rows):
@@ -72,11 +73,11 @@ def causes(readings, rows):
 
 def _factors(slopes):
     off = {group: factor for group, factor in slopes.items() if abs(factor - 1) > CLEAR}
-    if len(off) == 2 and max(off.values()) / min(off.values()) < 1.15:
-        factor = np.mean(list(off.values()))
-        other = "stiffer or thicker" if factor > 1 else "softer or thinner"
-        return [f"stiff: pressures and forces are both {factor:.2f} times the predicted ones; possible cause: the wall is "
-                f"{other} than the cylinder and the measured places say (another batch, mixing ratio, age)."]
+    logs = np.log([factor if factor > 0 else 1e-3 for factor in slopes.values()])
+    if off and len(logs) == 2 and logs.prod() > 0 and min(abs(logs)) > ALIKE * max(abs(logs)):
+        other = "stiffer or thicker" if logs[0] > 0 else "softer or thinner"
+        return [f"stiff: pressures are {slopes['fill']:.2f} and forces {slopes['forces']:.2f} times the predicted ones; "
+                f"possible cause: the wall is {other} than the cylinder and the measured places say (another batch, mixing ratio, age)."]
     said = []
     for group, factor in off.items():
         units = OTHER_UNITS["mmHg" if group == "fill" else "N"]

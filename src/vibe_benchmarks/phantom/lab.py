@@ -6,18 +6,20 @@ from protocol import COMPARED, FORCES, QUANTITIES, REPEATS, coupon_force, deviat
 
 FAULTS = {"leak": "the pressure falls by 1.2 mmHg in a minute", "unit": "the pressures were read in cmH2O",
           "swap": "settings and readings of press are swapped", "offset": "the force gauge shows 0.25 N too much",
-          "stiff": "the wall is 30 % stiffer than its cylinder"}
+          "stiff": "the wall is 25 % stiffer than its cylinder"}
+STIFFER = 1.25  # modulus of the wall over that of the cylinder
 BATCH = 0.02  # standard deviation of what all readings of a phantom have in common, as a share
 
 
 def readings(predicted, modulus, wall, fault=None, seed=1):
     """{(measurement, at, repeat): reading} of a phantom whose twin predicts {measurement: [reading, ...]}; modulus [Pa],
-    wall [mm]. Each reading scatters by deviation(), and all by a factor that is drawn once."""
+    wall [mm]. Each reading scatters by deviation(), and all by a factor that is drawn once. For `stiff` the twin must be that
+    of STIFFER times the modulus."""
     random = np.random.default_rng(seed)
     true = {"coupon": [coupon_force(modulus)], "wall": [wall] * 5, "drop": [5.0] * 4, **predicted}
     factor = random.normal(1, BATCH)
     for name in COMPARED:
-        true[name] = [value * factor * (1.3 if fault == "stiff" else 1) for value in true[name]]
+        true[name] = [value * factor for value in true[name]]
     if fault == "leak":
         true["drop"] = [5.0 - 1.2 * second / 60 for second in QUANTITIES["drop"].at]
     if fault == "unit":

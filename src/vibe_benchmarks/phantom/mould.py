@@ -162,8 +162,8 @@ class Mould:
         places = np.argwhere(free)
         corners = [(x, y) for x in (0, free.shape[0]) for y in (0, free.shape[1])]
         nearest = [places[np.linalg.norm(places - corner, axis=1).argmin()] for corner in corners]
-        middles = [np.array([self.axes[0][i], self.axes[1][j], 0.0]) for i, j in nearest]
-        return [cylinder(self.own, middle, np.array([0.0, 0.0, 1.0]), PIN_RADIUS, -PIN_DEPTH, PIN_DEPTH) for middle in middles]
+        middles, way = [np.array([self.axes[0][i], self.axes[1][j], 0.0]) for i, j in nearest], np.array([0.0, 0.0, 1.0])
+        return [cylinder(self.own, middle, way, PIN_RADIUS, -PIN_DEPTH, PIN_DEPTH) for middle in middles]
 
     def parts(self):
         """Name to points and triangles, as they lie on the printer's bed: halves with the parting plane up."""
@@ -216,6 +216,6 @@ def write(out, scale, wall, bed):
     share = found / (organ.area * wall) - 1
     print(f"parting plane: undercut {least:.1f} mm, {greatest:.0f} mm in the worst plane; silicone gives way to a few")
     print(f"wall: {found / 1e3:.1f} cm^3, {100 * share:+.2f} % of area x thickness ({organ.area * wall / 1e3:.1f} cm^3)")
-    print(f"free between halves and core, with collars and channels (vents over tops: {len(mould.tops)}): {poured / 1e3:.0f} cm^3, "
-          f"{1.07 * poured / 1e3:.0f} g of silicone; mix a fifth more, and 63 g for the cylinder")
+    print(f"free between halves and core, with collars and channels (vents over tops: {len(mould.tops)}): "
+          f"{poured / 1e3:.0f} cm^3, {1.07 * poured / 1e3:.0f} g of silicone; mix a fifth more, and 63 g for the cylinder")
     return good and abs(share) < 0.02

@@ -9,6 +9,7 @@ from protocol import FORCES, QUANTITIES
 
 MMHG = 133.322  # [Pa]
 SPRING = 300.0  # of the pull of vibe.Simulation [N/m]
+STRONGEST = 5.0  # of that pull [N]; what takes more is not predicted
 PATCH = 6e-3  # radius of the patch that it pulls [m]: that of the pad on the phantom
 SPEED = 0.01  # of a pull [m/s]
 FORCE_RATE = 0.03  # of the thread's tension [N/s]; half of this, or of SPEED, changes no force by more than 0.4 %
@@ -24,7 +25,7 @@ tissue:
   thickness: {{cardia: {wall:.4g}, fundus: {wall:.4g}, body: {wall:.4g}, antrum: {wall:.4g}, pylorus: {wall:.4g}}}  # [m]
   self_contact: true
 attachments: {{oesophagus: true, duodenum: true}}
-gas: {{regulated_pressure: 60 mmHg, flow_limit: 1 L/min}}
+gas: {{regulated_pressure: 5 mmHg, flow_limit: 1 L/min}}
 gravity: {{acceleration: [{down[0]:.4f}, {down[1]:.4f}, {down[2]:.4f}]}}
 """
 
@@ -80,15 +81,18 @@ class Bench:
         self.share = share / share.sum()
         self.simulation = vibe.Simulation(model, impedance=False, metrics=False)
         self.simulation.run(120)
-        self.fill = self._fill(5 * MMHG)
+        self.fill = self._fill(lambda: self.simulation.pressure >= 5 * MMHG)
         self.simulation.run(120, insufflate=False)
         self.start = self.simulation.snapshot()
 
-    def _fill(self, pressure):
-        curve = []
-        while self.simulation.pressure < pressure:
+    def _fill(self, full):
+        """Volumes and pressures on the way until it is full."""
+        curve, most = [], self.simulation.volume + 1e-3
+        while not full():
             self.simulation.step(insufflate=True)
             curve.append((self.simulation.volume, self.simulation.pressure))
+            if self.simulation.volume > most:
+                raise ValueError("The twin gives way at less than 5 mmHg; check modulus and thickness of its wall.")
         return curve
 
     def held(self):
@@ -97,44 +101,45 @@ class Bench:
     def filled(self, at):
         """Pressure [mmHg] after adding volumes [L] from 1 mmHg."""
         self.simulation.restore(self.start)
-        volume, pressure = np.array(self.fill + self._fill(30 * MMHG)).T
-        zero = np.interp(MMHG, pressure, volume)
-        return np.interp(np.array(at) * 1e-3 + zero, volume, pressure) / MMHG
+        zero = np.interp(MMHG, *np.array(self.fill).T[::-1])
+        wanted = zero + 1e-3 * np.array(at)
+        curve = self.fill + self._fill(lambda: self.simulation.volume > wanted.max())
+        return np.interp(wanted, *np.array(curve).T) / MMHG
 
     def pulled(self, at, sign):
         """Force [N] when the pad has been moved by distances [mm] along the normal, outwards (sign 1) or inwards (-1)."""
         self.simulation.restore(self.start)
         way, begin, curve = sign * self.simulation.normals[self.particle], self.held(), [(0.0, 0.0)]
         target = 0.0
-        while curve[-1][0] < max(at) and target < 0.2:
+        while curve[-1][0] < max(at) and curve[-1][1] < STRONGEST:
             target += SPEED * self.simulation.model.step_period
             self.simulation.step(pull=(self.particle, begin + target * way))
             moved = (self.held() - begin) @ way
             curve.append((1e3 * moved, SPRING * (target - moved)))
-        return np.interp(at, *np.array(curve).T)
+        return np.interp(at, *np.array(curve).T, right=np.nan)
 
     def cinched(self, at):
         """Tension [N] of a thread from the pad to the eyelet in the oesophagus that has been drawn in by lengths [mm]."""
         self.simulation.restore(self.start)
         length, tension, curve = np.linalg.norm(self.eyelet - self.held()), 0.0, [(0.0, 0.0)]
-        while curve[-1][0] < max(at) and tension < 5:
+        while curve[-1][0] < max(at) and tension < STRONGEST:
             tension += FORCE_RATE * self.simulation.model.step_period
             held = self.held()
             way = (self.eyelet - held) / np.linalg.norm(self.eyelet - held)
             self.simulation.step(pull=(self.particle, held + tension / SPRING * way))
             curve.append((1e3 * (length - np.linalg.norm(self.eyelet - self.held())), tension))
-        return np.interp(at, *np.array(curve).T)
+        return np.interp(at, *np.array(curve).T, right=np.nan)
 
 
 def predict(text, folder):
-    """What the twin of a scene predicts: readings by measurement, in the order of the settings. Takes a minute the first
-    time and is kept in a file of the folder after that."""
+    """What the twin of a scene predicts: readings by measurement, in the order of the settings, NaN where a force is above
+    STRONGEST. Takes a minute the first time and is kept in a file of the folder after that."""
     kept = folder / f"twin_{hashlib.sha256((text + repr(QUANTITIES)).encode()).hexdigest()[:12]}.json"
     if kept.exists():
         return json.loads(kept.read_text())
-    file = folder / "twin.yaml"
+    file = kept.with_suffix(".yaml")
     file.write_text(text)
-    bench = Bench(vibe.load(file))
+    bench = Bench(vibe.load(file, gas={"regulated_pressure": "100 mmHg"}))  # it is filled by volume
     at = {name: QUANTITIES[name].at for name in ["fill"] + FORCES}
     found = {"fill": bench.filled(at["fill"]), "press": bench.pulled(at["press"], -1),
              "pull": bench.pulled(at["pull"], 1), "cinch": bench.cinched(at["cinch"])}

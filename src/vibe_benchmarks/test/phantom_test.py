@@ -19,7 +19,9 @@ except ModuleNotFoundError:
     shapes = None
 
 PREDICTED = {"fill": [5.1, 8.6, 11.3, 13.3], "press": [0.29, 0.5, 0.72], "pull": [1.03, 2.42, 3.95],
-             "cinch": [0.57, 1.06, 1.66]}  # about what the twin says
+             "cinch": [0.54, 1.04, 1.64]}  # about what the twin says
+STIFF = {"fill": [6.16, 10.58, 13.96, 16.52], "press": [0.33, 0.55, 0.8], "pull": [1.24, 2.96, 4.88],
+         "cinch": [0.61, 1.17, 1.87]}  # with 1.25 times the modulus
 
 
 class PhantomTest(unittest.TestCase):
@@ -29,7 +31,8 @@ class PhantomTest(unittest.TestCase):
         self.file = pathlib.Path(self.folder.name) / "sheet.csv"
 
     def write(self, fault=None, seed=1):
-        lab.write(self.file, lab.readings(PREDICTED, MODULUS, 3.0, fault, seed), fault)
+        true = STIFF if fault == "stiff" else PREDICTED
+        lab.write(self.file, lab.readings(true, MODULUS, 3.0, fault, seed), fault)
 
     def named(self, fault, seed=1):
         self.write(fault, seed)
