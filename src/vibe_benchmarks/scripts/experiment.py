@@ -11,9 +11,8 @@ An experiment is a YAML file:
   predict         quantity: {unit, value, reference, at: [..], each: {name: number}}
 
 `value` and `reference` are expressions of the numbers, of `at`, of `each`, and of the samples of the case, which are
-indexed by level: "force[1]". `reference` is a closed form, or a list of
-results of another program in the order of `at`; without it, a measurement is the judge: see
-../measurements/measured.csv. Nothing here reads that file.
+indexed by level: "force[1]". `reference` is a closed form or the result of another program; without it, a measurement is the
+judge: see ../measurements/measured.csv. Nothing here reads that file.
 """
 
 import argparse
@@ -30,7 +29,18 @@ import yaml
 HERE = os.path.dirname(os.path.realpath(__file__))
 FOLDER = os.path.join(HERE, "..", "measurements")
 COLUMNS = ("experiment", "run", "quantity", "at", "unit", "predicted", "reference")
-WORDS = {name: getattr(math, name) for name in ("pi", "sqrt", "log", "exp", "sin", "cos", "atan", "atanh", "inf")}
+
+
+def interpolate(at, places, values):
+    """The value at a place, linear between those given in ascending order."""
+    for (a, left), (b, right) in zip(zip(places, values), list(zip(places, values))[1:]):
+        if a <= at <= b:
+            return left + (right - left) * (at - a) / (b - a)
+    raise ValueError(f"{at:g} is not between {places[0]:g} and {places[-1]:g}")
+
+
+WORDS = {"interpolate": interpolate, "range": range}
+WORDS.update((name, getattr(math, name)) for name in ("pi", "sqrt", "log", "exp", "sin", "cos", "atan", "atanh", "inf"))
 
 
 class Sample(dict):
@@ -49,17 +59,18 @@ def evaluate(expression, names):
     if not isinstance(expression, str):
         return expression
     try:
-        return eval(expression, {"__builtins__": {"abs": abs, "max": max, "min": min, "sum": sum}}, names)
+        return eval(expression, {"__builtins__": {"abs": abs, "max": max, "min": min, "sum": sum}, **names})
     except Exception as failure:
         raise ValueError(f"'{expression}' cannot be computed: {failure}") from failure
 
 
 def show(expression, names):
-    return "" if expression is None else "{:.6g}".format(evaluate(expression, names))
+    value = evaluate(expression, names)
+    return "" if value is None else "{:.6g}".format(value)
 
 
 def numbers_of(experiment, run):
-    names = {**WORDS, **run}
+    names = {**WORDS, **run, "run": run}
     for name, value in experiment.get("numbers", {}).items():
         names[name] = evaluate(value, names)
     return names
@@ -125,11 +136,10 @@ def predictions(name, experiment, log):
             for at in rule.get("at", [""]):
                 for each, number in rule.get("each", {"": None}).items():
                     known = {**names, **samples, "at": at, "each": number}
-                    truth = rule.get("reference")
-                    value = show(rule["value"], known)
-                    reference = show(truth[rule["at"].index(at)] if isinstance(truth, list) else truth, known)
+                    value, reference = (show(rule.get(word), known) for word in ("value", "reference"))
                     what = " ".join(filter(None, (quantity, each)))
-                    yield dict(zip(COLUMNS, (name, label, what, at, rule["unit"], value, reference)))
+                    if value:
+                        yield dict(zip(COLUMNS, (name, label, what, at, rule["unit"], value, reference)))
 
 
 def read(name):
