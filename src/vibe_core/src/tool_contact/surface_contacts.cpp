@@ -239,17 +239,20 @@ bool SurfaceContacts::goesOnInto(int other, int shape, const Eigen::Vector3d& co
          tool_.gap(other, 1, core).distance + tool_.radius(shape) <= tool_.radius(other) + policy_.touch_within;
 }
 
-// A point inside a shape has one way out: that of the shape in which it is deepest.
+// A point inside a shape has one way out: that of the shape in which it is deepest. Outside, it keeps off those that
+// are about as near as the nearest one, and those that it would go through.
 void SurfaceContacts::removeBeside() {
   std::sort(contacts_.begin(), contacts_.end(), [](const SurfaceContact& one, const SurfaceContact& other) {
     const auto a = keyOf(one.point), b = keyOf(other.point);
     return std::tie(a, one.point.weight, one.distance, one.shape) <
            std::tie(b, other.point.weight, other.distance, other.shape);
   });
-  const SurfaceContact* deepest = nullptr;  // of the present point
+  const SurfaceContact* nearest = nullptr;  // of the present point
+  const auto gap = [](const SurfaceContact& contact) { return contact.distance - contact.clearance; };
   for (const SurfaceContact& contact : contacts_) {
-    if (deepest == nullptr || !isSamePoint(deepest->point, contact.point)) deepest = &contact;
-    if (deepest == &contact || deepest->distance >= 0) kept_.push_back(contact);
+    if (nearest == nullptr || !isSamePoint(nearest->point, contact.point)) nearest = &contact;
+    const bool beside = nearest->distance >= 0 && gap(contact) < std::max(-0.5 * contact.clearance, gap(*nearest) + policy_.touch_beside);
+    if (nearest == &contact || beside) kept_.push_back(contact);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <utility>
 
 #include "tool_contact/sheet_scene.hpp"
 #include "vibe_testing/worlds.hpp"
@@ -271,6 +272,52 @@ TEST(SurfaceContacts, OnTheOutsideOfABendOneShapeHasTheContact) {
     });
   }
   EXPECT_GT(bends, 20);
+}
+
+/// Largest distance by which a wall is farther from a shape that it has a contact with than from the nearest one, at
+/// random places around a bent scope [m].
+double farthestBeside(const ToolModel& tool, int& contacts_of_two) {
+  std::array<double, kJointCount> inputs{};
+  inputs[TipUpDown] = 1.5;
+  std::vector<Isometry3d> poses;
+  tool.forwardKinematics(inputs, poses);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> part(0, 1);
+  double farthest = 0;
+  forCorners(tool, poses, [&](int, int, const Vector3d& joint) {
+    for (int k = 0; k < 20; ++k) {
+      const auto draw = [&] { return Vector3d(part(random) - 0.5, part(random) - 0.5, part(random) - 0.5); };
+      SurfaceMesh mesh;
+      mesh.vertices = {joint + 0.03 * draw(), joint + 0.03 * draw(), joint + 0.03 * draw()};
+      mesh.triangles = {{0, 1, 2}};
+      const Points wall = pointsOf(mesh);
+      SurfaceContacts search(tool, mesh, std::vector<double>(3, kThickness), std::vector<char>(3, 0));
+      std::map<std::array<double, 6>, std::vector<double>> gaps;
+      for (const SurfaceContact& c : search.find(poses, poses, pathOf(wall, wall), 2e-3, std::vector<char>(3, 0)))
+        gaps[{double(c.point.node[0]), double(c.point.node[1]), double(c.point.node[2]), c.point.weight[0],
+              c.point.weight[1], c.point.weight[2]}]
+            .push_back(c.distance - kThickness / 2);
+      for (auto& [point, gap] : gaps) {
+        std::sort(gap.begin(), gap.end());
+        contacts_of_two += gap.size() > 1 ? 1 : 0;
+        farthest = std::max(farthest, gap.back() - std::max(gap.front(), -3e-4));
+      }
+    }
+  });
+  return farthest;
+}
+
+// A step solves a limited number of contacts. Those that cannot touch would take the place of others, in turn.
+TEST(SurfaceContacts, AShapeFarBesideTheNearestHasNone) {
+  const ToolModel tool = ToolModel::fromUrdf(scopeText(), "scope");
+  int contacts_of_two = 0;
+  const double less_kept = stepPolicy().touch_corner_slack * stepPolicy().touch_corner;  // by contacts of corners
+  EXPECT_LT(farthestBeside(tool, contacts_of_two), stepPolicy().touch_beside + less_kept + kRounding);
+  EXPECT_GT(contacts_of_two, 20);
+  StepPolicy all = stepPolicy();
+  const double allowed = std::exchange(all.touch_beside, 1);
+  const ScopedStepPolicy scoped(all);
+  EXPECT_GT(farthestBeside(tool, contacts_of_two), 2 * allowed) << "what this guards against is seen";
 }
 
 TEST(SurfaceContacts, ANormalKeepsItsSideHoweverFastTheToolIs) {
