@@ -251,7 +251,8 @@ void SurfaceContacts::removeBeside() {
   const auto gap = [](const SurfaceContact& contact) { return contact.distance - contact.clearance; };
   for (const SurfaceContact& contact : contacts_) {
     if (nearest == nullptr || !isSamePoint(nearest->point, contact.point)) nearest = &contact;
-    const bool beside = nearest->distance >= 0 && gap(contact) < std::max(-0.5 * contact.clearance, gap(*nearest) + policy_.touch_beside);
+    const bool beside = nearest->distance >= 0 &&
+                        gap(contact) < std::max(-0.5 * contact.clearance, gap(*nearest) + policy_.touch_beside);
     if (nearest == &contact || beside) kept_.push_back(contact);
   }
 }
