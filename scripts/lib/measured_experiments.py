@@ -5,6 +5,7 @@ import csv
 import glob
 import math
 import os
+import statistics
 
 import yaml
 
@@ -29,16 +30,19 @@ def measured():
 
 
 def compared(rows):
-    """Each prediction with `truth` and the published standard `deviation`, NaN where there is none; those without truth are
-    left out. An experiment whose measurement names no run is compared with each of its runs."""
+    """Each prediction with `truth` and its `deviation`, NaN where there is none; those without truth are left out. An experiment whose measurement names no run is compared with each of its runs."""
     known = measured()
+    rows = list(rows)
+    lost = {key[2:] for key in known if key[0] in {row["experiment"] for row in rows}} - {
+        (row["quantity"], row["at"]) for row in rows}
+    if lost:
+        raise ValueError(f"measured.csv has values that no experiment predicts: {sorted(lost)[0]}")
     for row in rows:
         name, run, quantity, at = (row[key] for key in ("experiment", "run", "quantity", "at"))
         found = known.get((name, run, quantity, at)) or known.get((name, "", quantity, at)) or {}
         truth = number(row["reference"] or found.get("measured"))
         if not math.isnan(truth):
-            deviation = number(found.get("deviation")) if found.get("deviation_is") == "SD" else math.nan
-            yield {**row, "truth": truth, "deviation": deviation}
+            yield {**row, "truth": truth, "deviation": number(found.get("deviation")), "is": found.get("deviation_is")}
 
 
 def error(row, rows, experiment):
@@ -50,14 +54,13 @@ def error(row, rows, experiment):
 
 def count(rows):
     """How many predictions agree within MANY deviations, of those with a deviation; in words."""
-    known = [row for row in rows if not math.isnan(row["deviation"])]
+    known = [row for row in rows if row["is"] == "SD"]
     good = [row for row in known if abs(number(row["predicted"]) - row["truth"]) <= MANY * row["deviation"]]
     return f"{len(good)} of {len(known)}" if known else ""
 
 
-def median(values):
-    ordered = sorted(values)
-    return ordered[len(ordered) // 2]
+def share(value):
+    return percent(value, 3 if value >= 1 else 2)
 
 
 @made_from("measurements")
@@ -69,9 +72,9 @@ def measurements(store):
             part = [row for row in mine if run in (None, row["run"])]
             off = [abs(error(row, mine, experiment)) for row in part]
             title = ", ".join(filter(None, (experiment["title"], run)))
-            said = (percent(median(off)), percent(max(off))) if off else ("", "")
-            lines.append((title, experiment["judge"], str(len(part)) if part else "no figures in reach", *said, count(part)))
-    header = ("experiment", "judge", "values", "median off", "most off", f"within {MANY} published deviations")
+            said = (share(statistics.median(off)), share(max(off))) if off else ("", "")
+            lines.append((title, experiment["judge"], str(len(part)) if part else "no figures available", *said, count(part)))
+    header = ("experiment", "judge", "values", "median off", "most off", f"within {MANY} standard deviations")
     return table(header, lines), [(row["experiment"], row) for row in rows]
 
 

@@ -100,8 +100,8 @@ def run_case(case, log):
                                "lib/vibe_benchmarks/vibe_bench")
         done = subprocess.run([program, "--case", file, "--values", values], stderr=subprocess.PIPE, text=True)
         log.write(done.stderr)
-        if done.returncode == 2:
-            raise ValueError(done.stderr.strip().splitlines()[-1])
+        if done.returncode not in (0, 1):  # 1: it has buckled
+            raise ValueError((done.stderr.strip() or f"vibe_bench ended with {done.returncode}").splitlines()[-1])
         samples = {}
         with open(values, newline="", encoding="utf-8") as stream:
             for row in csv.DictReader(stream):

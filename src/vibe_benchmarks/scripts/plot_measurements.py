@@ -47,7 +47,7 @@ def main(table, picture):
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.minorticks_off()
     axes.set_yticks(range(len(lines)), [title for title, _ in reversed(lines)])
-    axes.set_xlabel("predicted / found\nbars: two published deviations; grey: 10 %; arrow: beyond the picture")
+    axes.set_xlabel("predicted / found\nbars: twice the published scatter; grey: 10 %; arrow: beyond the picture")
     figure.tight_layout()
     figure.savefig(picture, dpi=110)
 
