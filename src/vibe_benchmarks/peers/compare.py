@@ -87,7 +87,9 @@ def keep(rows, fresh):
     """Puts fresh rows in the place of those of the same engine, scene, size and setting."""
     key = lambda r: (r["scene"], r["size"], r["engine"], r.get("setting") or "")
     replaced = {key(r) for r in fresh}
-    rows[:] = [r for r in rows if key(r) not in replaced] + fresh
+    known = {e.NAME: e.SWEEP for e in map(importlib.import_module, ("engines." + name for name in ENGINES if installed(name)))}
+    rows[:] = [r for r in rows if key(r) not in replaced and (not r["setting"] or r["setting"] in known.get(r["engine"], [r["setting"]]))]
+    rows += fresh
     rows.sort(key=lambda r: (scenes.NAMES.index(r["scene"]), r["size"] == "large"))
     with open(CSV, "w", newline="", encoding="utf-8") as stream:
         writer = csv.DictWriter(stream, COLUMNS, restval="", lineterminator="\n")
@@ -96,18 +98,17 @@ def keep(rows, fresh):
 
 
 def own_time(rows, scene, size):
-    """CPU time of this simulator's default, its first setting [s per s]."""
+    """CPU time of this simulator's setting with the smallest error [s per s]."""
     from engines import vibe
-    found = [number(r["cpu_s"]) for r in rows if (r["engine"], r["scene"], r["size"], r["setting"]) ==
-             (vibe.NAME, scene, size, next(iter(vibe.SWEEP)))]  # fmt: skip
-    return found[0] if found else None
+    best = chosen([r for r in rows if (r["engine"], r["scene"], r["size"]) == (vibe.NAME, scene, size)], None)[1]
+    return number(best["cpu_s"]) if best else None
 
 
 def child(engine, scene, size, settings, limit):
     """Runs an engine in a process of its own: some print, some end the process."""
     words = ["--child", json.dumps([engine, scene, size, settings, limit])]
     done = subprocess.run([sys.executable, "-B", __file__, *words], capture_output=True, text=True, check=False,
-                          cwd=tempfile.gettempdir())  # MuJoCo writes a log where it runs
+                          cwd=tempfile.gettempdir(), timeout=100 * limit)  # MuJoCo writes a log where it runs
     rows = [json.loads(line[4:]) for line in done.stdout.splitlines() if line.startswith("row ")]
     if done.returncode:
         print(f"{engine} ended with {done.returncode} in scene {scene}: {done.stderr.strip()[-400:]}", file=sys.stderr)
@@ -139,7 +140,7 @@ def choose(rows, scene, engine_name, quick):
         return list(engine.SWEEP)[:1]
     mine = [r for r in rows if (r["scene"], r["size"], r["engine"]) == (scene, "small", engine.NAME)]
     best = [r["setting"] for r in chosen(mine, own_time(rows, scene, "small")) if r][:1]
-    return list(engine.SWEEP)[:2] if engine_name == "vibe" else best or None
+    return list(dict.fromkeys([*list(engine.SWEEP)[:2], *best])) if engine_name == "vibe" else best or None
 
 
 def parse(words):

@@ -41,6 +41,8 @@ def line(scene, name, rows, ours):
         return [*head, notes, *[""] * 8]
     stable = max(number(r["step_ms"]) for r in rows if r["error"] and number(r["error"]) < 1) if number(
         best["error"]) < 1 else ""  # fmt: skip
+    if len({r["setting"] for r in rows}) == 1:  # nothing else was tried there
+        return [*head, *result(best), *[""] * 5]
     beyond = ["the same", "", "", ""] if best is near else result(best)
     return [*head, *(result(near) if near else ["none", "", "", ""]), *beyond, digits(stable) if stable else "none"]
 
@@ -80,7 +82,7 @@ def draw(rows, file):
                 if points:
                     axis.plot(*zip(*points), marker, ls="-" if fill else ":", lw=1, color=COLOURS[name], ms=7,
                               mfc=COLOURS[name] if fill else "white")  # fmt: skip
-        axis.set(xscale="log", yscale="log", title=scene, xlim=(0.01, 60), ylim=(0.1, 200))
+        axis.set(xscale="log", yscale="log", title=scene, xlim=(0.01, 60), ylim=(0.1, 1000))
         axis.axvline(1, color="0.6", lw=1, ls="--")
         for one in (axis.xaxis, axis.yaxis):
             one.set_major_formatter(FormatStrFormatter("%g"))
@@ -102,7 +104,9 @@ def write(rows, root):
     with open(file, encoding="utf-8") as stream:
         text = stream.read()
     for name, made in (("peers: results", make_table(rows)), ("peers: cannot", cannots(rows))):
-        text = re.sub(rf"(<!-- {name} -->\n).*?(<!-- end of peers -->)",
-                      lambda found: f"{found[1]}{made}\n{found[2]}", text, flags=re.DOTALL)  # fmt: skip
+        text, count = re.subn(rf"(<!-- {name} -->\n).*?(<!-- end of peers -->)",
+                              lambda found: f"{found[1]}{made}\n{found[2]}", text, flags=re.DOTALL)  # fmt: skip
+        if count != 1:
+            raise ValueError(f"{file} has no place for '{name}'; restore its marks")
     with open(file, "w", encoding="utf-8") as stream:
         stream.write(text)

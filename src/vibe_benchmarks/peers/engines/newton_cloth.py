@@ -14,6 +14,14 @@ CM = 100.0
 THREAD_GAIN = 15.0  # [N/m]
 
 
+def settings(*sweep):
+    """Settings by name: (sub-steps, iterations, whether hinges act, damping over stiffness [s]) each."""
+    return {f"{steps} sub-step{'s'[:steps > 1]}, {n} iteration{'s'[:n > 1]}{'' if hinges else ', no hinges'}"
+            f"{', damped' if damping else ''}":
+            {"step": FRAME / steps, "iterations": n, "hinges": hinges, "damping": damping}
+            for steps, n, hinges, damping in sweep}  # fmt: skip
+
+
 def hinges(scene):
     """Per side of triangles, by its sorted nodes: its length [cm], and the sum of the areas beside it [cm^2]."""
     area = scene.areas()[0] * CM**2
@@ -35,6 +43,7 @@ class Cloth:
         self.step_size, self.frame, self.tension = settings["step"], -1, 0.0
         self.stretch = scene.young * scene.thickness  # [N/m]
         self.bend = scene.bending * CM**2  # [N cm^2/m = kg cm^2/s^2]
+        self.damping = 0.0 if scene.gravity else settings["damping"]  # what falls freely is not damped
         builder = newton.ModelBuilder(gravity=(0.0, 0.0, -scene.gravity * CM))
         common = {"pos": wp.vec3(0.0), "rot": wp.quat_identity(), "vel": wp.vec3(0.0), "scale": 1.0,
                   "vertices": [wp.vec3(*p) for p in scene.nodes * CM], "indices": scene.triangles.ravel().tolist(),

@@ -6,12 +6,10 @@ import warp as wp
 from newton.solvers import style3d
 
 from engines import newton_vbd
-from engines.newton_cloth import CM, Cloth
-from scenes import FRAME
+from engines.newton_cloth import CM, Cloth, settings
 
 NAME, PACKAGE, VERSION = "Newton Style3D", "newton", newton.__version__
-SWEEP = {f"{steps} sub-steps, {n} iterations": {"step": FRAME / steps, "iterations": n}
-         for steps, n in ((1, 10), (2, 10))}  # fmt: skip
+SWEEP = settings((1, 10, 1, 0), (2, 10, 1, 0))
 
 
 def cannot(scene):

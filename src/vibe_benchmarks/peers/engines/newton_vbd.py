@@ -2,13 +2,10 @@
 
 import newton
 
-from engines.newton_cloth import Cloth, hinges
-from scenes import FRAME
+from engines.newton_cloth import Cloth, hinges, settings
 
 NAME, PACKAGE, VERSION = "Newton VBD", "newton", newton.__version__
-SWEEP = {f"{steps} sub-steps, {n} iterations{'' if hinges else ', no hinges'}":
-         {"step": FRAME / steps, "iterations": n, "hinges": hinges}
-         for steps, n, hinges in ((1, 10, 1), (1, 40, 1), (10, 10, 1), (4, 10, 0))}  # fmt: skip
+SWEEP = settings((1, 10, 1, 0), (1, 40, 1, 0), (10, 10, 1, 0), (4, 10, 0, 0), (10, 10, 1, 0.01))
 
 
 def cannot(scene):
@@ -25,13 +22,13 @@ def cannot(scene):
 class Engine(Cloth):
     def fill(self, builder, common):
         s = self.scene
-        lame = self.stretch * s.poisson / (1 - s.poisson**2)
-        builder.add_cloth_mesh(**common, tri_ke=self.stretch / 2 / (1 + s.poisson), tri_ka=lame, tri_kd=0.0,
-                               edge_ke=1.0, edge_kd=0.0)  # fmt: skip
+        lame, shear = self.stretch * s.poisson / (1 - s.poisson**2), self.stretch / 2 / (1 + s.poisson)
+        builder.add_cloth_mesh(**common, tri_ke=shear, tri_ka=lame, tri_kd=self.damping * shear, edge_ke=1.0, edge_kd=0.0)
         found = hinges(s)
         for e, nodes in enumerate(builder.edge_indices):
             side, areas = found[tuple(sorted(int(n) for n in nodes[2:]))]
-            builder.edge_bending_properties[e] = (self.settings["hinges"] * self.bend * side / areas, 0.0)
+            stiffness = self.settings["hinges"] * self.bend * side / areas
+            builder.edge_bending_properties[e] = (stiffness, self.damping * stiffness)
 
     def finish(self, builder):
         builder.color(include_bending=True)

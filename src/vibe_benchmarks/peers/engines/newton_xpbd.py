@@ -3,13 +3,10 @@
 import newton
 
 from engines import newton_vbd
-from engines.newton_cloth import Cloth, hinges
-from scenes import FRAME
+from engines.newton_cloth import Cloth, hinges, settings
 
 NAME, PACKAGE, VERSION = "Newton XPBD", "newton", newton.__version__
-SWEEP = {f"{steps} sub-steps, {n} iterations{'' if hinges else ', no hinges'}":
-         {"step": FRAME / steps, "iterations": n, "hinges": hinges}
-         for steps, n, hinges in ((10, 10, 1), (160, 1, 1), (80, 1, 0))}  # fmt: skip
+SWEEP = settings((10, 10, 1, 0), (160, 1, 1, 0), (80, 1, 0, 0), (160, 1, 1, 0.001))
 
 
 def cannot(scene):
@@ -22,11 +19,13 @@ class Engine(Cloth):
         found = hinges(self.scene)
         for (i, j), (side, areas) in found.items():
             # van Gelder: E t times the areas beside the side over its length squared
-            builder.add_spring(int(i), int(j), self.stretch * areas / side**2, 0.0, 0.0)
+            stiffness = self.stretch * areas / side**2
+            builder.add_spring(int(i), int(j), stiffness, self.damping * stiffness, 0.0)
         for e, nodes in enumerate(builder.edge_indices):
             side, areas = found[tuple(sorted(int(n) for n in nodes[2:]))]
             # the gradients of the hinge lack a division by twice the area of a triangle
-            builder.edge_bending_properties[e] = (self.settings["hinges"] * self.bend * side**2 / areas**2, 0.0)
+            stiffness = self.settings["hinges"] * self.bend * side**2 / areas**2
+            builder.edge_bending_properties[e] = (stiffness, self.damping * stiffness)
 
     def make_solver(self, model):
         return newton.solvers.SolverXPBD(model, iterations=self.settings["iterations"])

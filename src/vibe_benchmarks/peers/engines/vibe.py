@@ -87,7 +87,7 @@ def bench(scene, settings, limit, duration):
         done = subprocess.run([BENCH, "--case", file, "--values", values], capture_output=True, text=True,
                               timeout=20 * limit, check=False)  # fmt: skip
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        if done.returncode > 1 or not os.path.exists(values):
+        if done.returncode not in (0, 1) or not os.path.exists(values):
             raise RuntimeError(f"vibe_bench ended with {done.returncode}: {done.stderr.strip()[-600:]}")
         with open(values, newline="", encoding="utf-8") as stream:
             rows = list(csv.DictReader(stream))
