@@ -49,7 +49,8 @@ def _leak(readings):
     rate = ""
     if "fill" in readings:
         first = QUANTITIES["fill"].at[0]
-        rate = f" (about {1e3 * first / (np.mean(readings['fill'][first]) - 1) * found:.1f} mL/min)"
+        rise = np.mean(readings["fill"][first]) - 1  # above the 1 mmHg from which filling begins
+        rate = f" (about {1e3 * first / rise * found:.1f} mL/min)" if rise > 0.1 else ""
     return [f"leak: the pressure falls by {found:.2f} mmHg in a minute{rate}, and less than {SILENT_DROP:g} is tight; look "
             "for bubbles at collars, pad and seams under water. All other readings may be too low."]
 
