@@ -18,6 +18,7 @@ BENCH = os.environ.get("VIBE_BENCH") or os.path.join(HERE, *[os.pardir] * 3, "de
 SWEEP = {"60 Hz, 2 iterations": {"step": FRAME, "iterations": 2, "radius": 0.2},
          "60 Hz, 6 iterations": {"step": FRAME, "iterations": 6, "radius": 0.2},
          "240 Hz, 2 iterations": {"step": FRAME / 4, "iterations": 2, "radius": 0.2},
+         "240 Hz, 20 iterations": {"step": FRAME / 4, "iterations": 20, "radius": 0.2},
          "240 Hz, 2 iterations, radius 0.8": {"step": FRAME / 4, "iterations": 2, "radius": 0.8}}  # fmt: skip
 
 
