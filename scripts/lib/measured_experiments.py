@@ -30,7 +30,8 @@ def measured():
 
 
 def compared(rows):
-    """Each prediction with `truth` and its `deviation`, NaN where there is none; those without truth are left out. An experiment whose measurement names no run is compared with each of its runs."""
+    """Each prediction with `truth` and its `deviation`, NaN where there is none; those without truth are left out. An
+    experiment whose measurement names no run is compared with each of its runs."""
     known = measured()
     rows = list(rows)
     lost = {key[2:] for key in known if key[0] in {row["experiment"] for row in rows}} - {

@@ -41,14 +41,13 @@ struct SurfaceContact {
 /// vertex within reach. The nearest points of a triangle and a shape would be fewer, but they move with the tilt of the
 /// triangle, and a force that follows that from step to step does not come to rest. Where two shapes touch one point,
 /// both contacts count: between shapes that meet at an angle the wall rests against both, and each alone would push it
-/// to the other.
+/// to the other. One that is farther than the nearest by touch_beside does not, unless the point would go through it.
 ///
 /// A contact asks of its point p, with the shape's point q, the normal n and the clearance c,
 ///   n . (p - q) >= c,  n along (1 - w) d0 n0 + w d1 n1
-///   c       half the thickness of the wall; less where a point divides what is stretched, and in corners of the tool
-///   [m] d, n    distance of p from the core of the shape, and the direction out of it, at the start (0) and the end
-///   (1) w       the moment at which the forces of the step act, as a part of it (Gonzalez 1996; docs/computation.md,
-///   (10))
+///   c       half the wall; less where a point divides what is stretched, and in corners of the tool [m]
+///   d, n    distance of p from the core of the shape, and the direction out of it, at the start (0) and the end (1)
+///   w       the moment at which the forces of the step act, as a part of it (Gonzalez 1996; docs/computation.md, (10))
 /// Points of a spacing s that keep R + h from the core of a shape keep the wall between them, with h = half the wall,
 ///   sqrt((R + h)^2 - s^2 / 3) >= R + touch_kept_between h
 /// from it, because the square of the distance from a convex set grows no faster than that from a point.

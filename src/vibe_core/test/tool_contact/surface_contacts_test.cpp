@@ -227,29 +227,36 @@ void forCorners(const ToolModel& tool, const std::vector<Isometry3d>& poses, Tak
     }
 }
 
-// Alone, the nearer one would push the wall to the other one, and then the other one back.
-TEST(SurfaceContacts, InACornerBetweenShapesTheWallRestsAgainstBoth) {
-  const ToolModel tool = ToolModel::fromUrdf(scopeText(), "scope");
-  int corners = 0, one_only = 0;
+/// The same for poses of a scope that is bent more and more.
+template <class Take>
+void forBends(const ToolModel& tool, Take take) {
   for (const double bend : {0.5, 1.0, 2.5}) {
     std::array<double, kJointCount> inputs{};
     inputs[TipUpDown] = bend;
     std::vector<Isometry3d> poses;
     tool.forwardKinematics(inputs, poses);
-    forCorners(tool, poses, [&](int one, int other, const Vector3d& joint) {
-      for (const double side : {-1.0, 0.0, 1.0}) {
-        const auto shapes = [&] { return shapesAtBend(tool, poses, one, other, joint, side); };
-        EXPECT_EQ(shapes().count(one), 1u) << "bent by " << bend << ", on side " << side;
-        EXPECT_EQ(shapes().count(other), 1u);
-        if (side == 0) continue;
-        StepPolicy nearest_only = stepPolicy();
-        nearest_only.touch_corner = 0;
-        const ScopedStepPolicy scoped(nearest_only);
-        one_only += shapes().count(one) + shapes().count(other) == 1 ? 1 : 0;
-        ++corners;
-      }
-    });
+    SCOPED_TRACE("bent by " + std::to_string(bend));
+    forCorners(tool, poses, [&](int one, int other, const Vector3d& joint) { take(poses, one, other, joint); });
   }
+}
+
+// Alone, the nearer one would push the wall to the other one, and then the other one back.
+TEST(SurfaceContacts, InACornerBetweenShapesTheWallRestsAgainstBoth) {
+  const ToolModel tool = ToolModel::fromUrdf(scopeText(), "scope");
+  int corners = 0, one_only = 0;
+  forBends(tool, [&](const std::vector<Isometry3d>& poses, int one, int other, const Vector3d& joint) {
+    for (const double side : {-1.0, 0.0, 1.0}) {
+      const auto shapes = [&] { return shapesAtBend(tool, poses, one, other, joint, side); };
+      EXPECT_EQ(shapes().count(one), 1u) << "on side " << side;
+      EXPECT_EQ(shapes().count(other), 1u);
+      if (side == 0) continue;
+      StepPolicy nearest_only = stepPolicy();
+      nearest_only.touch_corner = 0;
+      const ScopedStepPolicy scoped(nearest_only);
+      one_only += shapes().count(one) + shapes().count(other) == 1 ? 1 : 0;
+      ++corners;
+    }
+  });
   EXPECT_GT(corners, 20);
   EXPECT_EQ(one_only, corners) << "what this guards against is seen";
 }
@@ -258,33 +265,23 @@ TEST(SurfaceContacts, InACornerBetweenShapesTheWallRestsAgainstBoth) {
 TEST(SurfaceContacts, OnTheOutsideOfABendOneShapeHasTheContact) {
   const ToolModel tool = ToolModel::fromUrdf(scopeText(), "scope");
   int bends = 0;
-  for (const double bend : {0.5, 1.0, 2.5}) {
-    std::array<double, kJointCount> inputs{};
-    inputs[TipUpDown] = bend;
-    std::vector<Isometry3d> poses;
-    tool.forwardKinematics(inputs, poses);
-    forCorners(tool, poses, [&](int one, int other, const Vector3d& joint) {
-      for (const double side : {-2.0, -1.0, 0.0, 1.0, 2.0}) {
-        const std::set<int> shapes = shapesAtBend(tool, poses, one, other, joint, side, true);
-        EXPECT_EQ(shapes.count(one) + shapes.count(other), 1u) << "bent by " << bend << ", on side " << side;
-        ++bends;
-      }
-    });
-  }
+  forBends(tool, [&](const std::vector<Isometry3d>& poses, int one, int other, const Vector3d& joint) {
+    for (const double side : {-2.0, -1.0, 0.0, 1.0, 2.0}) {
+      const std::set<int> shapes = shapesAtBend(tool, poses, one, other, joint, side, true);
+      EXPECT_EQ(shapes.count(one) + shapes.count(other), 1u) << "on side " << side;
+      ++bends;
+    }
+  });
   EXPECT_GT(bends, 20);
 }
 
 /// Largest distance by which a wall is farther from a shape that it has a contact with than from the nearest one, at
 /// random places around a bent scope [m].
 double farthestBeside(const ToolModel& tool, int& contacts_of_two) {
-  std::array<double, kJointCount> inputs{};
-  inputs[TipUpDown] = 1.5;
-  std::vector<Isometry3d> poses;
-  tool.forwardKinematics(inputs, poses);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> part(0, 1);
   double farthest = 0;
-  forCorners(tool, poses, [&](int, int, const Vector3d& joint) {
+  forBends(tool, [&](const std::vector<Isometry3d>& poses, int, int, const Vector3d& joint) {
     for (int k = 0; k < 20; ++k) {
       const auto draw = [&] { return Vector3d(part(random) - 0.5, part(random) - 0.5, part(random) - 0.5); };
       SurfaceMesh mesh;
