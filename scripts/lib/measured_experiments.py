@@ -87,9 +87,10 @@ def values(rows, experiment):
         deviation = "" if math.isnan(row["deviation"]) else f" ± {digits(row['deviation'])}"
         cell = f"{digits(row['predicted'], 3)} / {digits(row['truth'], 3)}{deviation}, {signed(error(row, rows, experiment))}"
         lines.setdefault((row["run"], f"{row['quantity']} [{row['unit']}]"), {})[row["at"]] = cell
-    runs = any(run for run, _ in lines)
+    runs = len({run for run, _ in lines}) > 1
+    head = ", by ".join(filter(None, ("predicted / found", experiment.get("points"))))
     body = [((run,) if runs else ()) + (what, *(cells.get(at, "") for at in points)) for (run, what), cells in lines.items()]
-    return table((("run",) if runs else ()) + ("predicted / found", *points), body)
+    return table((("run",) if runs else ()) + (head, *points), body)
 
 
 @made_from("measurements")

@@ -4,6 +4,9 @@
 An experiment is a YAML file:
 
   title, source   what was done, and where it is published
+  judge, found    who knows better; what the comparison shows (text of the page)
+  points          name of what `at` is; compared_apart: runs of which only the first is listed; relative_to: {quantity:
+                  the one whose size its error is relative to}
   numbers         name: number or expression; later ones may use earlier ones
   runs            a list of {name: number}: what differs from run to run; `label` is the name of a run
   case            a case of vibe_bench (see ../cases), in which $(EXPRESSION) stands for its value; or
