@@ -144,6 +144,7 @@ bool DriveScopeTool::eventFilter(QObject* watched, QEvent* event) {
     case QEvent::WindowDeactivate:
     case QEvent::Hide:
       drive_.releaseAll();
+      pressed_.clear();
       break;
     default:
       break;
@@ -165,10 +166,14 @@ bool DriveScopeTool::handleKey(const QKeyEvent& event) {
   if (event.isAutoRepeat()) return isOurs(event);
   if (down && (event.key() == Qt::Key_H || event.key() == Qt::Key_F1)) help_->setBool(!help_->getBool());
   if (down && event.key() == Qt::Key_V) showNextView();
-  if (down)
+  const quint32 code = event.nativeScanCode();  // 0: unknown
+  if (down) {
+    pressed_[code] = event.key();
     drive_.keyDown(event.key());
-  else
-    drive_.keyUp(event.key());
+  } else {
+    const auto pressed = pressed_.extract(code);
+    drive_.keyUp(code == 0 || pressed.empty() ? event.key() : pressed.mapped());
+  }
   return isOurs(event);
 }
 

@@ -4,6 +4,7 @@
 
 #include <QPointer>
 #include <QWidget>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -63,6 +64,7 @@ class DriveScopeTool : public rviz::Tool {
   rviz::FloatProperty *slow_, *fast_, *bend_, *wheel_;
 
   operating::ManualDrive drive_;
+  std::map<quint32, int> pressed_;  // keys by the code of their place, which Shift and layouts leave as it is
   QTimer* button_timer_;
   std::unique_ptr<Legend> banner_, keys_, state_;
   int view_ = 0;              // the saved view that was chosen last

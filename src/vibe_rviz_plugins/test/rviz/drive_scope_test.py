@@ -135,6 +135,16 @@ class DriveScope(unittest.TestCase):
         self.tell_and_wait("repeat Key_W", "up Key_W")
         self.assertEqual(self.joint("insertion"), end)
 
+    def test_a_key_ends_whatever_its_release_is_called(self):
+        """Shift, or another layout, may have come between; what counts is the place of the key."""
+        self.rviz.tell("down Key_W 25")
+        self.wait(lambda: self.joint("insertion") > START["insertion"] + 0.005, "motion")
+        self.rviz.tell("up Key_Eacute 26")  # control: another key
+        at = self.joint("insertion")
+        self.wait(lambda: self.joint("insertion") > at + 0.005, "motion")
+        self.rviz.tell("up Key_Eacute 25")
+        self.rest()
+
     def test_without_focus_loss_the_joint_keeps_moving(self):
         """Negative control of the test above."""
         self.rviz.tell("down Key_W")

@@ -64,9 +64,11 @@ void RvizEvents::act(const QString& command, const QString& argument) {
 
 void RvizEvents::sendKey(int type, const QString& name, bool repeated) {
   bool known = false;
-  const int key = QMetaEnum::fromType<Qt::Key>().keyToValue(name.toUtf8().constData(), &known);
+  const QString key_name = name.section(' ', 0, 0);  // behind it the scan code, if it matters
+  const int key = QMetaEnum::fromType<Qt::Key>().keyToValue(key_name.toUtf8().constData(), &known);
   if (!known) return fail("there is no key '" + name + "'");
-  QKeyEvent event(static_cast<QEvent::Type>(type), key, Qt::NoModifier, QString(), repeated);
+  QKeyEvent event(static_cast<QEvent::Type>(type), key, Qt::NoModifier, name.section(' ', 1).toUInt(), 0, 0, QString(),
+                  repeated);
   QCoreApplication::sendEvent(manager_.getViewManager()->getRenderPanel(), &event);
 }
 
