@@ -1,4 +1,4 @@
-# What the endoscope's picture shows in eight views of scripts/views: properties with their controls. It runs the
+# What the endoscope's picture shows in nine views of scripts/views: properties with their controls. It runs the
 # sessions, because pictures of the documentation would not notice a change. Of the two views that the camera follows,
 # smoke is taken, too; scar, five minutes later, is for the pages.
 # kind: computing
@@ -17,7 +17,7 @@ fi
 
 takesTheViews() {
   "$root/scripts/views" --size 320x240 --truth --output "$scratch" \
-    rest 5mmhg 10mmhg antrum retroflexed marked sutured bleeding smoke
+    rest 5mmhg 10mmhg antrum retroflexed touched marked sutured bleeding smoke
 }
 check 'views: the pictures are taken, with their truth' takesTheViews
 systemTest check_views "$scratch" || echo 'not ok views: not everything could be measured'

@@ -28,14 +28,14 @@ std::string DatasetCamera::take(const SessionFrame& frame, const JointTree& pose
   const EndoscopeScene::PoseOf pose_of = [&](const std::string& name) { return poses.pose(name, world); };
   const std::optional<Eigen::Isometry3d> mount = pose_of(kCameraFrame);
   if (!mount) return std::string("Nothing tells where the frame '") + kCameraFrame + "' is in '" + world + "'.";
-  const std::string problem = show(frame, pose_of);
-  if (!problem.empty()) return problem;
-  if (options_.particles && topology_ && topology_ != written_topology_) folder.writeTopology(*topology_);
-  written_topology_ = topology_;
   using Eigen::Vector3d;
   const Eigen::Isometry3d camera = *mount * Eigen::Isometry3d(Eigen::AngleAxisd(options_.yaw, Vector3d::UnitY()) *
                                                               Eigen::AngleAxisd(options_.pitch, Vector3d::UnitX()) *
                                                               Eigen::AngleAxisd(options_.roll, Vector3d::UnitZ()));
+  const std::string problem = show(frame, camera, pose_of);
+  if (!problem.empty()) return problem;
+  if (options_.particles && topology_ && topology_ != written_topology_) folder.writeTopology(*topology_);
+  written_topology_ = topology_;
   const ros::Time stamp = frame.particles->header.stamp;
   folder.addImage(images_, stamp, camera);
   if (options_.particles) folder.writeParticles(images_, *frame.particles);
@@ -55,7 +55,8 @@ std::string DatasetCamera::follow(const SessionFrame& frame) {
   return drawn_.followParticles(*frame.particles);
 }
 
-std::string DatasetCamera::show(const SessionFrame& frame, const EndoscopeScene::PoseOf& pose_of) {
+std::string DatasetCamera::show(const SessionFrame& frame, const Eigen::Isometry3d& camera,
+                                const EndoscopeScene::PoseOf& pose_of) {
   std::string problem = drawn_.setParticles(*frame.particles);
   if (problem.empty()) problem = truth_.setParticles(*frame.particles);
   if (problem.empty() && frame.sutures && frame.sutures != sutures_) {
@@ -67,6 +68,7 @@ std::string DatasetCamera::show(const SessionFrame& frame, const EndoscopeScene:
   drawn_.drawBlood();
   drawn_.placeInstrument(pose_of);
   truth_.placeInstrument(pose_of);
+  truth_.pressOnLens(camera);
   truth_.commit();
   return "";
 }

@@ -33,7 +33,7 @@ class DatasetCamera {
     double aside;                     // to the right of the camera frame [m]
     std::optional<TruthView> before;  // from which the flow starts
   };
-  std::string show(const SessionFrame& frame, const EndoscopeScene::PoseOf& poseOf);
+  std::string show(const SessionFrame& frame, const Eigen::Isometry3d& camera, const EndoscopeScene::PoseOf& poseOf);
   void takeEye(Eye& eye, const Eigen::Isometry3d& camera, const ros::Time& stamp, DatasetFolder& folder);
 
   DatasetOptions options_;

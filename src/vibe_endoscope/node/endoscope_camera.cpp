@@ -134,7 +134,7 @@ void EndoscopeCamera::receiveParticles(const sensor_msgs::PointCloud2::ConstPtr&
   const std::optional<Eigen::Isometry3d> camera = pose_of(options_.camera_frame);
   if (!camera) return;  // the filter has seen this transform; it can be missing only if time was set back since
   std::string problem = draw(*message, pose_of);
-  if (problem.empty()) problem = drawTruth(*message, pose_of);
+  if (problem.empty()) problem = drawTruth(*message, *camera, pose_of);
   if (!problem.empty()) {
     ROS_WARN_STREAM_THROTTLE(kRepeatPeriod, problem);
     return;
@@ -168,7 +168,7 @@ std::string EndoscopeCamera::draw(const sensor_msgs::PointCloud2& particles, con
 }
 
 /// The same for the truth, if somebody wants it.
-std::string EndoscopeCamera::drawTruth(const sensor_msgs::PointCloud2& particles,
+std::string EndoscopeCamera::drawTruth(const sensor_msgs::PointCloud2& particles, const Eigen::Isometry3d& camera,
                                        const EndoscopeScene::PoseOf& pose_of) {
   if (std::none_of(eyes_.begin(), eyes_.end(), [](const Eye& eye) { return eye.truth.needsRays(); })) return "";
   const std::string problem = truth_.setParticles(particles);
@@ -176,6 +176,7 @@ std::string EndoscopeCamera::drawTruth(const sensor_msgs::PointCloud2& particles
   truth_.placeInstrument(pose_of);
   const vibe_msgs::SutureArray::ConstPtr sutures = suturesAt(particles.header.stamp);
   if (sutures && sutures != true_sutures_ && truth_.setSutures(*sutures, pose_of).empty()) true_sutures_ = sutures;
+  truth_.pressOnLens(camera);
   truth_.commit();
   return "";
 }

@@ -56,7 +56,8 @@ class EndoscopeCamera {
   void receiveParticles(const sensor_msgs::PointCloud2::ConstPtr& message);
   vibe_msgs::SutureArray::ConstPtr suturesAt(const ros::Time& stamp) const;
   std::string draw(const sensor_msgs::PointCloud2& particles, const EndoscopeScene::PoseOf& poseOf);
-  std::string drawTruth(const sensor_msgs::PointCloud2& particles, const EndoscopeScene::PoseOf& poseOf);
+  std::string drawTruth(const sensor_msgs::PointCloud2& particles, const Eigen::Isometry3d& camera,
+                        const EndoscopeScene::PoseOf& poseOf);
   void publish(Eye& eye, const Eigen::Isometry3d& camera, const std_msgs::Header& particles);
   void publishImage(Eye& eye, const Eigen::Isometry3d& camera);
   std::optional<Eigen::Isometry3d> find(const std::string& frame, const std::string& target, const ros::Time& stamp);

@@ -28,6 +28,7 @@ class TruthWorld {
   std::string setParticles(const sensor_msgs::PointCloud2& message);
   std::string setSutures(const vibe_msgs::SutureArray& message, const PoseOf& poseOf);
   void placeInstrument(const PoseOf& poseOf);
+  void pressOnLens(const Eigen::Isometry3d& camera) { scene_.pressOnLens(camera); }
   void commit() { scene_.commit(); }
 
   const TruthScene& scene() const { return scene_; }

@@ -50,6 +50,28 @@ vec3 lamp(vec3 place, vec3 normal, vec3 film, float reach, float soft, float nea
   return lamp(place, normal, film, reach, soft, near, vec2(1.0));
 }
 
+const float kFreePath = 0.001;                       // of light in the wall until it has no direction [m]
+const vec3 kAttenuation = vec3(400.0, 1000.0, 1200.0);  // of red, green and blue in the wall [1/m]
+
+// What seeps out of a wall at `place` of the light that enters it beside, beyond what lamp() gives: all of it where the
+// wall lies on the lens. The irradiance of a guide at the height h above a plane is Poisson's kernel of h, scattered over
+// the length l it is that of h + l, and what has gone the way s through the wall is attenuated:
+//   reach^2 [(h + l)/(a^2 + (h + l)^2)^(3/2) - h/(r (r^2 + near^2))] exp(-k (s - l)),  s = l/(h + l) sqrt(a^2 + (h + l)^2)
+// with a the distance of the guide along the plane, and r in space. docs/endoscope_look.md has the sources.
+vec3 seeping(vec3 place, vec3 normal, float reach, float near) {
+  vec3 sum = vec3(0.0);
+  for (int k = 0; k < 2; ++k) {
+    vec3 to_lamp = guideAt(k) - place;
+    float square = dot(to_lamp, to_lamp), height = max(dot(normal, to_lamp), 0.0);
+    float deep = height + kFreePath;
+    float way = sqrt(max(square - height * height, 0.0) + deep * deep);
+    float more = deep / (way * way * way) - height * inversesqrt(square) / (square + near * near);
+    float power = (k == 0 ? right_guide.w : left_guide.w) + (k == 0 ? lamp_ahead.x : lamp_ahead.y) * max(normal.z, 0.0);
+    sum += power * max(more, 0.0) * exp(-kAttenuation * (kFreePath / deep * way - kFreePath));
+  }
+  return reach * reach * sum;
+}
+
 // Half-shadow beside the lens: nearer than this, smoke gets little more light. Design choice [m].
 const float kSmokeNear = 0.025;
 const vec3 kSmokeColour = vec3(0.80, 0.86, 0.92);  // small particles scatter blue more; design choice

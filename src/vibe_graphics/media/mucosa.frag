@@ -41,6 +41,11 @@ varying float wisp;
 #endif
 
 const float kVessels = 1.0 / 0.06;  // a net of 15 mm
+// Up to here the wall is drawn as nearer than its middle, which is simulated, by half of its thickness [m]
+const vec2 kClose = vec2(0.004, 0.010);
+const float kHalfWall = 0.0012;      // [m]
+const float kNear = 0.002;           // as lamp() has it [m]
+const float kCapillaries = 800.0;    // of the pattern, 8 meshes wide: a net of 0.15 mm [1/m]
 const mat3 kTurn = mat3(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);  // so that periods do not coincide
 
 // One fold per turn of the phase: round on top, narrow at the bottom; 0 to 1.
@@ -127,10 +132,24 @@ void main() {
   }
   base = heated(base, heat, clamp(browned / max(heat, 0.01), 0.0, 1.0));
 
+  // Where the wall is close, its face comes nearer to the guides, and where it lies on the lens, all light goes through it.
+  vec3 face = view_position, through = vec3(0.0);
+  float open = 1.0;
+  float close = 1.0 - smoothstep(kClose.x, kClose.y, length(view_position));
+  if (close > 0.0) {
+    float height = max(-dot(flat_normal, view_position), 0.0);
+    float raised_by = min(close * kHalfWall, 0.98 * height);
+    face += raised_by * flat_normal;
+    open = mix(1.0, smoothstep(0.0, 0.002, height - raised_by), close);
+    normal = normalize(mix(flat_normal, normal, open));
+    through = close * seeping(face, flat_normal, reach, kNear);
+    base *= mix(vec3(1.0), vec3(0.95, 0.72, 0.76), close * (1.0 - smoothstep(0.0, 0.6, texture3D(pattern, kCapillaries * rest).r)));
+  }
+
   float dull = clamp(heat - 1.0, 0.0, 1.0);
-  vec3 light = lamp(view_position, normal, film, reach, 0.25, 0.002, reaching);
-  float around_light = fill * 0.3 * reach * reach / (dot(view_position, view_position) + 4e-4);
-  vec3 radiance = base * (light.x + around_light) + wet * (3.0 * light.y + 0.05 * light.z) * (0.2 + net.g * net.g * 1.8 + 0.8 * mucus) * (1.0 - dull);
+  vec3 light = lamp(face, normal, film, reach, 0.25 * open, kNear, reaching);
+  float around_light = open * fill * 0.3 * reach * reach / (dot(view_position, view_position) + 4e-4);
+  vec3 radiance = base * (light.x + around_light + through) + open * wet * (3.0 * light.y + 0.05 * light.z) * (0.2 + net.g * net.g * 1.8 + 0.8 * mucus) * (1.0 - dull);
 #ifdef SMOKE
   radiance = smoked(radiance, view_position, reach, smoke.x * wisp);
 #endif

@@ -26,9 +26,18 @@ float wispAt(vec3 place) {
   return 1.0 + 0.35 * sin(p.x) * sin(p.y) + 0.15 * sin(1.7 * p.z);
 }
 
+// As placeOnLens() of geometry/endoscope_optics.hpp, in the view.
+const float kBeforeLens = 0.0001, kBesideLens = 0.0038, kBehindLens = 0.005;  // [m]
+bool isOnLens(vec3 place) {
+  return place.z > -kBeforeLens && place.z < kBehindLens && length(place.xy) < kBesideLens;
+}
+
 void main() {
   gl_Position = worldViewProj * gl_Vertex;
+  // not cut by the near plane, which hides the glass of the lens: a wall that is touched lies on the glass
+  gl_Position.z = max(gl_Position.z, 0.0);
   view_position = (worldView * gl_Vertex).xyz;
+  if (isOnLens(view_position)) view_position.z = -kBeforeLens, gl_Position.w = kBeforeLens;
   view_normal = (worldView * vec4(gl_Normal, 0.0)).xyz;
   colour = gl_Color;
   rest = gl_MultiTexCoord0.xyz + pattern_shift;

@@ -1,5 +1,6 @@
 #include "shading.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -31,11 +32,34 @@ Eigen::Vector3d weightsAt(const Eigen::Vector3d& place, const Eigen::Vector3d& a
   return {of_a, of_b, 1 - of_a - of_b};
 }
 
-/// Irradiance of a wall at `place`, of whatever side, by the lamp at the origin.
-double irradiance(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) {
-  const double square = place.squaredNorm();
-  const double facing = std::abs(normal.dot(place)) / std::sqrt(square * normal.squaredNorm());
-  return facing * kLampReach * kLampReach / square;
+constexpr double kClose = 0.004, kFar = 0.010;  // where light begins to go through the wall, too [m]
+constexpr double kHalfWall = 0.0012, kFreePath = 0.001, kGuide = 0.0037;  // as in lamp.glsl of vibe_graphics [m]
+const Rgb kAttenuation(400, 1000, 1200);                                  // [1/m]
+
+/// 1 near the lens, 0 from kFar on.
+double closeness(double distance) {
+  const double t = std::clamp((distance - kClose) / (kFar - kClose), 0.0, 1.0);
+  return 1 - t * t * (3 - 2 * t);
+}
+
+/// Of the light of a ring of guides around the lens, what comes out of the wall `aside` from the lens, whose face is
+/// `gap` away, as seeping() of lamp.glsl.
+Rgb seeping(double gap, double aside) {
+  const double deep = gap + kFreePath, way = std::sqrt(aside * aside + kGuide * kGuide + deep * deep);
+  Rgb left = (1 + kAttenuation.array() * (kFreePath / deep * way - kFreePath) / 8).inverse();  // to the 8th: exp()
+  for (int k = 0; k < 3; ++k) left = left.cwiseProduct(left);
+  return deep / (way * way * way) * left;
+}
+
+/// Irradiance of a wall at `place`, of whatever side, by the lamp at the origin, for red, green and blue.
+Rgb irradiance(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) {
+  const double square = place.squaredNorm(), distance = std::sqrt(square);
+  const double height = std::abs(normal.dot(place)) / normal.norm(), close = closeness(distance);
+  Rgb light = Rgb::Constant(height / (distance * square));
+  if (close > 0)
+    light += close *
+             (seeping(std::max(height - kHalfWall, 0.0), std::sqrt(std::max(square - height * height, 0.0))) - light);
+  return kLampReach * kLampReach * light;
 }
 
 std::uint8_t shown(double radiance) {
@@ -69,8 +93,9 @@ void shade(const SurfaceView& surface, const std::vector<Eigen::Vector3d>& albed
       const Eigen::Vector3d place = image.depth[i] * lens.ray(i % image.width, i / image.width);
       const Eigen::Vector3d weight = weightsAt(place, seen.vertices[t[0]], seen.vertices[t[1]], seen.vertices[t[2]]);
       const Eigen::Vector3d normal = weight[0] * normals[t[0]] + weight[1] * normals[t[1]] + weight[2] * normals[t[2]];
-      radiance = (weight[0] * albedo[t[0]] + weight[1] * albedo[t[1]] + weight[2] * albedo[t[2]]).cwiseMax(0) *
-                 irradiance(place, normal);
+      radiance = (weight[0] * albedo[t[0]] + weight[1] * albedo[t[1]] + weight[2] * albedo[t[2]])
+                     .cwiseMax(0)
+                     .cwiseProduct(irradiance(place, normal));
     }
     for (int k = 0; k < 3; ++k) colour[3 * i + k] = shown(radiance[k]);
   }

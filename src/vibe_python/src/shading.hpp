@@ -18,7 +18,9 @@ std::vector<Eigen::Vector3d> wallAlbedo(const Model& model, const State& state);
 
 /// Shades what castRays() has found, as a matt wall with smooth normals that a small lamp at the lens lights:
 ///   radiance r = albedo cos(angle between normal and lamp) (kLampReach / distance)^2, shown as 255 sqrt(r / (1 + r)).
-/// There are no shadows, because what the lens sees, the lamp lights. All operations are rounded by IEEE 754.
+/// Nearer than 10 mm light goes through the wall, too, and it becomes red, as in the endoscope's picture
+/// (docs/endoscope_look.md). There are no shadows, because what the lens sees, the lamp lights. All operations are
+/// rounded by IEEE 754.
 /// @param[out] colour  (height, width, 3)
 void shade(const SurfaceView& surface, const std::vector<Eigen::Vector3d>& albedo, const Eigen::Isometry3d& camera,
            double field_of_view, const CastImage& image, std::uint8_t* colour);

@@ -1,4 +1,4 @@
-"""Pictures of the endoscope's eye: the image of endoscope_camera in ten states of three sessions.
+"""Pictures of the endoscope's eye: the image of endoscope_camera in twelve states of four sessions.
 
 The simulator begins paused and is taken from picture to picture by its service `step`, so that a picture shows the same
 state on every machine.
@@ -26,7 +26,7 @@ from .session import Interrupted, carry_out, interruptible
 from .take_pictures import PictureSession
 from .view_list import SESSIONS, VIEWS
 
-COLUMNS = 5  # of the sheet
+COLUMNS = 4  # of the sheet
 
 
 def scene_with(changes, folder):

@@ -7,8 +7,9 @@ from .view_list import VIEWS
 
 DESCRIPTION = """\
 Runs sessions without a screen, stops them at fixed simulated times and saves the image of endoscope_camera there as
-eye_VIEW.png, and all of them as eye_views.png. Views: rest (collapsed), 5mmhg, 10mmhg, antrum, retroflexed, marked,
-sutured, bleeding, smoke (after a mark), scar (five minutes later, beside a new one); default: all of them."""
+eye_VIEW.png, and all of them as eye_views.png. Views: rest (collapsed), 5mmhg, 10mmhg, antrum, retroflexed, near
+(2 mm before the wall), touched (the wall lies on the lens), marked, sutured, bleeding, smoke (after a mark), scar (five
+minutes later, beside a new one); default: all of them."""
 
 
 def view(text):

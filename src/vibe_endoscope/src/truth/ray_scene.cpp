@@ -82,6 +82,13 @@ void passVeil(const RTCFilterFunctionNArguments* arguments) {
   }
 }
 
+/// Lets rays pass a rigid body before they begin, as the near plane cuts it. What moves is met from the origin on.
+void passNear(const RTCFilterFunctionNArguments* arguments) {
+  for (unsigned i = 0; i < arguments->N; ++i)
+    if (RTCRayN_tfar(arguments->ray, arguments->N, i) < RTCRayN_time(arguments->ray, arguments->N, i))
+      arguments->valid[i] = 0;
+}
+
 void setTriangles(RTCGeometry geometry, const std::vector<graphics::MovingVertex>& vertices,
                   const std::vector<std::uint32_t>& triangles) {
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data(), 0,
@@ -100,8 +107,9 @@ void fill(const Eigen::Isometry3f& camera, const CameraRay* rays, std::size_t co
     valid[i] = i < count ? -1 : 0;
     packet.org_x[i] = origin.x(), packet.org_y[i] = origin.y(), packet.org_z[i] = origin.z();
     packet.dir_x[i] = direction.x(), packet.dir_y[i] = direction.y(), packet.dir_z[i] = direction.z();
-    packet.tnear[i] = ray.begin, packet.tfar[i] = ray.end;
-    packet.time[i] = 0, packet.mask[i] = 0xffffffffU, packet.id[i] = 0, packet.flags[i] = 0;
+    packet.tnear[i] = 0, packet.tfar[i] = ray.end;
+    packet.time[i] = ray.begin;  // nothing here moves during a picture, so that the time is free for passNear()
+    packet.mask[i] = 0xffffffffU, packet.id[i] = 0, packet.flags[i] = 0;
   }
 }
 
@@ -192,6 +200,8 @@ std::uint32_t RayScene::addRigid(const std::vector<graphics::MovingVertex>& vert
   rtcSetSceneFlags(body->rigid, RTC_SCENE_FLAG_ROBUST);
   RTCGeometry shape = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   setTriangles(shape, vertices, triangles);
+  rtcSetGeometryIntersectFilterFunction(shape, passNear);
+  rtcSetGeometryOccludedFilterFunction(shape, passNear);
   rtcCommitGeometry(shape);
   rtcAttachGeometry(body->rigid, shape);
   rtcReleaseGeometry(shape);

@@ -21,7 +21,7 @@ struct SurfaceHit {
 /// A half-line from the lens, cut to what a camera draws.
 struct CameraRay {
   Eigen::Vector3f direction;  ///< unit, in the frame of the camera
-  float begin, end;           ///< distance from the origin [m]
+  float begin, end;           ///< distance from the origin; rigid bodies are not met before `begin` [m]
 };
 
 /// Triangles that rays are cast at, with Embree (Wald et al. 2014, doi:10.1145/2601097.2601199). Bodies are numbered

@@ -101,7 +101,7 @@ TruthFlow TruthCamera::flow(const TruthView& before, const TruthScene& scene, co
     const SurfaceHit& hit = before.hits[k];
     if (!hit.any() || before.shapes[hit.body] == 0 || before.shapes[hit.body] != scene.shapeNumber(hit.body)) continue;
     const Eigen::Vector3d seen = poses[hit.body] * scene.pointOf(hit);
-    if (!(seen.z() >= near_ && seen.z() <= far_)) continue;
+    if (!(seen.z() > 0 && seen.z() <= far_)) continue;
     const Eigen::Vector2d pixel = graphics::pixelOf(round_, seen);
     if (!isInside(pixel)) continue;
     const int at = static_cast<int>(pixels_[k]);

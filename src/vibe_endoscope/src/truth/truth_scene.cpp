@@ -92,12 +92,31 @@ void TruthScene::setFrame(const graphics::TissueFrame& frame) {
   const bool first = wall.shape_number == 0;
   const bool moved = !surface_->update(frame.positions).empty();
   wall_labels_.setFrame(mesh_, frame);
-  if (first) {
-    wall.shape_number = ++shapes_;
+  if (first || !pressed_.empty()) {
+    if (first) wall.shape_number = ++shapes_;
+    wall.vertices = &surface_->vertices();
+    pressed_.clear();
     rays_.set(wall_, *wall.vertices, *wall.triangles);
   } else if (moved) {
     rays_.moved(wall_);
   }
+}
+
+void TruthScene::pressOnLens(const Eigen::Isometry3d& camera) {
+  const std::vector<graphics::MovingVertex>& wall = surface_->vertices();
+  const Eigen::Isometry3d to_camera = camera.inverse(Eigen::Isometry);
+  std::vector<graphics::MovingVertex> pressed;
+  for (std::size_t v = 0; v < wall.size(); ++v) {
+    const Eigen::Vector3d seen = to_camera * placeOf(wall[v]), shown = graphics::placeOnLens(seen);
+    if (shown == seen) continue;
+    if (pressed.empty()) pressed = wall;
+    Eigen::Map<Eigen::Vector3f>(pressed[v].position) = (camera * shown).cast<float>();
+  }
+  if (pressed.empty() && pressed_.empty()) return;
+  pressed_ = std::move(pressed);
+  Body& body = bodies_[wall_];
+  body.vertices = pressed_.empty() ? &wall : &pressed_;
+  rays_.set(wall_, *body.vertices, *body.triangles);
 }
 
 void TruthScene::setSutures(const graphics::SutureDrawing& sutures, double time, const Eigen::Isometry3d& pose) {

@@ -28,6 +28,8 @@ class TruthScene {
   void setMesh(const graphics::TissueMesh& mesh);
   /// The organ at another moment; a frame of another revision than the mesh is an error of the caller.
   void setFrame(const graphics::TissueFrame& frame);
+  /// Brings the wall of the last frame to where a camera at this pose shows it (graphics::placeOnLens()).
+  void pressOnLens(const Eigen::Isometry3d& camera);
   /// @param time  of the message: bleeding pulses [s]
   /// @param pose  of the frame of the sutures in that of the scene
   void setSutures(const graphics::SutureDrawing& sutures, double time, const Eigen::Isometry3d& pose);
@@ -78,6 +80,7 @@ class TruthScene {
   RayScene rays_;
   graphics::TissueMesh mesh_;
   std::unique_ptr<graphics::DeformableSurface> surface_;
+  std::vector<graphics::MovingVertex> pressed_;  // the wall's vertices, while some lie on the lens
   WallLabels wall_labels_;
   graphics::BleedingShape bleeding_;
   Eigen::Isometry3d suture_pose_ = Eigen::Isometry3d::Identity();

@@ -187,17 +187,46 @@ TEST_P(TruthCameraTest, OuterWallAndWhatIsTooNearAreToldApart) {
   EXPECT_EQ(labels[static_cast<std::size_t>(height / 2 * width + width / 2)], kLabelOuterWall);
   EXPECT_EQ(labels[static_cast<std::size_t>(height / 2 * width + width / 2 - height / 2 + 3)], kLabelNothing);
 
-  // the wall is cut where it is nearer than the camera draws
-  const TruthCamera cut(test::smallCamera(GetParam()), 0.13, kFar);
-  cut.look(world.scene, outside, view);
-  const std::vector<std::uint8_t> inside = cut.labels(world.scene, view);
-  EXPECT_GE(inside[static_cast<std::size_t>(height / 2 * width + width / 2)], kLabelOuterWall);
-  const TruthCamera deeper(test::smallCamera(GetParam()), 0.2, kFar);
-  deeper.look(world.scene, outside, view);
-  const std::uint8_t far_wall =
-      deeper.labels(world.scene, view)[static_cast<std::size_t>(height / 2 * width + width / 2)];
-  EXPECT_GE(far_wall, kLabelWall);
-  EXPECT_LT(far_wall, kLabelPlainWall);
+  // the device is cut where it is nearer than the camera draws, the wall is not
+  const auto middle = [&](double near) {
+    const TruthCamera cutting(test::smallCamera(GetParam()), near, kFar);
+    cutting.look(world.scene, outside, view);
+    return cutting.labels(world.scene, view)[static_cast<std::size_t>(height / 2 * width + width / 2)];
+  };
+  EXPECT_EQ(middle(0.2), kLabelOuterWall);
+  graphics::ColouredShape plate;
+  graphics::appendBox(Eigen::Isometry3d::Identity(), {0.05, 0.05, 0.002}, 0, plate);
+  const std::uint32_t part = world.scene.addPart("plate", plate);
+  world.scene.placePart(part, outside * Eigen::Translation3d(0, 0, 0.03));
+  world.scene.commit();
+  EXPECT_GE(middle(0.02), kLabelInstrument);
+  EXPECT_EQ(middle(0.04), kLabelOuterWall);
+}
+
+TEST_P(TruthCameraTest, AWallBehindTheLensLiesOnIt) {
+  FoldedWorld world(96, 192, false);  // as fine as a drawn stomach
+  world.show(0);
+  const TruthCamera camera(test::smallCamera(GetParam()), kNear, kFar);
+  const auto middle =
+      static_cast<std::size_t>(camera.round().height / 2 * camera.round().width + camera.round().width / 2);
+  const auto look = [&](const Eigen::Isometry3d& pose) {
+    world.scene.pressOnLens(pose);
+    world.scene.commit();
+    TruthView view;
+    camera.look(world.scene, pose, view);
+    return std::pair(camera.depth(world.scene, view)[middle], camera.labels(world.scene, view)[middle]);
+  };
+  const auto [distance, inner] = look(test::eye());
+  const auto at = [&](double before_wall) {
+    return test::eye() * Eigen::Isometry3d(Eigen::Translation3d(0, 0, double{distance} - before_wall));
+  };
+  EXPECT_NEAR(look(at(0.002)).first, 0.002, 3e-4);  // the wall is inclined
+  for (const double behind : {0.0, 5e-4, 2e-3}) {
+    EXPECT_NEAR(look(at(-behind)).first, 1e-4, 1e-6) << behind;
+    EXPECT_EQ(look(at(-behind)).second, inner) << behind;
+  }
+  EXPECT_NE(look(at(-0.006)).second, inner);     // control: a lens that is outside
+  EXPECT_EQ(look(test::eye()).first, distance);  // and the wall is where it was
 }
 
 TEST_P(TruthCameraTest, ThreadsAndTagsHaveTheirLabelsAndThinBloodIsTransparent) {

@@ -66,6 +66,13 @@ Eigen::Vector3d rayOf(const RoundCamera& camera, const Eigen::Vector2d& pixel) {
   return {aside.x() * scale, aside.y() * scale, std::cos(angle)};
 }
 
+Eigen::Vector3d placeOnLens(const Eigen::Vector3d& place) {
+  constexpr double kBefore = 1e-4, kBeside = 3.8e-3,
+                   kBehind = 5e-3;  // the lens is so far from the edge of the face [m]
+  const bool within = place.z() < kBefore && place.z() > -kBehind && place.head<2>().norm() < kBeside;
+  return within ? Eigen::Vector3d(place.x(), place.y(), kBefore) : place;
+}
+
 SquareSource sourceFor(const RoundCamera& camera, double sharpness, int max) {
   return squareAround(std::tan(0.5 * camera.field_of_view), focalLength(camera), sharpness, max);
 }

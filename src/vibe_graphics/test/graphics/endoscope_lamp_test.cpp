@@ -155,6 +155,60 @@ TEST_F(EndoscopeLampTest, MucosaIsBrighterOnTheSideOfItsGuide) {
   EXPECT_NEAR(both, 1, 0.05);  // control: what the pattern of the wall does
 }
 
+/// What a picture consists of (ratios), and its mean colour (levels).
+struct Mixture {
+  double black = 0, white = 0;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  double redness() const { return mean[0] / mean[1]; }
+};
+
+Mixture mixtureOf(const Pixels& pixels) {
+  Mixture mixture;
+  int count = 0;
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      if (std::hypot(2 * x + 1 - kSize, 2 * y + 1 - kSize) > 0.96 * kSize) continue;
+      const std::uint8_t* pixel = &pixels[static_cast<std::size_t>(3 * (y * kSize + x))];
+      const int sum = pixel[0] + pixel[1] + pixel[2];
+      mixture.black += sum<15, mixture.white += sum> 735, ++count;
+      for (int c = 0; c < 3; ++c) mixture.mean[c] += pixel[c];
+    }
+  mixture.black /= count, mixture.white /= count, mixture.mean /= count;
+  return mixture;
+}
+
+TEST_F(EndoscopeLampTest, AWallThatIsTouchedIsRedAndNeverBlack) {
+  TissueVisual tissue(*test::graphicsScene().getRootSceneNode());
+  const test::TubeOrgan organ;
+  tissue.setMesh(organ.mesh());
+  TissueFrame frame;
+  frame.revision = 1;
+  frame.positions = organ.places(1.15);
+  tissue.setFrame(frame);
+  const auto seenFrom = [&](double distance) {  // of the middle of the wall; below 0: it is behind the lens
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translate(Eigen::Vector3d(0, 0, 1.15 * organ.radius - distance));
+    OffscreenCamera camera(test::graphicsScene(), {LensKind::Equidistant, 2.44, kSize, kSize}, 1);
+    Pixels pixels;
+    camera.take(pose, 1, pixels);
+    return mixtureOf(pixels);
+  };
+  const double far = seenFrom(0.030).redness();
+  double last = far;
+  for (const double distance : {0.010, 0.006, 0.003, 0.0015, 0.0008, 0.0003, 0.0001, -0.0003, -0.002}) {
+    const Mixture seen = seenFrom(distance);
+    std::printf("%5.1f mm: black %.3f, white %.3f, red to green %.2f\n", 1e3 * distance, seen.black, seen.white,
+                seen.redness());
+    EXPECT_LT(seen.black, 0.01) << distance;
+    EXPECT_LT(seen.white, 0.05) << distance;
+    EXPECT_GT(seen.redness(), 0.93 * last) << distance;  // never much less than from farther away
+    last = seen.redness();
+  }
+  EXPECT_GT(seenFrom(0.0008).redness(), 1.3 * far);
+  EXPECT_GT(seenFrom(0.0003).redness(), 1.6 * far);
+  EXPECT_GT(seenFrom(-0.007).black, 0.9);  // control: a lens that is outside sees nothing
+}
+
 TEST_F(EndoscopeLampTest, SmokeIsLitByTheSameGuides) {
   SceneSmoke smoke(test::graphicsScene());
   smoke.set(6, 0);

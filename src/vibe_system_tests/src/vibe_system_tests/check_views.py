@@ -1,4 +1,4 @@
-"""Properties of the eight pictures of scripts/views --truth, each with a control that must fail.
+"""Properties of the nine pictures of scripts/views --truth, each with a control that must fail.
 
 A property is a function of pictures: what an endoscopist knows of the view, not how it looks today. The control is the
 same function of pictures that do not have the property, most often those of the neighbouring view. Every line says what
@@ -17,7 +17,7 @@ import numpy
 from PIL import Image
 from scipy import ndimage
 
-VIEWS = ("rest", "5mmhg", "10mmhg", "antrum", "retroflexed", "marked", "sutured", "bleeding")
+VIEWS = ("rest", "5mmhg", "10mmhg", "antrum", "retroflexed", "touched", "marked", "sutured", "bleeding")
 MARK_SIZE = 12  # a mark of fewer pixels is not judged: its rim and its middle are the same pixels
 GLARE = 0.65  # blue to red of a wall that mirrors light; without that it is 0.4 to 0.5
 RIM = 5  # how far around a thing the wall is its surroundings [px]
@@ -106,6 +106,14 @@ def folds_flatten(collapsed, half, full):
     """Folds lose their contrast from collapsed over 5 to 10 mmHg."""
     values = [contrast(view) for view in (collapsed, half, full)]
     return values[0] > 1.2 * values[1] and values[1] > 1.2 * values[2], "contrast {:.3f}, {:.3f}, {:.3f}".format(*values)
+
+
+def touch_is_red(touched):
+    """A wall that lies on the lens is red all over, and neither black nor white."""
+    seen = touched.picture[touched.depth > 0].sum(axis=1)  # [levels of three channels]
+    black, white, green = (seen < 15).mean(), (seen > 735).mean(), ratio(touched, touched.depth > 0, 1)
+    said = "black {:.3f}, white {:.3f}, green to red {:.2f}".format(black, white, green)
+    return black < 0.05 and white < 0.05 and green < 0.45, said
 
 
 def antrum_is_paler(antrum, body):
@@ -219,6 +227,7 @@ PROPERTIES = [
     Property(antrum_is_smooth, "antrum 5mmhg", ["rest 5mmhg", "antrum 10mmhg"]),
     Property(pylorus_is_an_opening, "antrum", ["10mmhg", "10mmhg/antrum"]),
     Property(shaft_enters_at_the_cardia, "retroflexed", ["antrum", "marked/retroflexed"]),
+    Property(touch_is_red, "touched", ["rest", "10mmhg", "retroflexed"]),
     Property(marks_are_white, "marked", ["10mmhg", "10mmhg/marked", "sutured/marked"]),
     Property(thread_is_blue, "sutured", ["marked", "marked/sutured"]),
     Property(blood_is_red, "bleeding sutured", ["sutured sutured", "sutured/bleeding sutured"]),

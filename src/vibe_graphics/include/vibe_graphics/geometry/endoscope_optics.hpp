@@ -48,6 +48,12 @@ Eigen::Vector2d pixelOf(const RoundCamera& camera, const Eigen::Vector3d& point)
 /// Unit vector of the ray through a pixel, which may lie outside of the circle.
 Eigen::Vector3d rayOf(const RoundCamera& camera, const Eigen::Vector2d& pixel);
 
+/// Where a picture shows a point of the wall, in the frame of the camera [m]. The tip has no room for tissue: a point
+/// within it lies on its face. Such points exist because the shapes that the simulator lets the wall touch are rounder
+/// than the face, and the drawn wall is smoother than the simulated one: where the tip presses with some 5 N, the drawn
+/// wall may be a few tenths of a millimetre behind the lens. media/mucosa.vert does the same.
+Eigen::Vector3d placeOnLens(const Eigen::Vector3d& place);
+
 /// The circular image is computed from plane square images, which is what graphics cards draw.
 struct SquareSource {
   double half_width = 0;  ///< tangent of the angle between the axis and the middle of an edge
