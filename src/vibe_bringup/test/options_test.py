@@ -223,7 +223,7 @@ class OthersTest(OptionsTest):
         self.refuses("there is no view 'foo'", "views", "foo")
         self.refuses("--size needs WIDTHxHEIGHT in pixels, not '3'", "views", "--size", "3")
         self.assertEqual([view.name for view in self.accepts("views", "scar").views], ["scar"])
-        self.assertEqual(len(self.accepts("views").views), 10)
+        self.assertEqual(len(self.accepts("views").views), 12)
 
     def test_latency(self):
         self.refuses("--blinks needs a whole number above zero, not '0'", "latency", "--blinks", "0")
