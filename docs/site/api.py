@@ -208,47 +208,36 @@ class Symbol:
 
 
 def symbols_of(compound):
-    """(package, symbol) of the public members of a class, namespace or file."""
+    """The public members of a class, namespace or file."""
     members = [member for section in compound.iter("sectiondef") for member in section.iter("memberdef")]
     by_line = {}
     for member in members:
         by_line.setdefault(line_of(member), []).append(words_of(member))
     around = words_of(compound) if compound.get("kind") in ("struct", "class", "union") else ""
     for member in members:
-        found = re.search(r"src/(\w+)/include/", line_of(member)[0] or "")
-        if found and member.get("prot") == "public":
-            yield found.group(1), Symbol(member, words_of(member) or "".join(by_line[line_of(member)]), around)
+        if re.search(r"src/\w+/include/", line_of(member)[0] or "") and member.get("prot") == "public":
+            yield Symbol(member, words_of(member) or "".join(by_line[line_of(member)]), around)
 
 
 def public_symbols(xml):
-    """(package, symbol) of every public member, once."""
+    """Every public member, once."""
     seen = set()
     for file in sorted(xml.glob("*.xml")):
         for compound in ElementTree.parse(file).getroot().iter("compounddef"):
-            for package, symbol in symbols_of(compound) if compound.get("prot") != "private" else ():
+            for symbol in symbols_of(compound) if compound.get("prot") != "private" else ():
                 if symbol.member.get("id") not in seen:
                     seen.add(symbol.member.get("id"))
-                    yield package, symbol
-
-
-def lacking(xml):
-    """{package: [symbols, without a comment, numbers without a unit]}"""
-    counts = {}
-    for package, symbol in public_symbols(xml):
-        count = counts.setdefault(package, [0, 0, 0])
-        count[0] += 1
-        count[1] += symbol.silent()
-        count[2] += symbol.unitless()
-    return counts
+                    yield symbol
 
 
 def problems(xml):
-    """One sentence for each package whose headers lack something."""
-    for package, (_, silent, unitless) in lacking(xml).items():
-        if silent:
-            yield "{}: {} public symbols have no comment; write one".format(package, silent)
-        if unitless:
-            yield "{}: {} public numbers have no unit; write it in brackets, or that it is a ratio".format(package, unitless)
+    """One sentence for each symbol that lacks something."""
+    for symbol in public_symbols(xml):
+        place = "{}:{}: '{}'".format(*line_of(symbol.member), text_of(symbol.member, "name"))
+        if symbol.silent():
+            yield place + " has no comment; write one"
+        if symbol.unitless():
+            yield place + " is a number without a unit; write it in brackets, or that it is a ratio"
 
 
 def pages(root, xml):

@@ -132,6 +132,7 @@ def main():
     parser.add_argument("root", type=pathlib.Path, help="the workspace")
     parser.add_argument("output", type=pathlib.Path, help="folder of the sources, which is made anew")
     parser.add_argument("--katex", type=pathlib.Path, required=True, help="folder of KaTeX")
+    parser.add_argument("--lunr", type=pathlib.Path, required=True, help="lunr.min.js")
     parser.add_argument("--doxygen", type=pathlib.Path, required=True, help="folder of the XML of Doxygen")
     arguments = parser.parse_args()
     sys.dont_write_bytecode = True
@@ -149,9 +150,12 @@ def main():
     site.write_code_pages()
     static = arguments.output / "_static"
     shutil.copytree(arguments.katex, static / "katex", ignore=shutil.ignore_patterns("*.mjs", "katex.js", "katex.css"))
-    for name in ("formulas.js", "site.css"):
+    shutil.copyfile(arguments.lunr, static / "lunr.min.js")
+    for name in ("formulas.js", "search.js", "site.css"):
         shutil.copyfile(site.root / "docs/site" / name, static / name)
     problems = [*site.problems, *api.problems(arguments.doxygen)]
+    problems += ["{}: lists nothing; build first (scripts/build), or mend docs/site/reference.py".format(name)
+                 for name, text in made.items() if reference.empty(text)]
     for problem in problems:
         print(problem, file=sys.stderr)
     return 1 if problems else 0

@@ -19,7 +19,7 @@ copyright = "the ViBE for ROS authors, BSD-3-Clause"  # noqa: A001
 release = version = version_of("vibe_core")
 language = "en"
 
-extensions = ["myst_parser", "sphinx.ext.mathjax", "theme"]
+extensions = ["myst_parser", "sphinx.ext.mathjax", "theme", "sections"]
 myst_enable_extensions = ["dollarmath", "amsmath"]
 myst_dmath_double_inline = True
 myst_heading_anchors = 4
@@ -39,5 +39,6 @@ html_css_files = ["katex/katex.min.css", "site.css"]
 html_js_files = [("katex/katex.min.js", {"defer": "defer"}), ("katex/contrib/auto-render.js", {"defer": "defer"})]
 html_copy_source = False
 html_show_sourcelink = False
-html_show_search_summary = False  # it would load pages by request, which browsers refuse for files
+templates_path = ["templates"]
+html_additional_pages = {"search": "search.html"}
 html_last_updated_fmt = None

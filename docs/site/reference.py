@@ -107,12 +107,11 @@ def events(root):
 
 def measures(root):
     program = root / "devel/lib/vibe_core/vibe_headless"
-    lines = ["# Measures by name\n", "What `vibe_headless --list-measures` prints: the names in reports, cohorts, "
-             "regressions and `vibe_msgs/SkillMetrics`. Definitions and sources: [Measures](../docs/metrics.md).\n"]
-    if not program.exists():
-        return "\n".join(lines + ["The programs are not built, so the names are not listed here.\n"])
-    listed = json.loads(subprocess.run([program, "--list-measures"], check=True, capture_output=True, text=True).stdout)
-    return "\n".join(lines + [table(("measure", "unit"), measure_rows(listed))])
+    listed = json.loads(subprocess.run([program, "--list-measures"], check=True, capture_output=True, text=True).stdout
+                        if program.exists() else "{}")
+    return "\n".join(["# Measures by name\n", "What `vibe_headless --list-measures` prints: the names in reports, cohorts, "
+                      "regressions and `vibe_msgs/SkillMetrics`. Definitions and sources: [Measures](../docs/metrics.md).\n",
+                      table(("measure", "unit"), measure_rows(listed))])
 
 
 def measure_rows(listed):
@@ -155,28 +154,29 @@ def command_lines(root):
 
 # --- nodes
 
-def documented_parameters(page):
-    """{section: {parameter: row}} of docs/interfaces.md."""
-    found = {}
-    for section, text in re.findall(r"^## (.*)\n(.*?)(?=^## |\Z)", page, re.M | re.S):
-        part = re.search(r"^\| parameter \| default \| meaning \|\n.*?(?=\n\n|\Z)", text, re.M | re.S)
-        if not part:
-            continue
-        rows = re.findall(r"^\| (`[^|]*) \| ([^|]*) \| ((?:[^|]|\\\|)*) \|$", part[0], re.M)
-        found[section] = [(name, default, meaning) for name, default, meaning in rows]
-    return found
+# The tables of parameters: of a section that is called after its node, or of the page of one node.
+PARAMETER_PAGES = {"interfaces": None, "web": "web_node", "endoscope_camera": "endoscope_camera", "latency": "latency_probe"}
+PARAMETER_TABLE = re.compile(r"^\| parameter \| default \|( range \|)? meaning \|\n\|[-|]*\n(?P<rows>(?:\|.*\n)+)", re.M)
+
+
+def parameter_rows(name, page, node):
+    """(parameter, node, default, range, meaning) of the tables of a page."""
+    for section in re.split(r"^## ", page, flags=re.M):
+        heading = section.partition("\n")[0]
+        anchor = re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+        for found in PARAMETER_TABLE.finditer(section):
+            for row in found["rows"].splitlines():
+                parameter, default, *between, meaning = (part.strip() for part in re.split(r"(?<!\\)\|", row)[1:-1])
+                meaning = re.sub(r"\]\((?=#)", "]({}.md".format(name), meaning)
+                yield (parameter, "[{}](../docs/{}.md#{})".format(cell(node or heading), name, anchor), default, "".join(between),
+                       re.sub(r"\]\((?!\w+:)", "](../docs/", meaning))
 
 
 def parameters(root):
-    page = (root / "docs/interfaces.md").read_text(encoding="utf-8")
-    rows = []
-    for section, listed in documented_parameters(page).items():
-        anchor = re.sub(r"[^\w\- ]", "", section.lower()).replace(" ", "-")
-        for name, default, meaning in listed:
-            meaning = re.sub(r"\]\((?!\w+:)", "](../docs/", meaning)
-            rows.append((name, "[{}](../docs/interfaces.md#{})".format(section.replace("_", "\\_"), anchor), default, meaning))
+    rows = [row for name, node in PARAMETER_PAGES.items()
+            for row in parameter_rows(name, (root / "docs/{}.md".format(name)).read_text(encoding="utf-8"), node)]
     return "\n".join(["# Parameters of nodes\n", "All private parameters, in the order of their names. An unknown or invalid "
-                      "one ends a node with status 2.\n", table(("parameter", "node", "default", "meaning"), sorted(rows))])
+                      "one ends a node with status 2.\n", table(("parameter", "node", "default", "range", "meaning"), sorted(rows))])
 
 
 # --- Python
@@ -209,6 +209,11 @@ def class_lines(item):
             rows.append(("`{}`".format(shown), cell(ast.get_docstring(member) or "")))
     if rows:
         yield table(("member", "meaning"), rows)
+
+
+def empty(text):
+    """Whether a page lists nothing, or one of its tables has no row."""
+    return not re.search(r"^(\||## )", text, re.M) or bool(re.search(r"^\|[-|]+\n(?!\|)", text, re.M))
 
 
 def pages(root):

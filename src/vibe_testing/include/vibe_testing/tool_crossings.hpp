@@ -23,10 +23,10 @@ namespace solids {
 
 /// A shape in its own frame: all points within `radius` of a segment along z, or a box, or a cylinder along z.
 struct Solid {
-  enum class Kind { Round, Box, Cylinder } kind = Kind::Round;
-  Eigen::Vector3d half = Eigen::Vector3d::Zero();  ///< of the box; z: of the segment or cylinder [m]
-  double radius = 0;                               ///< [m]
-  Eigen::Isometry3d pose;                          ///< in world
+  enum class Kind { Round, Box, Cylinder } kind = Kind::Round;  ///< what the shape is
+  Eigen::Vector3d half = Eigen::Vector3d::Zero();               ///< of the box; z: of the segment or cylinder [m]
+  double radius = 0;                                            ///< [m]
+  Eigen::Isometry3d pose;                                       ///< in world [m]
 };
 
 /// Rotation that turns z into an axis.
@@ -37,6 +37,7 @@ inline Eigen::Matrix3d alongAxis(int axis) {
   return turn;
 }
 
+/// The shape of a tool whose link is at a pose in world.
 inline Solid solidOf(const ToolShape& shape, const Eigen::Isometry3d& link) {
   Solid solid;
   solid.pose = link * shape.origin;
@@ -70,6 +71,7 @@ inline Solid solidOf(const ToolShape& shape, const Eigen::Isometry3d& link) {
   }
 }
 
+/// Distance of the segments from p to p + u and from q to q + v [m].
 inline double segmentsApart(const Eigen::Vector3d& p, const Eigen::Vector3d& u, const Eigen::Vector3d& q,
                             const Eigen::Vector3d& v) {
   const Eigen::Vector3d w = p - q;
@@ -92,6 +94,7 @@ inline double aboveTriangle(const Eigen::Vector3d& p, const TriangleCorners& t) 
   return std::abs((p - t[0]).dot(normal)) / normal.norm();
 }
 
+/// How far a triangle reaches below the surface of a round shape [m], exactly; negative: it is outside.
 inline double depthInRound(const Solid& solid, const TriangleCorners& t) {
   const Eigen::Vector3d begin(0, 0, -solid.half.z()), end(0, 0, solid.half.z());
   if (segmentPierces(begin, end, t)) return solid.radius;
@@ -107,6 +110,7 @@ inline double depthAt(const Solid& solid, const Eigen::Vector3d& p) {
   return std::min(solid.radius - p.head<2>().norm(), solid.half.z() - std::abs(p.z()));
 }
 
+/// The same of any shape; of boxes and cylinders at samples of the triangle.
 inline double depthInside(const Solid& solid, const TriangleCorners& t) {
   if (solid.kind == Solid::Kind::Round) return depthInRound(solid, t);
   constexpr int samples = 16;  // per edge
@@ -117,6 +121,7 @@ inline double depthInside(const Solid& solid, const TriangleCorners& t) {
   return depth;
 }
 
+/// Whether an axis of the shape, from end to end, passes through the triangle.
 inline bool coreIn(const Solid& solid, const TriangleCorners& t) {
   for (int axis = solid.kind == Solid::Kind::Box ? 0 : 2; axis < 3; ++axis) {
     const Eigen::Vector3d end = solid.half[axis] * Eigen::Vector3d::Unit(axis);
@@ -132,6 +137,7 @@ inline Eigen::Vector3d extentOf(const Solid& solid) {
   return {solid.radius, solid.radius, solid.half.z() + cap};
 }
 
+/// Whether a triangle is outside of the box with half sides `extent` [m].
 inline bool apart(const TriangleCorners& t, const Eigen::Vector3d& extent) {
   const Eigen::Vector3d low = t[0].cwiseMin(t[1]).cwiseMin(t[2]), high = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
   return !((low.array() <= extent.array()).all() && (high.array() >= -extent.array()).all());

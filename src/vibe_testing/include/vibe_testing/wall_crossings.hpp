@@ -12,8 +12,9 @@
 
 namespace vibe::test {
 
-using TriangleCorners = std::array<Eigen::Vector3d, 3>;
+using TriangleCorners = std::array<Eigen::Vector3d, 3>;  ///< [m]
 
+/// Corners of a triangle of the wall [m].
 inline TriangleCorners cornersOf(const SurfaceView& wall, std::size_t triangle) {
   const auto& corner = wall.triangles[triangle];
   return {wall.position(corner[0]), wall.position(corner[1]), wall.position(corner[2])};

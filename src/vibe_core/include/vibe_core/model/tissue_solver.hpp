@@ -27,7 +27,7 @@ struct StepReport {
   std::vector<ToolContact> contacts;                      ///< where tool_force acts, as their sum
   std::optional<ToolImpedance> tool_impedance;            ///< empty without contact, or if the solver computes none
   ToolDisplacement tool_displacement{};                   ///< in: if nothing acts on the tool; out: at the end
-  std::array<double, kYieldDofs> tool_load{};             ///< see State
+  std::array<double, kYieldDofs> tool_load{};             ///< see State [N], [N m]
   std::array<double, kScopeJointCount> hand_effort{};     ///< of the hand on the joints, mean over the step [N], [N m]
   std::array<int, kJointCount> stopped{};                 ///< joints that tissue has stopped: sign of their motion
   int blocking_particle = -1;  ///< nearest to what has stopped the whole tool; -1: it goes on, or rests by itself

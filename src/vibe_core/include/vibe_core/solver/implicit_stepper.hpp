@@ -116,11 +116,11 @@ class ImplicitStepper {
   /// solve starts where the one before has ended, if that arrived, or was abandoned. All together take as many
   /// evaluations as two without backward Euler may, but each has some at least.
   void begin(const MotionView& motion, const BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
-  void beginAgain(StepperMemory& memory, StepperWorkspace& scratch) const;
+  void beginAgain(StepperMemory& memory, StepperWorkspace& scratch) const;  ///< see begin()
   /// After the last solve of a step that goes on: the rule after which the next steps take backward Euler.
   /// @param arrived  StepOutcome::arrived of that solve
   void end(bool arrived, StepperMemory& memory) const;
-  const StepPlan& plan() const { return *plan_; }
+  const StepPlan& plan() const { return *plan_; }  ///< what all steps share
 
   /// The equilibrium under the loads from the positions in `motion` (velocities become 0), refactoring as it goes.
   /// @param tolerance  no node would move farther [m]
@@ -132,7 +132,7 @@ class ImplicitStepper {
     double energy;                       ///< [J]
     const std::vector<float>& gradient;  ///< (4 per node), in the workspace until it is used again [N]
   };
-  Elastic elastic(const MotionView& motion, StepperWorkspace& scratch) const;
+  Elastic elastic(const MotionView& motion, StepperWorkspace& scratch) const;  ///< see Elastic
 
  private:
   std::unique_ptr<const StepPlan> plan_;

@@ -49,7 +49,7 @@ void setStepPolicy(const StepPolicy& policy);
 /// Sets a policy, and at the end of its life the one that was before.
 class ScopedStepPolicy {
  public:
-  explicit ScopedStepPolicy(const StepPolicy& policy) : before_(stepPolicy()) { setStepPolicy(policy); }
+  explicit ScopedStepPolicy(const StepPolicy& policy) : before_(stepPolicy()) { setStepPolicy(policy); }  ///< sets it
   ScopedStepPolicy(const ScopedStepPolicy&) = delete;
   ScopedStepPolicy& operator=(const ScopedStepPolicy&) = delete;
   ~ScopedStepPolicy() { setStepPolicy(before_); }

@@ -43,7 +43,7 @@ class TagReader {
 struct TagPlace {
   Eigen::Vector2d centre;       ///< undistorted [px]
   Eigen::Matrix2d picture;      ///< of the tag's unit vectors [px/m]
-  double pixels_per_metre = 0;  ///< square root of the area
+  double pixels_per_metre = 0;  ///< square root of the area [px/m]
   double misfit = 0;            ///< what remains at each corner, in both directions together [px]
 
   /// @param shift  of the picture that was searched, in the full image [px]. @param side  of the tag [m]
