@@ -3,7 +3,7 @@
 # cost: 60
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-for name in door rooms names launch links catkin bash python; do
+for name in door rooms names launch links pictures catkin bash python; do
   check "lint $name" "$root/scripts/lint" --only "$name"
 done
 
@@ -72,6 +72,19 @@ for header in cv_bridge/cv_bridge image_transport/image_transport camera_info_ma
 done
 check 'lint sees ROS in a library of the displays' findsRosIn vibe_graphics/src/geometry/a.hpp \
   '#include <rviz/display.h>'
+
+# A picture of a tree that passes; then what it shows changes, it has no row, or its row has no picture.
+seesAnOldPicture() {
+  local tree rows
+  tree=$(copyOfTree) rows=docs/pictures/made.csv
+  mkdir "$tree/docs/pictures" "$tree/plot" && cd "$tree" && echo 1 >plot/data.csv && touch docs/pictures/plot.png
+  printf 'picture,date,digest,command,shows\nplot.png,2020-01-01,0,draw,plot\n' >$rows
+  scripts/lib/check_pictures.py . --made plot.png && scripts/lint --only pictures || return 1
+  says() { scripts/lint --only pictures | grep -F "docs/pictures/$1"; }
+  echo 2 >>plot/data.csv && says 'plot.png: is of 20' && sed -i 's/,[0-9a-f]*,draw/,older,draw/' $rows && scripts/lint --only pictures &&
+    touch docs/pictures/other.svg && says 'other.svg: has 0 rows' && rm docs/pictures/plot.png && says 'plot.png: is in made.csv and not'
+}
+check 'lint sees a picture that is older than what it shows' seesAnOldPicture
 
 # findsRoomProblem FILE LINE PATTERN: adds a line to a file of an orderly tree; lint must name file, line and problem
 findsRoomProblem() {
