@@ -12,6 +12,8 @@ import tempfile
 import unittest
 from unittest import mock
 
+import yaml
+
 from vibe_bringup import dataset, places, run, session
 
 PROGRAMS = os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "programs")
@@ -182,6 +184,19 @@ class Run(OptionsTest):
             self.refuses("already holds a session", "run", "--output", "x")
             self.assertNotEqual(subprocess.call([sys.executable, "-c", code], stderr=subprocess.DEVNULL), 0)
             os.remove("x/" + name)
+
+    def test_what_people_say_of_a_session_stands_beside_its_recording(self):
+        for words, said in ((), None), (("--person", "Ada Ö: 1"), {"person": "Ada Ö: 1"}), (("--notes", "a\nb", "--person", "1"),
+                                                                                      {"person": "1", "notes": "a\nb"}):  # fmt: skip
+            folder = tempfile.mkdtemp(dir=self.folder)
+            arguments, _, _, complained = call("run", *words)
+            self.assertIsNotNone(arguments, complained)
+            session.Session.describe(mock.Mock(arguments=arguments, output=folder))
+            file = os.path.join(folder, "session.about.yaml")
+            self.assertEqual(os.path.exists(file), said is not None)
+            if said:
+                with open(file, encoding="utf-8") as text:
+                    self.assertEqual(yaml.safe_load(text), said)
 
 
 class OthersTest(OptionsTest):

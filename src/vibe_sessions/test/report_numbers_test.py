@@ -118,6 +118,11 @@ class NumbersTest(unittest.TestCase):
         self.assertEqual(numbers["dropped"]["lost_inputs"], 17)  # of 18: nothing follows the last
         self.assertEqual(numbers["session"]["driver"], "gamepad_node")
 
+    def test_who_drives_in_rviz_is_the_keyboard(self):
+        for caller, shown in (("/rviz_1795891871594679402", "keyboard"), ("/rviz", "keyboard"), ("/left/rviz_1", "left/keyboard"),
+                              ("/rviz_2_node", "rviz_2_node"), ("/web_node", "web_node")):  # fmt: skip
+            self.assertEqual(self.read(duration=0.1, origin=1.7e9, caller=caller)[1]["session"]["driver"], shown)
+
     def test_no_delays_in_simulated_time(self):
         self.assertEqual(self.read(duration=1)[1]["latency"], {})
 

@@ -15,11 +15,15 @@ import unittest
 from contextlib import redirect_stderr, redirect_stdout
 
 import numpy
-from report_bags import SyntheticSession
+from report_bags import RADIUS, SyntheticSession
 
 from vibe_sessions.report import main as program
 from vibe_sessions.report import organ, page as pages
 from vibe_sessions.report.distributions import MOST_GROUPS
+from vibe_sessions.report.drawing import POINTS
+from vibe_sessions.report.main import COMPARED
+from vibe_sessions.report.overlay import trace_of
+from vibe_sessions.report.recording import read_recording
 from vibe_sessions.report.session_work import names_of, page_names
 from vibe_sessions.report.tables import shown
 from vibe_sessions.report.viewer import viewer_script
@@ -105,7 +109,7 @@ class SessionPageTest(PageTest):
         self.assertEqual((status, complained), (0, ""))
         self.assertEqual(said.strip(), os.path.join(self.output, "index.html"))
         page = self.check_whole("index.html")
-        self.assertEqual(page.scripts, 0)
+        self.assertEqual(page.scripts, 1)
         text = " ".join(page.text)
         for part in ("13.1 ± 5.2", "34.6", "Trejos", "None of this is a grade", "suture", "0123456789abcdef"):
             self.assertIn(part, text)
@@ -115,7 +119,7 @@ class SessionPageTest(PageTest):
         pages.viewer_script = lambda: "look();"
         self.report(self.make("a.bag"))
         page = self.check_whole("index.html")
-        self.assertEqual(page.scripts, 2)
+        self.assertEqual(page.scripts, 3)
         data = json.loads(next(text for text in page.text if text.startswith('{"lowest"')))
         places = numpy.frombuffer(base64.b64decode(data["places"]), "<u2").reshape(-1, 3)
         rest = numpy.frombuffer(base64.b64decode(data["rest"]), "<f4").reshape(-1, 3)
@@ -140,7 +144,7 @@ class SessionPageTest(PageTest):
     def test_text_of_a_recording_is_only_text(self):
         self.report(self.make("a.bag", scene_name=NASTY, event_text=NASTY, caller="/<b>me", origin=1.7e9))
         page = self.check_whole("index.html")
-        self.assertEqual(page.scripts, 0)
+        self.assertEqual(page.scripts, 1)
         self.assertIn(NASTY, page.text)
         self.assertGreaterEqual("".join(page.text).count(NASTY), 2)  # the scene and the warning
         self.assertIn("<b>me", "".join(page.text))
@@ -149,6 +153,29 @@ class SessionPageTest(PageTest):
         self.assertEqual(Page("<p><script>1</script></p>").scripts, 1)
         self.assertEqual(Page('<img src="http://x/y.png">').links, ["http://x/y.png"])
         self.assertRaises(AssertionError, Page, "<p></b></p>")
+
+    def test_person_and_notes(self):
+        bag, about = self.make("a.bag"), self.path("a.about.yaml")
+        for said, shown in ((None, None), ("person: " + json.dumps(NASTY), NASTY), ("notes: 17", None), ("", None)):
+            if said is not None:
+                with open(about, "w", encoding="utf-8") as file:
+                    file.write(said)
+            self.assertEqual(self.report(bag)[0], 0)
+            session = json.loads(self.read("sessions.json"))["sessions"][0]["session"]
+            self.assertEqual((session["person"], session["notes"]), (shown, "17" if said == "notes: 17" else None))
+            row = next(csv.DictReader(io.StringIO(self.read("sessions.csv"))))
+            self.assertEqual(row["person"], shown or "")
+            self.assertEqual(NASTY in self.check_whole("index.html").text, shown is not None)
+
+    def test_what_is_wrong_beside_a_recording_is_told(self):
+        bag = self.make("a.bag")
+        for said in ("persons: Ada", "[person", "just a name"):
+            with open(self.path("a.about.yaml"), "w", encoding="utf-8") as file:
+                file.write(said)
+            status, _, complained = self.report(bag)
+            self.assertEqual((status, complained.count("\n")), (1, 1), complained)
+            self.assertIn("a.about.yaml: cannot be read", complained)
+            self.assertIn("write 'person: NAME'", complained)
 
     def test_almost_nothing_was_recorded(self):
         only = ("applied_input", "scene")
@@ -215,6 +242,28 @@ class ManyTest(PageTest):
         self.assertTrue(told in self.read("index.html"))
         self.report(*bags[:MOST_GROUPS], "--no-pages", "--group", "folder")
         self.assertFalse("groups are drawn" in self.read("index.html"))
+
+    def test_a_few_sessions_are_drawn_in_the_same_axes(self):
+        bags = [self.make(f"{k}.bag") for k in range(COMPARED + 1)]
+        pictures = {}
+        for count in (2, COMPARED, COMPARED + 1):
+            self.report(*bags[:count], "--no-pages")
+            page = self.check_whole("index.html")
+            pictures[count] = len([link for link in page.links if link.startswith("data:image/svg")])
+            self.assertEqual("compared" in page.ids, count <= COMPARED)
+        self.assertEqual(pictures, {2: 3, COMPARED: 3, COMPARED + 1: 1})  # distributions; force and path
+        for topic, left in (("scope/measured_cf", 2), ("scope/measured_cp", 2), ("tissue/topology", 3)):
+            self.report(bags[0], self.make("without.bag", without=(topic,)), "--no-pages")
+            page = self.check_whole("index.html")
+            self.assertEqual(len([link for link in page.links if link.startswith("data:image/svg")]), left, topic)
+
+    def test_what_is_compared_is_what_was_recorded(self):
+        trace = trace_of(read_recording(self.make("a.bag", duration=60)), "a")
+        self.assertAlmostEqual(trace.force[:, 1].max(), 6, delta=0.01)
+        self.assertLess(len(trace.path), 2 * POINTS)
+        radius = numpy.hypot(trace.path[:, 1], trace.path[:, 2])
+        self.assertAlmostEqual(radius.min(), RADIUS, delta=1e-6)
+        self.assertAlmostEqual(radius.max(), RADIUS, delta=1e-6)
 
     def test_what_an_earlier_call_wrote_is_not_left(self):
         bags = [self.make("a.bag"), self.make("b.bag")]

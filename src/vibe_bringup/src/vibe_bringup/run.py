@@ -91,6 +91,8 @@ def parser():
         "what a replay needs")  # fmt: skip
     add("--output", metavar="DIR", help="folder for the recording, the summary and the logs (default: "
         "sessions/<date-time>)")  # fmt: skip
+    add("--person", metavar="NAME", help="who drives, for the report")
+    add("--notes", metavar="TEXT", help="what else the report shall say; both stand in session.about.yaml beside the recording")
     add_options_of_drivers(made)
     return made
 

@@ -11,6 +11,8 @@ import signal
 import sys
 import time
 
+import yaml
+
 from . import places
 from .drivers import DRIVERS
 from .graph import Graph, GraphError
@@ -53,7 +55,15 @@ class Session:
         self.vision = Vision(arguments) if arguments.camera else None
         self.sim = self.recorder = self.rviz = None
 
+    def describe(self):
+        """What people say of the session, for its report, where they can change it afterwards."""
+        about = {key: getattr(self.arguments, key) for key in ("person", "notes") if getattr(self.arguments, key)}
+        if about:
+            with open(os.path.join(self.output, "session.about.yaml"), "w", encoding="utf-8") as file:
+                yaml.safe_dump(about, file, allow_unicode=True)
+
     def start(self):
+        self.describe()
         graph = self.graph
         graph.start_master()
         print(graph.how_to_attach(), flush=True)

@@ -11,6 +11,7 @@ interface Data {
 }
 
 const kRevision = 1;
+const kNear = 0.75; // of the distance in the page: without the scope the organ may fill the view
 const canvas = document.getElementById('organ-canvas') as HTMLCanvasElement;
 
 const bytesOf = (text: string) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer;
@@ -35,6 +36,7 @@ function show(stage: Stage, data: Data) {
 
 try {
   const stage = new Stage(canvas, 0);
+  stage.camera.position.multiplyScalar(kNear);
   show(stage, JSON.parse(document.getElementById('organ-data')!.textContent!));
   stage.controls.enableZoom = false; // the wheel moves the page until somebody takes hold of the organ
   canvas.addEventListener('pointerdown', () => (stage.controls.enableZoom = true));

@@ -123,7 +123,11 @@ def trajectory(recording):
     path = recording.tip_path()
     if len(path) < 3:
         return None
-    outline = rest_outline(recording.topology)
+    return three_views(path, rest_outline(recording.topology), lambda *view: draw_phases(recording, path, *view))
+
+
+def three_views(path, outline, draw):
+    """Pictures of what draw(axes, right, up) draws of a path, given the axes of the world to the right and up."""
     ranges = [axis_range(path, outline, axis) for axis in range(3)]
     widths = [ranges[right][1] - ranges[right][0] for _, right, _, _ in VIEWS]
     tallest = max(ranges[up][1] - ranges[up][0] for _, _, up, _ in VIEWS)
@@ -135,7 +139,8 @@ def trajectory(recording):
     for (name, right, up, sign), width in zip(VIEWS, widths):
         tall = scale * (ranges[up][1] - ranges[up][0])
         axes = drawn.add_axes([left / WIDTH, (height - 0.35 - tall) / height, scale * width / WIDTH, tall / height])
-        draw_view(axes, recording, path, outline, (right, up, sign))
+        draw_outline(axes, outline, right, up)
+        draw(axes, right, up)
         axes.set_xlim(*(ranges[right] if sign > 0 else ranges[right][::-1]))
         axes.set_ylim(*ranges[up])
         axes.set_xlabel("{} [mm]".format("xyz"[right]))
@@ -163,15 +168,18 @@ def axis_range(path, outline, axis):
     return low - margin, high + margin
 
 
-def draw_view(axes, recording, path, outline, view):
+def draw_outline(axes, outline, right, up):
     from matplotlib.collections import PolyCollection
 
-    right, up, _ = view
+    axes.grid(False)
     if outline:
         points = outline[0][:, [right, up]]
         axes.add_collection(
             PolyCollection(points[outline[1]], facecolor="#f3e3df", edgecolor="#f3e3df", lw=0.3, rasterized=True)
         )
+
+
+def draw_phases(recording, path, axes, right, up):
     named = set()
     for phase, begin, end in spans_of(recording) or [("", 0, recording.duration())]:
         inside = path[(path[:, 0] >= begin) & (path[:, 0] <= end + 0.11)]
@@ -182,7 +190,6 @@ def draw_view(axes, recording, path, outline, view):
         axes.plot(1e3 * inside[::stride, 1 + right], 1e3 * inside[::stride, 1 + up], color=colour, lw=0.9, label=label)
     for index, marker, label in ((0, "o", "begin"), (-1, "s", "end")):
         axes.plot(1e3 * path[index, 1 + right], 1e3 * path[index, 1 + up], marker, color=INK, ms=3.5, label=label)
-    axes.grid(False)
 
 
 def darker(colour):

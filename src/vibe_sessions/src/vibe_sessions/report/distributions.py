@@ -29,6 +29,7 @@ def distributions(rows):
         axes.set_ylim(len(groups) - 0.4, -0.6)
         axes.grid(axis="y", visible=False)
         axes.margins(x=0.08)
+        axes.locator_params(axis="x", nbins=5)
         axes.set_title(label, loc="left", fontsize=9.5, fontweight="bold")
     drawn.tight_layout(h_pad=1.2, w_pad=1.6)
     return svg(drawn)

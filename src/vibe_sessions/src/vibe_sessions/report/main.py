@@ -13,6 +13,8 @@ from .output import Output
 from .session_work import Task, names_of, page_names, report_on
 from .workers import run_all
 
+COMPARED = 8  # sessions at most, for which there are colours
+
 
 def find_bags(arguments, fail):
     """The recordings, those in folders included, each once. A path that does not exist is kept and gets its sentence."""
@@ -52,12 +54,12 @@ def default_output(paths):
 
 def tasks_of(arguments, paths, folder):
     names, groups = names_of(paths), groups_of(arguments, paths)
-    single = len(paths) == 1
+    single, few = len(paths) == 1, 1 < len(paths) <= COMPARED
     pages = ["index.html"] if single else page_names(names)
     return [
         Task(path, name, group, arguments.namespace,
              "" if arguments.no_pages else os.path.join(folder, page), "" if single else "index.html",
-             arguments.session)
+             arguments.session, few)
         for path, name, group, page in zip(paths, names, groups, pages)
     ]  # fmt: skip
 
@@ -106,11 +108,11 @@ def run_in(arguments, paths, folder):
         jobs = min(arguments.jobs or len(os.sched_getaffinity(0)), len(tasks))
         for number, succeeded, result in run_all(tasks, report_on, jobs):
             if not succeeded:
-                result = None, None, "{}: could not be reported on ({})".format(tasks[number].path, result)
-            row, numbers, problem = result
+                result = None, None, "{}: could not be reported on ({})".format(tasks[number].path, result), None
+            row, numbers, problem, trace = result
             if row is not None and key:
                 row["group"] = str(row[key]) if row[key] is not None else ""
-            output.add(number, row, numbers, problem)
+            output.add(number, row, numbers, problem, trace)
             if problem:
                 print("report: " + problem, file=sys.stderr)
             progress.show(output.done, len(output.failures))

@@ -8,6 +8,7 @@ import time
 import numpy
 
 from . import events
+from .about import about_of
 from .health import dropped_of, latency_of, solver_of, warnings_of
 
 SKILL_SKIPPED = ("header", "organ_reference")
@@ -71,6 +72,7 @@ def session_of(recording):
         "recording": "all" if recording.has_all("tissue/particles") else "compact",
         "bytes": recording.size,
         "cut": bool(recording.cut_reason),
+        **about_of(recording.path),
         "namespace": recording.namespace or "/",
         "identity": "{:016x}".format(recording.identity) if recording.identity else None,
     }
@@ -92,8 +94,10 @@ def when(recording):
 
 
 def driver_of(recording):
-    """The nodes that sent inputs, by their names in the headers of the connections."""
-    names = sorted({name.lstrip("/") for callers in recording.callers.values() for name in callers})
+    """The nodes that sent inputs, by their names in the headers of the connections; rviz, which has another name each time,
+    is who drives with its window: by the keyboard."""
+    callers = {name.lstrip("/") for names in recording.callers.values() for name in names}
+    names = sorted({re.sub(r"^(.*/)?rviz(_\d+)?$", r"\1keyboard", name) for name in callers})
     return ", ".join(names) or None
 
 

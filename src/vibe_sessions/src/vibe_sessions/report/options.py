@@ -4,7 +4,7 @@ import argparse
 import re
 import sys
 
-KEYS = ("folder", "scene", "skill", "driver", "version")
+KEYS = ("folder", "person", "scene", "skill", "driver", "version")
 DESCRIPTION = """\
 Writes a report of recorded sessions: a page (HTML, in one file), all numbers (sessions.json) and one row per session
 (sessions.csv). One recording gives one page; several give a page with a table and distributions, and one page each."""
@@ -32,7 +32,7 @@ def add_options(made):
     made.add_argument("--output", metavar="DIR", help="folder to write to (default: NAME_report beside the only "
                       "recording, else report in the present folder)")  # fmt: skip
     made.add_argument("--group", action="append", default=[], metavar="GROUP", help="how to group sessions: folder "
-                      "(the first below the folder that all share), scene, skill, driver or version; or NAME=PATTERN for "
+                      "(the first below the folder that all share), person, scene, skill, driver or version; or NAME=PATTERN for "
                       "the recordings whose path fits the pattern, may be repeated")  # fmt: skip
     made.add_argument("--no-pages", action="store_true", help="no page per session, which is faster")
     made.add_argument("--jobs", type=count, default=0, metavar="N", help="worker processes (default: one per core)")

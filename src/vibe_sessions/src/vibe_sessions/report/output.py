@@ -18,6 +18,7 @@ class Output:
         self._rows = [None] * total
         self._problems = [None] * total
         self._places = [None] * total  # of the numbers in the file
+        self._traces = [None] * total
         self._waiting = tempfile.TemporaryFile("w+", encoding="utf-8", dir=folder)
         self.done = 0
 
@@ -35,8 +36,9 @@ class Output:
     def rows(self):
         return [row for row in self._rows if row is not None]
 
-    def add(self, number, row, numbers, problem):
+    def add(self, number, row, numbers, problem, trace):
         self.done += 1
+        self._traces[number] = trace
         self._problems[number] = problem
         if row is not None:  # the names of the columns once, not once per row
             self._rows[number] = {sys.intern(key): value for key, value in row.items()}
@@ -53,7 +55,8 @@ class Output:
 
             rows = self.rows
             groups = sorted({row["group"] for row in rows})
-            page = index_page(rows, self.failures, groups, distributions(rows), MOST_GROUPS)
+            traces = [trace for trace in self._traces if trace is not None]
+            page = index_page(rows, self.failures, groups, distributions(rows), MOST_GROUPS, traces)
             write_text(os.path.join(self._folder, "index.html"), page)
 
     def _write_csv(self):

@@ -4,7 +4,7 @@ import os
 
 import jinja2
 
-from . import tables
+from . import overlay, tables
 from .curves import curves, solver_curves, trajectory
 from .organ import organ_picture
 from .timeline import timeline
@@ -56,8 +56,9 @@ def rate_of(samples):
     return (len(samples) - 1) / seconds if seconds > 0 else 0
 
 
-def index_page(rows, failures, groups, distributions, drawn_groups):
-    """HTML of many sessions. The picture `distributions` has the first `drawn_groups` of the groups."""
+def index_page(rows, failures, groups, distributions, drawn_groups, traces):
+    """HTML of many sessions. The picture `distributions` has the first `drawn_groups` of the groups; `traces` are compared
+    in the same axes."""
     return rendered(
         "index.html",
         rows=tables.index_rows(rows),
@@ -68,5 +69,7 @@ def index_page(rows, failures, groups, distributions, drawn_groups):
         drawn_groups=drawn_groups,
         summary=tables.group_summary(rows) if rows else [],
         distributions=distributions,
+        forces=overlay.forces(traces),
+        paths=overlay.paths(traces),
         count=len(rows),
     )

@@ -22,15 +22,17 @@ class Task:
     page: str  # path of the page to write; empty: none
     back: str  # name of the page of all sessions; empty: none
     session: str = None  # number or identity; None: the first one
+    compared: bool = False  # with the other sessions, in the same axes
 
 
 def report_on(task):
-    """(row, numbers as JSON, problem): the row and the numbers are None if there is a problem, which is one sentence."""
+    """(row, numbers as JSON, problem, trace): all are None if there is a problem, which is one sentence; so is a trace that
+    is not asked for."""
     try:
         recording = read_recording(task.path, task.namespace, task.session)
+        numbers = numbers_of(recording)
     except BagError as problem:
-        return None, None, str(problem)
-    numbers = numbers_of(recording)
+        return None, None, str(problem), None
     if task.page:
         from .page import session_page  # matplotlib is slow to load and not needed without pages
 
@@ -39,7 +41,12 @@ def report_on(task):
     row = row_of(numbers, task.name, task.group)
     row["page"] = os.path.basename(task.page)
     about = {"name": task.name, "group": task.group, "page": row["page"]}
-    return row, json.dumps({**about, **numbers}, allow_nan=False), None
+    trace = None
+    if task.compared:
+        from .overlay import trace_of
+
+        trace = trace_of(recording, task.name)
+    return row, json.dumps({**about, **numbers}, allow_nan=False), None, trace
 
 
 def write_text(path, text):

@@ -23,6 +23,7 @@ INDEX_COLUMNS = (
     ("group", "group", 1, None),
     ("scene", "scene", 1, None),
     ("recorded", "recorded", 1, None),
+    ("person", "person", 1, None),
     ("driver", "driver", 1, None),
     ("time [s]", "time", 1, 0),
     ("sets", "sutures", 1, 0),
@@ -102,6 +103,8 @@ def facts(numbers):
     found = [
         ("Scene", session["scene"]),
         ("Recorded", when),
+        ("Person", session["person"]),
+        ("Notes", session["notes"]),
         ("Driven by", who),
         ("Length", "{} s, {} steps".format(shown(session["duration"], 1, 2), session["steps"])),
         ("Time", session["time_source"] + (", seed {}".format(session["seed"]) if session["seed"] is not None else "")),
