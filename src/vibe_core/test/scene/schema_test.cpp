@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <set>
@@ -161,23 +162,51 @@ TEST(Schema, KindDefaultsToStomach) {
   EXPECT_EQ(parseScene("geometry: {particles: 500}", "s.yaml").geometry.kind, GeometryScene::Kind::Stomach);
 }
 
+const std::string kPage = std::string(VIBE_CORE_DIR) + "/../../docs/scenes.md";
+
+std::string pageOfScenes() {
+  std::stringstream text;
+  text << std::ifstream(kPage).rdbuf();
+  return text.str();
+}
+
+/// Blocks of YAML that are whole scene files: those that begin with `base`.
+std::vector<std::string> examplesIn(const std::string& page) {
+  const std::string begin = "\n```yaml\nbase: ", end = "\n```";
+  std::vector<std::string> found;
+  for (std::size_t at = page.find(begin); at != std::string::npos; at = page.find(begin, at + 1)) {
+    const std::size_t from = at + begin.find("base");
+    found.push_back(page.substr(from, page.find(end, from) - from) + "\n");
+  }
+  return found;
+}
+
+TEST(Schema, EverySectionHasAnExampleThatTheParserTakes) {
+  const std::vector<std::string> examples = examplesIn(pageOfScenes());
+  for (const std::string& example : examples)
+    EXPECT_EQ(errorOf([&] { parseScene(example, "example.yaml"); }), "no error") << example;
+  for (const SchemaSection& section : sceneSections()) {
+    const std::string key = lastPart(section.name) + ":";
+    EXPECT_TRUE(std::any_of(examples.begin(), examples.end(),
+                            [&](const std::string& example) { return example.find(key) != std::string::npos; }))
+        << "docs/scenes.md has no example of '" << section.name << "'";
+  }
+}
+
 /// A table that the documentation does not show would be of no use to a reader.
 TEST(Schema, CommittedDocumentationIsTheGeneratedTable) {
-  const std::string file = std::string(VIBE_CORE_DIR) + "/../../docs/scenes.md";
   const std::string begin = "<!-- schema: begin -->\n", end = "<!-- schema: end -->\n";
-  std::stringstream text;
-  text << std::ifstream(file).rdbuf();
-  std::string page = text.str();
+  std::string page = pageOfScenes();
   const std::size_t from = page.find(begin), to = page.find(end);
-  ASSERT_NE(from, std::string::npos) << file;
-  ASSERT_NE(to, std::string::npos) << file;
+  ASSERT_NE(from, std::string::npos) << kPage;
+  ASSERT_NE(to, std::string::npos) << kPage;
   const std::size_t start = from + begin.size();
   if (std::getenv("VIBE_UPDATE_DOCS") != nullptr) {
     page.replace(start, to - start, describeSchema());
-    std::ofstream(file) << page;
-    GTEST_SKIP() << "wrote " << file;
+    std::ofstream(kPage) << page;
+    GTEST_SKIP() << "wrote " << kPage;
   }
-  EXPECT_EQ(page.substr(start, to - start), describeSchema()) << "run with VIBE_UPDATE_DOCS=1 to write " << file;
+  EXPECT_EQ(page.substr(start, to - start), describeSchema()) << "run with VIBE_UPDATE_DOCS=1 to write " << kPage;
 }
 
 }  // namespace
