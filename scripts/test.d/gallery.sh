@@ -37,6 +37,7 @@ isPicture() { [ "$(head -c 4 "$1" | tail -c 3)" = PNG ]; }
 
 # A graph of its own: a master and the simulator, as the page says, and a recorder. In simulated time, so that a busy
 # machine is slower and nothing else.
+options=() # of the simulator, beside these
 withSimulator() {
   local port status=0
   port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
@@ -46,7 +47,7 @@ withSimulator() {
   rosrun vibe_sim vibe_record "$scratch/session.bag" >"$scratch/record.log" 2>&1 &
   local recorder=$!
   rosrun vibe_sim sim_node _scene:=package://vibe_core/scenes/stomach.yaml _time_source:=sim _await_recorder:=true \
-    >"$scratch/sim.log" 2>&1 &
+    "${options[@]}" >"$scratch/sim.log" 2>&1 &
   "$@" || status=$?
   kill "$recorder" && wait "$recorder" || true
   # shellcheck disable=SC2046
@@ -66,12 +67,19 @@ readsForces() {
     [ "$(wc -l <"$scratch/forces.csv")" -gt 100 ]
 }
 check 'gallery: forces of a session' readsForces
+decidesEachStep() {
+  options=(_lockstep:=true _fast:=true)
+  withSimulator prints '^10\.0 s: 0\.3000 N at 1[0-9.]+ mm$' timeout 300 "$gallery/lockstep.py" 10 >"$scratch/$1.txt"
+}
+decidesTheSameAgain() { decidesEachStep again && cmp "$scratch/once.txt" "$scratch/again.txt"; }
 findsTheEdit() {
   local said
   said=$("$gallery/edited.py" "$scratch/session.bag" "$scratch/copy.bag")
   printf '%s\n' "$said"
   grep -q '^status 0: the same: ' <<<"$said" && grep -q '^status 1: NOT the same' <<<"$said"
 }
+check 'gallery: a controller in lock-step' decidesEachStep once
+check 'gallery: the same controller gives the same digits' decidesTheSameAgain
 check 'gallery: a replay, and one of a recording that was edited' findsTheEdit
 
 readsASurface() { prints '^[0-9]+ mL, [0-9]+ mL at (9\.9|10\.0|10\.1) mmHg$' "$gallery/own_mesh.py" "$scratch/flat.obj" "$scratch/own.png" && isPicture "$scratch/own.png"; }
