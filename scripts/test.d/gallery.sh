@@ -38,13 +38,14 @@ isPicture() { [ "$(head -c 4 "$1" | tail -c 3)" = PNG ]; }
 # A graph of its own: a master and the simulator, as the page says, and a recorder. In simulated time, so that a busy
 # machine is slower and nothing else.
 options=() # of the simulator, beside these
+recording=session
 withSimulator() {
   local port status=0
   port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
   export ROS_MASTER_URI=http://127.0.0.1:$port ROS_HOSTNAME=127.0.0.1
   rosmaster --core -p "$port" >/dev/null 2>&1 &
   until rosparam set /use_sim_time true >/dev/null 2>&1; do sleep 0.2; done
-  rosrun vibe_sim vibe_record "$scratch/session.bag" >"$scratch/record.log" 2>&1 &
+  rosrun vibe_sim vibe_record "$scratch/$recording.bag" >"$scratch/record.log" 2>&1 &
   local recorder=$!
   rosrun vibe_sim sim_node _scene:=package://vibe_core/scenes/stomach.yaml _time_source:=sim _await_recorder:=true \
     "${options[@]}" >"$scratch/sim.log" 2>&1 &
@@ -68,7 +69,7 @@ readsForces() {
 }
 check 'gallery: forces of a session' readsForces
 decidesEachStep() {
-  options=(_lockstep:=true _fast:=true)
+  options=(_lockstep:=true _fast:=true) recording=$1
   withSimulator prints '^10\.0 s: 0\.3000 N at 1[0-9.]+ mm$' timeout 300 "$gallery/lockstep.py" 10 >"$scratch/$1.txt"
 }
 decidesTheSameAgain() { decidesEachStep again && cmp "$scratch/once.txt" "$scratch/again.txt"; }
