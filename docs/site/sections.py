@@ -18,12 +18,17 @@ def weight(page):
     return next((weight for pattern, weight in WEIGHTS if re.match(pattern, page)), 1)
 
 
+def plain(text):
+    """Without what HTML leaves out, on one line."""
+    return " ".join(re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL).split())
+
+
 def sections_of(tree):
     """(anchor, heading, text without that of the sections inside)"""
     for section in tree.findall(nodes.section):
-        text = (part.astext() for part in section if not isinstance(part, (nodes.section, nodes.title, nodes.comment)))
+        text = " ".join(part.astext() for part in section if not isinstance(part, (nodes.section, nodes.title)))
         inner = section.parent is not tree
-        yield "#" + section["ids"][0] if inner else "", section.next_node(nodes.title).astext(), " ".join(" ".join(text).split())
+        yield "#" + section["ids"][0] if inner else "", section.next_node(nodes.title).astext(), plain(text)
 
 
 def write(app, problem):
