@@ -32,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (const auto command = web::decodeCommand(bytes.data(), bytes.size())) check(*command);
 
   constexpr std::uint32_t kGrant = 0x12345678;
-  web::OperatorSeat seat;
+  web::OperatorSeat seat([](int key) { return key % 2 == 0; });
   double now = 0;
   for (std::size_t at = 0; at + 1 < size;) {
     const std::size_t length = bytes[at] % (web::kMaxCommand + 1), end = std::min(size, at + 1 + length);

@@ -27,6 +27,11 @@ std::string text(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
+bool isButton(int key) {
+  const operating::KeyBinding* binding = operating::findBinding(key);
+  return binding != nullptr && binding->kind == operating::KeyBinding::Kind::Button;
+}
+
 json numberOrNull(double value) {
   return std::isfinite(value) ? json(value) : json(nullptr);
 }
@@ -34,7 +39,8 @@ json numberOrNull(double value) {
 }  // namespace
 
 OperatorDrive::OperatorDrive(ros::NodeHandle& handle)
-    : drive_("web_node"),
+    : seat_(isButton),
+      drive_("web_node"),
       replay_(handle.advertise<vibe_msgs::ReplayCommand>("replay/command", 10)),
       last_(steadyNow()) {}
 
@@ -101,8 +107,7 @@ void OperatorDrive::takeSeat(ClientId client, WebServer& server) {
     return;
   }
   if (!had) ++seats_;
-  if (!started_) drive_.start("");
-  started_ = true;
+  if (!started_ && replay_.getNumSubscribers() == 0) drive_.start(""), started_ = true;  // a recording cannot be driven
   server.send(client, Kind::Grant, textMessage(Kind::Grant, text({{"seat", seats_}, {"grant", seat_.grant()}})));
 }
 

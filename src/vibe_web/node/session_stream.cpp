@@ -4,9 +4,8 @@
 #include <fstream>
 #include <iterator>
 
-#include <vibe_msgs/ReplayStatus.h>
-
 #include "protocol/byte_writer.hpp"
+#include "protocol/session_health.hpp"
 #include "protocol/shape_message.hpp"
 #include "protocol/suture_stream.hpp"
 #include "protocol/topology_message.hpp"
@@ -27,6 +26,7 @@ namespace {
 constexpr std::uint32_t kQueue = 2;  // a state that is not the newest is of no use
 constexpr std::uint32_t kEventQueue = 1000;
 constexpr int kSlowTicks = 2;                     // of tick(): heat and thread five times a second
+constexpr int kRobotTicks = 10;                   // until there is a robot description
 constexpr int kFoldTicks = 4;                     // the stretch of the wall, on which folds depend, changes slowly
 constexpr std::size_t kShapeBytesPerTick = 5000;  // of thread, and as much of blood: 50 kB/s each
 const char* const kBase = "scope_base";
@@ -59,45 +59,50 @@ struct SessionStream::Organ {
 
 SessionStream::~SessionStream() = default;
 
-SessionStream::SessionStream(ros::NodeHandle& handle, WebServer& server, const std::string& description)
-    : server_(server), scene_(constantText()) {
-  try {
-    const RobotText robot = readRobot(description);
-    scene_["robot"] = robot.json;
-    provideFiles(robot);
-    for (const std::string& problem : robot.problems) ROS_WARN("%s", problem.c_str());
-  } catch (const std::exception& error) {
-    ROS_WARN("%s", error.what());
-  }
+SessionStream::SessionStream(const ros::NodeHandle& handle, WebServer& server)
+    : handle_(handle), server_(server), scene_(constantText()) {
+  findRobot();
   const graphics::MucosaPattern pattern = graphics::makeMucosaPattern();
   server_.provide("/pattern", pageFile("application/octet-stream", {pattern.voxels.begin(), pattern.voxels.end()}));
   const auto add = [this](ros::Subscriber subscriber) { subscribers_.push_back(std::move(subscriber)); };
-  add(handle.subscribe("tissue/topology", kQueue, &SessionStream::takeTopology, this));
-  add(handle.subscribe("tissue/particles", kQueue, &SessionStream::takeParticles, this,
-                       ros::TransportHints().tcpNoDelay()));
-  add(handle.subscribe("joint_states", kQueue, &SessionStream::takeJoints, this, ros::TransportHints().tcpNoDelay()));
-  add(handle.subscribe("sutures", kQueue, &SessionStream::takeSutures, this));
-  add(handle.subscribe("/tf_static", kEventQueue, &SessionStream::takeTransforms, this));
-  add(handle.subscribe<geometry_msgs::WrenchStamped>("scope/measured_cf", kQueue, [this](const auto& message) {
+  add(handle_.subscribe("tissue/topology", kQueue, &SessionStream::takeTopology, this));
+  particles_ = handle_.subscribe("tissue/particles", kQueue, &SessionStream::takeParticles, this,
+                                 ros::TransportHints().tcpNoDelay());
+  add(handle_.subscribe("joint_states", kQueue, &SessionStream::takeJoints, this, ros::TransportHints().tcpNoDelay()));
+  add(handle_.subscribe("sutures", kQueue, &SessionStream::takeSutures, this));
+  add(handle_.subscribe("/tf_static", kEventQueue, &SessionStream::takeTransforms, this));
+  add(handle_.subscribe<geometry_msgs::WrenchStamped>("scope/measured_cf", kQueue, [this](const auto& message) {
     const auto &f = message->wrench.force, &t = message->wrench.torque;
     const std::array<double, 6> wrench{f.x, f.y, f.z, t.x, t.y, t.z};
     std::transform(wrench.begin(), wrench.end(), content_.wrench.begin(),
                    [](double v) { return static_cast<float>(v); });
   }));
-  add(handle.subscribe<vibe_msgs::ProcedureState>("procedure/state", kQueue, [this](const auto& m) { state_ = m; }));
-  add(handle.subscribe<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kQueue,
+  add(handle_.subscribe<vibe_msgs::ProcedureState>("procedure/state", kQueue, [this](const auto& m) { state_ = m; }));
+  add(handle_.subscribe<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kQueue,
                                                 [this](const auto& m) { skill_ = m; }));
-  add(handle.subscribe<vibe_msgs::ProcedureEvent>("procedure/events", kEventQueue, [this](const auto& message) {
+  add(handle_.subscribe<vibe_msgs::ProcedureEvent>("procedure/events", kEventQueue, [this](const auto& message) {
     events_.add(*message);
     events_changed_ = true;
   }));
-  add(handle.subscribe<vibe_msgs::ReplayStatus>("replay/status", kQueue, [this](const auto& message) {
+  add(handle_.subscribe<vibe_msgs::ReplayStatus>("replay/status", kQueue, [this](const auto& message) {
+    replay_ = message;
     server_.publish(Kind::Replay, textMessage(Kind::Replay, replayText(*message)));
   }));
 }
 
-void SessionStream::provideFiles(const RobotText& robot) {
-  for (const auto& [path, file] : robot.meshes) server_.provide(path, pageFile("text/plain", contentOf(file)));
+/// The parameter may be set later than this node starts.
+void SessionStream::findRobot() {
+  try {
+    std::string description;
+    handle_.getParam("robot_description", description);
+    const RobotText robot = readRobot(description);
+    scene_["robot"] = robot.json;
+    for (const auto& [path, file] : robot.meshes) server_.provide(path, pageFile("text/plain", contentOf(file)));
+    for (const std::string& problem : robot.problems) ROS_WARN("%s", problem.c_str());
+    publishScene();
+  } catch (const std::exception& error) {
+    warn(error.what());
+  }
 }
 
 void SessionStream::publishScene() {
@@ -120,6 +125,7 @@ void SessionStream::takeTopology(const vibe_msgs::TissueTopology& message) {
 
 void SessionStream::takeParticles(const sensor_msgs::PointCloud2::ConstPtr& message) {
   unseen_ = message;
+  heard_ = ros::SteadyTime::now();
   publishFrame();
 }
 
@@ -162,6 +168,8 @@ void SessionStream::takeSutures(const vibe_msgs::SutureArray::ConstPtr& message)
 
 void SessionStream::tick() {
   ++ticks_;
+  if (ticks_ % kRobotTicks == 0 && !scene_.contains("robot")) findRobot();
+  watchHealth();
   publishFrame();
   if (events_changed_) server_.publish(Kind::Events, textMessage(Kind::Events, events_.text()));
   events_changed_ = false;
@@ -173,6 +181,22 @@ void SessionStream::tick() {
   if (text == state_text_) return;
   state_text_ = std::move(text);
   server_.publish(Kind::State, textMessage(Kind::State, state_text_));
+}
+
+void SessionStream::watchHealth() {
+  SessionHealth health;
+  health.published = particles_.getNumPublishers() > 0;
+  if (!health.published || heard_.isZero()) heard_ = ros::SteadyTime::now();
+  health.silence = (ros::SteadyTime::now() - heard_).toSec();
+  health.rests = replay_ && !replay_->playing;
+  health.paused = !replay_ && state_ && state_->paused;
+  health.robot = scene_.contains("robot");
+  health.base = scene_.contains("base") || !organ_;  // which is sent with the organ
+  const HealthNote note = noteOf(health);
+  const std::string text = json({{"text", note.text}, {"alarm", note.alarm}}).dump();
+  if (text == health_text_) return;
+  health_text_ = text;
+  server_.publish(Kind::Health, textMessage(Kind::Health, text));
 }
 
 void SessionStream::publishSutures() {

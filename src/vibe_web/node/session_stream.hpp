@@ -10,6 +10,7 @@
 #include <sensor_msgs/JointState.h>
 #include <sensor_msgs/PointCloud2.h>
 #include <tf2_msgs/TFMessage.h>
+#include <vibe_msgs/ReplayStatus.h>
 #include <vibe_msgs/TissueTopology.h>
 
 #include "protocol/frame_message.hpp"
@@ -25,7 +26,7 @@ namespace vibe::web {
 /// looks it reads the small topics only.
 class SessionStream {
  public:
-  SessionStream(ros::NodeHandle& handle, WebServer& server, const std::string& description);
+  SessionStream(const ros::NodeHandle& handle, WebServer& server);
   ~SessionStream();
 
   /// Ten times a second: what changes slowly.
@@ -37,7 +38,8 @@ class SessionStream {
   void takeJoints(const sensor_msgs::JointState& message);
   void takeTransforms(const tf2_msgs::TFMessage& message);
   void takeSutures(const vibe_msgs::SutureArray::ConstPtr& message);
-  void provideFiles(const RobotText& robot);
+  void findRobot();
+  void watchHealth();
   void publishScene();
   void publishFrame();
   void publishSutures();
@@ -47,22 +49,26 @@ class SessionStream {
 
   struct Organ;  // a topology, and what follows from it
 
+  ros::NodeHandle handle_;
   WebServer& server_;
   nlohmann::json scene_;
   std::unique_ptr<Organ> organ_;
   graphics::TissueFrame frame_;
   FrameContent content_;
-  std::vector<ros::Subscriber> subscribers_;
+  ros::Subscriber particles_;
+  std::vector<ros::Subscriber> subscribers_;  // of all other topics
   sensor_msgs::PointCloud2::ConstPtr unseen_;  // particles that no page has got
   vibe_msgs::ProcedureState::ConstPtr state_;
+  vibe_msgs::ReplayStatus::ConstPtr replay_;
   vibe_msgs::SkillMetrics::ConstPtr skill_;
   vibe_msgs::SutureArray::ConstPtr sutures_;
   EventList events_;
   Bytes threads_;  // as last sent
-  std::string last_warning_, state_text_;
+  std::string last_warning_, state_text_, health_text_;
   bool has_frame_ = false, events_changed_ = true, sutures_changed_ = false;
   std::size_t thread_points_ = 0;  // of the threads as last sent
   int ticks_ = 0, threads_due_ = 0, blood_due_ = 0;
+  ros::SteadyTime heard_;  // the last state
 };
 
 }  // namespace vibe::web

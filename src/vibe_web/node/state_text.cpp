@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "vibe_operator/messages/number_text.hpp"
+#include "vibe_operator/messages/procedure_text.hpp"
 #include "vibe_operator/messages/reference_values.hpp"
 #include "vibe_operator/messages/table_rows.hpp"
 
@@ -49,8 +51,7 @@ std::string stateText(const vibe_msgs::ProcedureState& state, const vibe_msgs::S
                {"held", state.held_particles},
                {"pressure", state.pressure},
                {"volume", state.volume},
-               {"marks", state.marks},
-               {"burns", state.burns},
+               {"marks", skill != nullptr ? operating::marksText(*skill) : operating::kNoValue},
                {"bites", state.bites},
                {"sutures", state.sutures},
                {"cinched", state.sutures_cinched},

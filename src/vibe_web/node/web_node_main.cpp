@@ -36,9 +36,7 @@ void run(const web::ServerOptions& options) {
   web::WebServer server(
       options, [&](web::ClientId client, const web::Command& command) { drive.receive(client, command); },
       [&](web::ClientId client) { drive.leave(client); });
-  std::string description;
-  handle.getParam("robot_description", description);
-  web::SessionStream stream(handle, server, description);
+  web::SessionStream stream(handle, server);
   std::printf("%s\n", web::invitation(options, server.port()).c_str());
   std::fflush(stdout);
   int ticks = 0;

@@ -1,18 +1,13 @@
-// Hands of the person who drives: keys, buttons of the page, touch, a gamepad and the controllers of a headset. What is
-// held goes to the server, which moves the scope as the tool 'Drive scope' of rviz does.
+// The page that drives: it takes the place, hears keys, pointers and a gamepad of the browser, and tells the server 20 times a
+// second what is held. The server moves the scope as the tool 'Drive scope' of rviz does.
 
+import { emptyHand, Hands, kAxes, qtKey, type Hand } from './hands';
 import { Kind, readText, type GrantText, type KeyTable, type OperatorText } from './messages';
 import type { Stream } from './stream';
 
 const kPeriod = 50; // of messages while the page drives [ms]; the server lets go after a silence
-const kAxes = 7;
+const kMaxKeys = 16; // of a message
 const kDead = 0.12; // of the sticks of a pad
-
-// Qt::Key of keys that are not letters, digits or space
-const kNamed: Record<string, number> = {
-  ArrowLeft: 0x01000012, ArrowUp: 0x01000013, ArrowRight: 0x01000014, ArrowDown: 0x01000015, Shift: 0x01000020,
-};
-const qtKey = (key: string) => kNamed[key] ?? (key.length === 1 ? key.toUpperCase().charCodeAt(0) : 0);
 
 // Standard gamepad: buttons as keys of the table, sticks as joints.
 const kPadKeys: Record<number, string> = {
@@ -20,22 +15,25 @@ const kPadKeys: Record<number, string> = {
 };
 const kPadAxes: [number, number, number][] = [[0, 3, -1], [1, 2, -1], [2, 1, 1], [3, 0, -1]]; // axis, joint, sign
 
-/** One of the hands: what it holds now. */
-export interface Hand { keys: Set<number>; axes: number[] }
-export const emptyHand = (): Hand => ({ keys: new Set(), axes: new Array(kAxes).fill(0) });
+function handOf(pad: Gamepad): Hand {
+  const hand = emptyHand();
+  for (const [button, key] of Object.entries(kPadKeys)) if (pad.buttons[+button]?.pressed) hand.keys.add(qtKey(key));
+  for (const [axis, joint, sign] of kPadAxes) {
+    const value = pad.axes[axis] ?? 0;
+    if (Math.abs(value) > kDead) hand.axes[joint] = (sign * (value - Math.sign(value) * kDead)) / (1 - kDead);
+  }
+  return hand;
+}
 
 export class Drive {
   operator: OperatorText | null = null;
   onChange: () => void = () => {};
   onSend: (seconds: number) => void = () => {}; // regularly, before it is told what hands hold
-  readonly pointer = emptyHand();
-  readonly headset = emptyHand();
-  private keyboard = emptyHand();
-  private pad = emptyHand();
+  readonly hands = new Hands();
+  strangePad = ''; // name of a gamepad whose buttons are not in the standard order
   private grant: GrantText | null = null;
   private number = 0;
   private ticked = 0; // [ms]
-  private table: KeyTable | null = null;
 
   constructor(private stream: Stream) {
     stream.on(Kind.Grant, (bytes) => this.begin(readText<GrantText>(bytes)));
@@ -43,10 +41,13 @@ export class Drive {
       this.operator = readText<OperatorText>(bytes);
       this.onChange();
     });
-    addEventListener('keydown', (event) => this.handleKey(event, true));
-    addEventListener('keyup', (event) => this.handleKey(event, false));
+    addEventListener('keydown', (event) => this.handleKey(event));
+    addEventListener('keyup', (event) => this.change(() => this.hands.keyUp(event))); // wherever the focus is by now
+    addEventListener('focusin', () => this.change(() => this.hands.moveFocus()));
+    for (const end of ['pointerup', 'pointercancel', 'lostpointercapture'] as const)
+      addEventListener(end, ({ pointerId }) => this.change(() => this.hands.pointerUp(pointerId)));
     addEventListener('blur', () => this.letGo());
-    document.addEventListener('visibilitychange', () => document.hidden && this.letGo());
+    for (const end of ['visibilitychange', 'freeze']) document.addEventListener(end, () => this.letGo());
     setInterval(() => this.tick(), kPeriod);
   }
 
@@ -58,8 +59,12 @@ export class Drive {
     return !this.driving && (this.operator?.seat ?? 0) > 0;
   }
 
+  get headset() {
+    return this.hands.headset;
+  }
+
   setTable(table: KeyTable) {
-    this.table = table;
+    this.hands.known = new Set(table.bindings.map(({ key }) => key));
   }
 
   take() {
@@ -73,77 +78,84 @@ export class Drive {
   }
 
   lost() {
+    this.letGo();
     this.grant = null;
     this.operator = null;
   }
 
   letGo() {
-    for (const hand of [this.keyboard, this.pad, this.pointer, this.headset]) {
-      hand.keys.clear();
-      hand.axes.fill(0);
-    }
-    this.send();
+    this.change(() => this.hands.letGo());
   }
 
-  /** Presses or releases a key of the table on the page. */
-  hold(key: number, down: boolean) {
-    if (down) this.pointer.keys.add(key);
-    else this.pointer.keys.delete(key);
-    this.send();
+  /** A button of the page holds a key of the table: while it is pressed, or Enter or Space where it has the focus. */
+  bindButton(button: HTMLButtonElement, key: number) {
+    button.dataset.key = String(key);
+    button.onpointerdown = (event) => this.beginPointer(event, { ...emptyHand(), keys: new Set([key]) });
+    button.oncontextmenu = (event) => event.preventDefault();
+  }
+
+  /** @param axes  of a pointer there: shares of the speed of a key, by joint */
+  bindStick(stick: HTMLElement, axes: (event: PointerEvent) => number[]) {
+    stick.onpointerdown = (event) => this.beginPointer(event, { ...emptyHand(), axes: axes(event) });
+    stick.onpointermove = (event) => this.hands.pointerMove(event.pointerId, axes(event));
+    stick.oncontextmenu = (event) => event.preventDefault();
+  }
+
+  private beginPointer(event: PointerEvent, hand: Hand) {
+    if (event.button !== 0) return;
+    (event.currentTarget as HTMLElement).setPointerCapture(event.pointerId);
+    this.change(() => this.hands.pointerDown(event.pointerId, hand));
   }
 
   private begin(grant: GrantText) {
     if (grant.grant !== this.grant?.grant) this.number = 0;
     this.grant = grant;
-    this.send();
+    this.change(() => {});
   }
 
-  private handleKey(event: KeyboardEvent, down: boolean) {
-    const key = qtKey(event.key);
-    if (event.ctrlKey || event.altKey || event.metaKey || !this.table?.bindings.some((each) => each.key === key)) return;
-    const onControl = event.target instanceof HTMLElement && event.target.closest('button, input');
-    if (!this.driving || (onControl && (event.key === ' ' || event.key.startsWith('Arrow')))) return;
-    event.preventDefault();
-    if (event.repeat) return;
-    if (down) this.keyboard.keys.add(key);
-    else this.keyboard.keys.delete(key);
-    this.send();
+  private handleKey(event: KeyboardEvent) {
+    const control = event.target instanceof HTMLElement ? event.target.closest<HTMLElement>('button, input, select, .stick') : null;
+    const { code, key, repeat } = event, activates = key === ' ' || key === 'Enter', arrow = key.startsWith('Arrow');
+    const own = control?.dataset[activates ? 'key' : arrow ? key.replace('A', 'a') : ''];
+    if (control && own === undefined && (activates || arrow || control.matches('select'))) return; // it does something else with the key
+    this.change(() => {
+      const modified = event.ctrlKey || event.altKey || event.metaKey;
+      if (this.hands.keyDown({ code, key, repeat, modified, instead: own && Number(own) || undefined })) event.preventDefault();
+    });
   }
 
   private tick() {
     const now = performance.now();
     this.onSend((now - this.ticked) / 1000);
     this.ticked = now;
-    if (!this.grant) return;
+    this.hands.tick(now);
     this.readPad();
-    if (!document.hidden) this.send(); // a page that nobody sees is silent, and the server lets go
+    if (!document.hidden) this.change(() => {}); // a page that nobody sees is silent, and the server lets go
   }
 
   private readPad() {
-    const pad = navigator.getGamepads().find((each) => each?.mapping === 'standard');
-    this.pad = emptyHand();
-    if (!pad) return;
-    for (const [button, key] of Object.entries(kPadKeys)) if (pad.buttons[+button]?.pressed) this.pad.keys.add(qtKey(key));
-    for (const [axis, joint, sign] of kPadAxes) {
-      const value = pad.axes[axis] ?? 0;
-      if (Math.abs(value) > kDead) this.pad.axes[joint] = (sign * (value - Math.sign(value) * kDead)) / (1 - kDead);
-    }
+    const pads = navigator.getGamepads().filter((each) => each !== null), pad = pads.find(({ mapping }) => mapping === 'standard');
+    this.strangePad = pad ? '' : pads[0]?.id ?? '';
+    this.hands.setPad(pad ? `${pad.index} ${pad.id}` : null, pad ? handOf(pad) : emptyHand());
   }
 
-  private send() {
-    if (!this.grant) return;
-    const hands = [this.keyboard, this.pad, this.pointer, this.headset];
-    const keys = [...new Set(hands.flatMap((hand) => [...hand.keys]))].slice(0, 16);
-    const bytes = new ArrayBuffer(28 + 4 * keys.length), view = new DataView(bytes);
+  /** What the hands do counts while the page drives and hears the server, which is told at once. */
+  private change(act: () => void) {
+    const hears = this.stream.silence === 0;
+    this.hands.setOpen(this.driving && hears);
+    act();
+    if (this.grant && hears) this.send(this.grant);
+  }
+
+  private send({ grant }: GrantText) {
+    const { keys, axes } = this.hands.held(), count = Math.min(keys.length, kMaxKeys);
+    const bytes = new ArrayBuffer(28 + 4 * count), view = new DataView(bytes);
     view.setUint8(0, 4);
-    view.setUint8(1, keys.length);
-    view.setUint32(4, this.grant.grant, true);
+    view.setUint8(1, count);
+    view.setUint32(4, grant, true);
     view.setUint32(8, ++this.number, true);
-    for (let joint = 0; joint < kAxes; joint++) {
-      const sum = hands.reduce((all, hand) => all + hand.axes[joint], 0);
-      view.setInt16(12 + 2 * joint, Math.round(32767 * Math.min(1, Math.max(-1, sum))), true);
-    }
-    keys.forEach((key, k) => view.setUint32(28 + 4 * k, key, true));
+    for (let joint = 0; joint < kAxes; joint++) view.setInt16(12 + 2 * joint, Math.round(32767 * axes[joint]), true);
+    for (let k = 0; k < count; k++) view.setUint32(28 + 4 * k, keys[k], true);
     this.stream.send(bytes);
   }
 }

@@ -4,24 +4,26 @@ import { savePicture, VideoRecorder } from './capture';
 import { Drive } from './drive';
 import { Headset } from './headset';
 import { Kind, readFrame, readHeat, readShape, readSutures, readText, readTopology, type Frame, type SceneText } from './messages';
-import { element, Panel } from './panel';
+import { Panel } from './panel';
 import { Stage } from './stage';
 import { Stream } from './stream';
+import { element } from './texts';
 
 const kRate = 60; // frames asked for [Hz]
 const kOtherTime = 10000, kSlow = 1000 / 60; // [ms]
+const kTold = 500; // what is told of the link and the delay is renewed [ms]
+const kSmall = matchMedia('(max-width: 50rem), (max-height: 30rem)'); // as in style.css
 const options = new URLSearchParams(location.hash.slice(1));
 
 const askPattern = () => fetch('pattern').then((answer) => (answer.ok ? answer.arrayBuffer() : null), () => null);
 const pattern = askPattern(); // the largest part is asked for first; a server that has just begun may not have it yet
 const canvas = element<HTMLCanvasElement>('canvas');
-const stream = new Stream(options.get('token') ?? '', Number(options.get('rate') ?? kRate), (open, text) => {
-  panel.status(text);
+const stream = new Stream(options.get('token') ?? '', Number(options.get('rate') ?? kRate), (open, why) => {
   if (open) undrawn = 0;
   else drive.lost();
-  panel.showDriving();
+  panel.setLink(open, why);
 });
-const stage = new Stage(canvas, Number(options.get('size') ?? 0)); // which takes long, while the stream opens
+const stage = makeStage(); // which takes long, while the stream opens
 const drive = new Drive(stream);
 const panel = new Panel(stream, drive);
 const video = new VideoRecorder(canvas);
@@ -31,6 +33,16 @@ let undrawn = 0; // frames that have come, and of which the server does not know
 
 /** For tests and for the curious: what has been received and drawn. */
 const stats = { frames: 0, drawn: 0, firstPicture: 0, latencies: [] as number[], received: () => stream.received };
+
+function makeStage(): Stage {
+  try {
+    return new Stage(canvas, Number(options.get('size') ?? 0));
+  } catch (error) {
+    stream.close();
+    element('status').textContent = 'This browser draws nothing, because it has no WebGL 2; switch hardware acceleration on in its settings, or take another browser.';
+    throw error;
+  }
+}
 
 async function takeScene(text: SceneText) {
   scene = text;
@@ -79,7 +91,7 @@ element('control').onclick = () => {
   else drive.take();
   canvas.focus();
 };
-element('headset').onclick = async () => panel.status((await headset?.enter()) || 'Connected');
+element('headset').onclick = async () => panel.status((await headset?.enter()) ?? '');
 element('picture').onclick = () => savePicture(canvas);
 element('video').onclick = () => {
   video.toggle();
@@ -118,9 +130,17 @@ function tellDrawn() {
 setInterval(() => {
   const last = stats.latencies.slice(-15).sort((a, b) => a - b), delay = last[last.length >> 1];
   // a recording, and a simulation that is not in real time, have stamps of another time
-  const text = delay >= 0 && delay < kOtherTime && performance.now() < drawnAt + kOtherTime / 2 ? `${delay.toFixed(0)} ms from state to picture` : '';
-  panel.showDelay(text);
-  headset?.showDelay(text);
-}, 1000);
+  const known = delay >= 0 && delay < kOtherTime && performance.now() < drawnAt + kOtherTime / 2;
+  panel.showHealth(stream.silence, known ? delay : NaN, stage.drawMs);
+  headset?.showDelay(known ? `${delay.toFixed(0)} ms from state to picture` : '');
+}, kTold);
+
+/** The small picture is where no stick is: beside the right one, or above it. */
+const arrange = new ResizeObserver(() => {
+  const small = kSmall.matches, wide = canvas.clientWidth > canvas.clientHeight;
+  stage.inset = { above: small, right: 8 + (small && wide ? element('move').offsetWidth : 0) };
+  stage.dirty = true;
+});
+for (const part of [canvas, element('move')]) arrange.observe(part);
 
 Object.assign(window, { vibe: { stage, stream, drive, stats, headset: () => headset } });

@@ -1,7 +1,7 @@
 // What the server sends: the layouts are in src/vibe_web/src/protocol of the sources.
 
 export enum Kind {
-  Scene = 1, Topology, Frame, Folds, Heat, Sutures, State, Events, Replay, Operator, Pong, Refusal, Grant, Blood, Threads,
+  Scene = 1, Topology, Frame, Folds, Heat, Sutures, State, Events, Replay, Operator, Pong, Refusal, Grant, Blood, Threads, Health,
 }
 
 export interface Topology {
@@ -148,7 +148,7 @@ export interface SceneText {
   lens: Lens; keys: KeyTable; tallest_fold: number; pattern: { size: number }; silence: number;
 }
 export interface StateText {
-  scene: string; time: number; paused: boolean; phase: string; tool: string; pressure: number; volume: number; marks: number;
+  scene: string; time: number; paused: boolean; phase: string; tool: string; pressure: number; volume: number; marks: string;
   bites: number; sutures: number; cinched: number; bleeding: number; blood: number; needle: string;
   measures: { label: string; unit: string; decimals: number; value: number | null; range: string; rating: string; outside: boolean; explained: string }[];
   sets: { set: string; bites: string; technique: string; stage: string; tension: string; warns: boolean; help: string }[];
@@ -156,6 +156,7 @@ export interface StateText {
 export interface EventText { number: number; time: number; severity: string; text: string }
 export interface ReplayText { file: string; time: number; duration: number; playing: boolean; rate: number; marks: { time: number; text: string }[]; difference: string }
 export interface OperatorText { seat: number; driving: boolean; trouble: string; step: string; keys: number[]; gear: number; buttons: boolean[]; joints: (number | null)[] }
+export interface HealthText { text: string; alarm: boolean }
 export interface GrantText { seat: number; grant: number }
 
 export function readText<T>(bytes: ArrayBuffer): T {

@@ -1,59 +1,72 @@
-// The page around the pictures: state, events, measures, keys and the timeline of a recording.
+// The page around the pictures: what is wrong, state, events, measures and keys.
 
-import { Kind, readText, type EventText, type KeyTable, type ReplayText, type StateText } from './messages';
 import type { Drive } from './drive';
+import { Kind, readText, type EventText, type HealthText, type KeyTable, type StateText } from './messages';
+import { noticeOf } from './notice';
 import type { Stream } from './stream';
+import { element, made, minutes, row } from './texts';
+import { Timeline } from './timeline';
+import { addTouch } from './touch';
 
-export const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
-
-const seconds = (time: number) => `${Math.floor(time / 60)}:${(time % 60).toFixed(1).padStart(4, '0')}`;
-
-/** Replaces the children of an element by rows of texts. */
-function fill(parent: HTMLElement, rows: HTMLElement[]) {
-  parent.replaceChildren(...rows);
-}
-
-function made(tag: string, text: string, className = '', title = ''): HTMLElement {
-  const child = document.createElement(tag);
-  child.textContent = text;
-  child.className = className;
-  if (title) child.title = title;
-  return child;
-}
-
-function row(cells: string[], className: string, title: string): HTMLElement {
-  const line = made('tr', '', className, title);
-  line.append(...cells.map((cell) => made('td', cell)));
-  return line;
-}
+const kSaid = 8000; // how long an answer to the person stands [ms]
+const kWell: HealthText = { text: '', alarm: false };
 
 export class Panel {
-  private replay: ReplayText | null = null;
-  private seeking = false;
-  private delay = '';
+  private timeline: Timeline;
+  private health = kWell;
+  private link = 'Connecting...';
+  private said = { text: '', until: 0, seat: 0 };
+  private delay = '-';
 
-  constructor(private stream: Stream, private drive: Drive) {
+  constructor(stream: Stream, private drive: Drive) {
+    this.timeline = new Timeline(stream, drive, (text) => this.status(text), () => this.showDriving());
     stream.on(Kind.State, (bytes) => this.showState(readText(bytes)));
     stream.on(Kind.Events, (bytes) => this.showEvents(readText(bytes)));
-    stream.on(Kind.Replay, (bytes) => this.showReplay(readText(bytes)));
+    stream.on(Kind.Health, (bytes) => (this.health = readText(bytes)));
     stream.on(Kind.Refusal, (bytes) => this.status(new TextDecoder().decode(new Uint8Array(bytes, 1))));
-    element('play').onclick = () => this.sendReplay(!this.replay?.playing);
-    const seek = element<HTMLInputElement>('seek');
-    seek.oninput = () => (this.seeking = true);
-    seek.onchange = () => {
-      this.seeking = false;
-      this.sendReplay(this.replay?.playing ?? false, seek.valueAsNumber);
-    };
+    addTouch(drive);
+    element('numbers').onclick = () => this.openDrawer();
+    addEventListener('keydown', ({ key }) => key === 'Escape' && this.openDrawer(false));
   }
 
+  /** An answer to what the person did, until the place changes hands, and no longer than a while. */
   status(text: string) {
-    element('status').textContent = text;
+    this.said = { text, until: performance.now() + kSaid, seat: this.drive.operator?.seat ?? 0 };
+    this.showLink();
   }
 
-  showDelay(text: string) {
-    this.delay = text || '-';
+  /** @param why  there is no connection; empty: it is being made */
+  setLink(open: boolean, why: string) {
+    this.link = open ? 'Connected' : why || 'Connecting...';
+    if (!open) this.health = kWell;
+    this.showLink();
+    this.showDriving();
+  }
+
+  private showLink() {
+    const { text, until, seat } = this.said, holds = text && performance.now() < until && seat === (this.drive.operator?.seat ?? 0);
+    const shown = holds ? text : this.link, status = element('status');
+    if (status.textContent !== shown) status.textContent = shown;
+    status.classList.toggle('quiet', shown === 'Connected');
+  }
+
+  /** Regularly. @param delay  from a state to its picture, NaN: unknown. @param drawing  a part of it [ms] */
+  showHealth(silence: number, delay: number, drawing: number) {
+    this.delay = Number.isNaN(delay) ? '-' : `${delay.toFixed(0)} ms from state to picture`;
     const shown = element('state').lastElementChild;
     if (shown) shown.textContent = this.delay;
+    const { drive, health } = this, { driving, strangePad } = drive;
+    const trouble = this.timeline.replay ? '' : drive.operator?.trouble ?? '';
+    const notice = this.link === 'Connected' ? noticeOf({ silence, health, trouble, driving, delay, drawing, strangePad }) : kWell;
+    for (const id of ['trouble', 'hint']) {
+      const part = element(id), text = notice.alarm === (id === 'trouble') ? notice.text : '';
+      if (part.textContent !== text) part.textContent = text;
+      part.hidden = !text;
+    }
+    const step = element('step');
+    step.textContent = drive.operator?.step ?? '';
+    step.hidden = !driving || !!notice.text || !step.textContent || !!this.timeline.replay;
+    this.showLink();
   }
 
   showForce(newton: number, torque: number) {
@@ -62,26 +75,28 @@ export class Panel {
   }
 
   showDriving() {
-    const { drive } = this, operator = drive.operator;
-    const control = element<HTMLButtonElement>('control');
-    control.textContent = drive.driving ? 'Give control back' : 'Take control';
-    control.setAttribute('aria-pressed', String(drive.driving));
-    const trouble = drive.driving ? operator?.trouble ?? '' : '';
-    element('trouble').textContent = trouble;
-    element('trouble').hidden = !trouble;
-    element('step').textContent = operator?.step ?? '';
-    element('step').hidden = !drive.driving || !!trouble || !operator?.step;
-    for (const button of element('keys').querySelectorAll<HTMLButtonElement>('button')) {
+    const { driving, operator } = this.drive, control = element<HTMLButtonElement>('control');
+    control.textContent = driving ? 'Give control back' : 'Take control';
+    control.setAttribute('aria-pressed', String(driving));
+    const moves = driving && !this.timeline.replay; // a recording has nothing to drive
+    document.body.classList.toggle('driving', moves);
+    for (const button of document.querySelectorAll<HTMLButtonElement>('button[data-key]')) {
       button.classList.toggle('down', operator?.keys.includes(Number(button.dataset.key)) ?? false);
-      button.disabled = !drive.driving;
+      button.disabled = !moves;
     }
+    this.showLink();
+  }
+
+  /** @param open  or the other way round */
+  private openDrawer(open?: boolean) {
+    element('numbers').setAttribute('aria-expanded', String(document.body.classList.toggle('drawer', open)));
   }
 
   showKeys(table: KeyTable) {
-    fill(element('keys'), table.rows.map(({ caps, text }) => {
-      const line = made('div', '', 'row');
-      for (const cap of caps.filter(({ key }) => key !== 0)) line.append(this.keyButton(cap.key, cap.label, text));
-      line.append(made('span', text));
+    const drives = ({ key }: { key: number }) => table.bindings.some((each) => each.key === key);
+    element('keys').replaceChildren(...table.rows.filter(({ caps }) => caps.some(drives)).map(({ caps, text }) => {
+      const line = made('div', '', 'row'), plain = text.replace(/ \((wheel|drag)\)/, ''); // which are those of rviz
+      line.append(...caps.filter(drives).map(({ key, label }) => this.keyButton(key, label, plain)), made('span', plain));
       return line;
     }));
     this.showDriving();
@@ -90,60 +105,33 @@ export class Panel {
   private keyButton(key: number, label: string, text: string): HTMLElement {
     const button = made('button', label) as HTMLButtonElement;
     button.type = 'button';
-    button.dataset.key = String(key);
     button.setAttribute('aria-label', `${label}: ${text}`);
-    const hold = (down: boolean) => this.drive.hold(key, down);
-    button.onpointerdown = (event) => {
-      button.setPointerCapture(event.pointerId);
-      hold(true);
-    };
-    button.onpointerup = button.onpointercancel = button.onlostpointercapture = () => hold(false);
-    button.oncontextmenu = (event) => event.preventDefault();
+    this.drive.bindButton(button, key);
     return button;
   }
 
   private showState(state: StateText) {
     const terms: [string, string][] = [
-      ['Time', seconds(state.time) + (state.paused ? ', paused' : '')], ['Phase', state.phase], ['Tool', state.tool],
-      ['Needle', state.needle], ['Gas', `${(state.pressure / 133.322).toFixed(1).replace('-0.0', '0.0')} mmHg, ${(1e6 * state.volume).toFixed(0)} mL`],
-      ['Marks', String(state.marks)], ['Bites', String(state.bites)], ['Sets', `${state.cinched} of ${state.sutures} cinched`],
+      ['Time', this.timeline.replay ? minutes(this.timeline.replay.time) : minutes(state.time) + (state.paused ? ', paused' : '')],
+      ['Phase', state.phase], ['Tool', state.tool], ['Needle', state.needle],
+      ['Gas', `${(state.pressure / 133.322).toFixed(1).replace('-0.0', '0.0')} mmHg, ${(1e6 * state.volume).toFixed(0)} mL`],
+      ['Marks', state.marks], ['Bites', String(state.bites)], ['Sets', `${state.cinched} of ${state.sutures} cinched`],
       ['Bleeding', state.bleeding ? `${state.bleeding} now, ${(1e6 * state.blood).toFixed(1)} mL lost` : 'none'],
-      ['Delay', this.delay], // last: showDelay() writes there
+      ['Delay', this.delay], // last: showHealth() writes there
     ];
-    fill(element('state'), terms.flatMap(([name, value]) => [made('dt', name), made('dd', value)]));
-    fill(element('sets').querySelector('tbody')!, state.sets.map((set) => row([set.set, set.bites, set.technique, set.stage, set.tension], set.warns ? 'warns' : '', set.help)));
-    fill(element('measures').querySelector('tbody')!, state.measures.map((measure) => {
+    element('state').replaceChildren(...terms.flatMap(([name, value]) => [made('dt', name), made('dd', value)]));
+    element('sets').querySelector('tbody')!.replaceChildren(...state.sets.map((set) => row([set.set, set.bites, set.technique, set.stage, set.tension], set.warns ? 'warns' : '', set.help)));
+    element('measures').querySelector('tbody')!.replaceChildren(...state.measures.map((measure) => {
       const value = measure.value === null ? '-' : measure.value.toFixed(measure.decimals) + ' ' + measure.unit;
       return row([measure.label, value, measure.range], measure.outside ? 'outside' : '', `${measure.explained}\n${measure.rating}`);
     }));
   }
 
   private showEvents(events: EventText[]) {
-    fill(element('events'), events.slice(-30).reverse().map(({ number, severity, text }) => {
+    element('events').replaceChildren(...events.slice(-30).reverse().map(({ number, severity, text }) => {
       const item = made('li', (severity === 'note' ? '' : severity + ': ') + text, severity) as HTMLLIElement;
       item.value = number;
       return item;
     }));
-  }
-
-  private showReplay(replay: ReplayText) {
-    this.replay = replay;
-    element('timeline').hidden = false;
-    element('play').textContent = replay.playing ? 'Pause' : 'Play';
-    const seek = element<HTMLInputElement>('seek');
-    seek.max = String(replay.duration);
-    if (!this.seeking) seek.value = String(replay.time);
-    seek.setAttribute('aria-valuetext', seconds(replay.time));
-    element('clock').textContent = `${seconds(replay.time)} / ${seconds(replay.duration)}`;
-  }
-
-  private sendReplay(play: boolean, time?: number) {
-    if (!this.drive.driving) return this.status('Take control to move in the recording.');
-    const bytes = new ArrayBuffer(16), view = new DataView(bytes);
-    view.setUint8(0, 5);
-    view.setUint8(1, (play ? 1 : 0) | (time === undefined ? 0 : 2));
-    view.setFloat32(4, this.replay?.rate ?? 1, true);
-    view.setFloat64(8, time ?? 0, true);
-    this.stream.send(bytes);
   }
 }

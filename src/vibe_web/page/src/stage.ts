@@ -33,6 +33,7 @@ export class Stage {
   readonly controls: OrbitControls;
   endoscope: EndoscopeView | null = null;
   endoscopeLarge = false;
+  inset = { above: false, right: 8 }; // the small picture: whether it is above, and how far from the right [px]
   time = 0; // of the frame that is shown [s]
   dirty = true;
   drawMs = 0;
@@ -165,7 +166,7 @@ export class Stage {
     renderer.info.reset();
     this.drawEndoscope();
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    const edge = Math.round(0.42 * Math.min(width, height)), inset = new Vector4(width - edge - 8, 8, edge, edge);
+    const edge = Math.round((this.endoscopeLarge ? 0.3 : 0.42) * Math.min(width, height)), inset = new Vector4(width - edge - this.inset.right, this.inset.above ? height - edge - 8 : 8, edge, edge);
     const square = Math.min(width, height);
     renderer.setRenderTarget(null);
     renderer.setClearColor(0x101418, 1);
@@ -178,7 +179,7 @@ export class Stage {
       this.drawOutside(inset);
     } else {
       const aside = this.endoscope ? kAside * edge : 0; // the organ beside or above the endoscope's picture
-      this.camera.setViewOffset(width, height, width > height ? aside : 0, width > height ? 0 : aside, width, height);
+      this.camera.setViewOffset(width, height, width > height ? aside : 0, width > height ? 0 : this.inset.above ? -aside : aside, width, height);
       this.drawOutside(new Vector4(0, 0, width, height));
       this.drawPicture(inset);
     }

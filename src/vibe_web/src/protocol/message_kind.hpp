@@ -24,9 +24,10 @@ enum class Kind : std::uint8_t {
   Refusal = 12,  ///< text, to one client: one sentence
   Grant = 13,    ///< text, to one client: it drives, and what its drive messages have to name
   Blood = 14,    ///< shape_message.hpp
-  Threads = 15   ///< shape_message.hpp: thread, T-tags and cinches as the endoscope sees them
+  Threads = 15,  ///< shape_message.hpp: thread, T-tags and cinches as the endoscope sees them
+  Health = 16    ///< text: what is wrong with what is heard of the session
 };
-constexpr std::size_t kKinds = 16;  ///< one more than the largest number
+constexpr std::size_t kKinds = 17;  ///< one more than the largest number
 
 using Bytes = std::vector<std::uint8_t>;
 using SharedBytes = std::shared_ptr<const Bytes>;

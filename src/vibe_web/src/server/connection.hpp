@@ -58,7 +58,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   void handle(const Request& request) {
     const Caller caller = callerOf(request);
     const std::string path = caller.target.substr(0, caller.target.find('?'));
-    if (path == kStreamPath && websocket::is_upgrade(request)) return openStream(request, caller);
+    if (path == kStreamPath) return openStream(request, caller);
     const std::string refused = hostRefusal(shared_->rule(), caller);
     if (!refused.empty()) return answerText(request, http::status::forbidden, refused);
     if (request.method() != http::verb::get && request.method() != http::verb::head)
@@ -86,6 +86,8 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     if (!refused.empty()) return answerText(request, http::status::forbidden, refused);
     if (shared_->client_count >= kMaxClients)
       return answerText(request, http::status::service_unavailable, "Too many pages look already; close one of them.");
+    if (!websocket::is_upgrade(request))  // a page asks so why its stream was refused
+      return answerText(request, http::status::upgrade_required, "This is the stream of the page, a WebSocket.");
     beast::get_lowest_layer(stream_).expires_never();
     Error ignored;
     beast::get_lowest_layer(stream_).socket().set_option(asio::ip::tcp::no_delay(true), ignored);
