@@ -79,7 +79,7 @@ SessionStream::SessionStream(const ros::NodeHandle& handle, WebServer& server)
   }));
   add(handle_.subscribe<vibe_msgs::ProcedureState>("procedure/state", kQueue, [this](const auto& m) { state_ = m; }));
   add(handle_.subscribe<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kQueue,
-                                                [this](const auto& m) { skill_ = m; }));
+                                                 [this](const auto& m) { skill_ = m; }));
   add(handle_.subscribe<vibe_msgs::ProcedureEvent>("procedure/events", kEventQueue, [this](const auto& message) {
     events_.add(*message);
     events_changed_ = true;

@@ -56,7 +56,7 @@ class SessionStream {
   graphics::TissueFrame frame_;
   FrameContent content_;
   ros::Subscriber particles_;
-  std::vector<ros::Subscriber> subscribers_;  // of all other topics
+  std::vector<ros::Subscriber> subscribers_;   // of all other topics
   sensor_msgs::PointCloud2::ConstPtr unseen_;  // particles that no page has got
   vibe_msgs::ProcedureState::ConstPtr state_;
   vibe_msgs::ReplayStatus::ConstPtr replay_;

@@ -19,7 +19,7 @@ export class Panel {
   private delay = '-';
 
   constructor(stream: Stream, private drive: Drive) {
-    this.timeline = new Timeline(stream, drive, (text) => this.status(text), () => this.showDriving());
+    this.timeline = new Timeline(stream, drive, (text) => this.status(text), () => this.showReplay());
     stream.on(Kind.State, (bytes) => this.showState(readText(bytes)));
     stream.on(Kind.Events, (bytes) => this.showEvents(readText(bytes)));
     stream.on(Kind.Health, (bytes) => (this.health = readText(bytes)));
@@ -110,9 +110,18 @@ export class Panel {
     return button;
   }
 
+  /** Time is that of the line. */
+  private showReplay() {
+    const shown = element('state').querySelector('dd');
+    if (shown) shown.textContent = minutes(this.timeline.replay!.time);
+    element('keys').closest('section')!.hidden = true;
+    this.showDriving();
+  }
+
   private showState(state: StateText) {
+    const { replay } = this.timeline;
     const terms: [string, string][] = [
-      ['Time', this.timeline.replay ? minutes(this.timeline.replay.time) : minutes(state.time) + (state.paused ? ', paused' : '')],
+      ['Time', replay ? minutes(replay.time) : minutes(state.time) + (state.paused ? ', paused' : '')], // first: showReplay() writes there
       ['Phase', state.phase], ['Tool', state.tool], ['Needle', state.needle],
       ['Gas', `${(state.pressure / 133.322).toFixed(1).replace('-0.0', '0.0')} mmHg, ${(1e6 * state.volume).toFixed(0)} mL`],
       ['Marks', state.marks], ['Bites', String(state.bites)], ['Sets', `${state.cinched} of ${state.sutures} cinched`],

@@ -31,17 +31,17 @@ export class Timeline {
   }
 
   private show(replay: ReplayText) {
-    const came = !this.replay;
     this.replay = replay;
     element('timeline').hidden = false;
     element('play').textContent = replay.playing ? 'Pause' : 'Play';
     this.seek.max = String(replay.duration);
     if (!this.seeking) this.seek.value = String(replay.time);
-    this.seek.setAttribute('aria-valuetext', minutes(replay.time));
+    const last = replay.marks.filter(({ time }) => time <= replay.time).pop();
+    this.seek.setAttribute('aria-valuetext', minutes(replay.time) + (last ? `, after ${last.text}` : ''));
     this.rate.value = String(replay.rate); // none, if another program has chosen one that is not in the list
     element('clock').textContent = `${minutes(replay.time)} / ${minutes(replay.duration)}`;
     this.showMarks(replay);
-    if (came) this.onChange();
+    this.onChange();
   }
 
   private showMarks({ marks, duration }: ReplayText) {

@@ -1,12 +1,10 @@
 // The page in Chromium, without a display and without a graphics card. Arguments: PORT CHROMIUM FOLDER; pictures go into
 // the folder.
 
-import { readFileSync, readdirSync, statSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
-import { check, emulateHeadset, expect, launch, leftOut, until, wait } from './checks.mjs';
+import { readdirSync, statSync, writeFileSync } from 'node:fs';
+import { check, emulateHeadset, expect, launch, leftOut, until, violations, wait } from './checks.mjs';
 
 const [port, chromium, folder] = process.argv.slice(2);
-const find = createRequire(import.meta.url);
 const kPicture = 240; // edge of the endoscope's picture [px]
 
 const browser = await launch(chromium);
@@ -14,7 +12,7 @@ const browser = await launch(chromium);
 const errors = [];
 async function openPage(prepare = async () => {}, rate = 15) {
   const page = await browser.newPage();
-  await page.setViewport({ width: 800, height: 600 });
+  await page.setViewport({ width: 850, height: 600 });
   page.on('pageerror', (error) => errors.push(String(error)));
   page.on('console', (message) => message.type() === 'error' && errors.push(message.text()));
   await prepare(page);
@@ -85,8 +83,7 @@ await check('what is left out of the picture is not in it', async () => {
 await check('nothing was wrong in the console', async () => expect(errors.length === 0, errors.join('\n')));
 
 await check('accessibility (axe)', async () => {
-  await page.evaluate(readFileSync(find.resolve('axe-core/axe.min.js'), 'utf8'));
-  const found = await page.evaluate(async () => (await window.axe.run()).violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`));
+  const found = await violations(page);
   expect(found.length === 0, found.join('\n'));
 });
 

@@ -1,7 +1,9 @@
 // What the tests of the page share: each check prints one line of JSON, which web_test.py reads.
 
 import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { fileURLToPath } from 'node:url';
+import { transformSync } from 'esbuild';
 import puppeteer from 'puppeteer-core';
 
 /** Chromium without a display and without a graphics card. */
@@ -36,6 +38,18 @@ export async function check(name, body) {
 
 export function expect(condition, what) {
   if (!condition) throw new Error(what);
+}
+
+/** A module of the page that needs no browser. */
+export function load(name) {
+  const source = readFileSync(new URL(`../src/${name}.ts`, import.meta.url), 'utf8');
+  return import('data:text/javascript,' + encodeURIComponent(transformSync(source, { loader: 'ts', format: 'esm' }).code));
+}
+
+/** What axe finds wrong with the accessibility of the page. */
+export async function violations(page) {
+  await page.evaluate(readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8'));
+  return page.evaluate(async () => (await window.axe.run()).violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`));
 }
 
 /** A headset that is none (Meta's iwer): before the page is opened. */

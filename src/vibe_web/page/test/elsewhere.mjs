@@ -1,6 +1,7 @@
-// The page with a recording, or at a server with --lan. Arguments: 'recording' or 'lan', PORT, CHROMIUM, FOLDER or TOKEN.
+// The page with a recording, at a server with --lan, or where nothing is shown. Arguments: 'recording', 'lan' or 'nothing', PORT,
+// CHROMIUM, FOLDER or TOKEN.
 
-import { check, expect, launch, until, wait } from './checks.mjs';
+import { check, expect, launch, until, violations } from './checks.mjs';
 
 const [what, port, chromium, more] = process.argv.slice(2);
 const browser = await launch(chromium, ...(what === 'lan' ? ['--ignore-certificate-errors'] : []));
@@ -23,6 +24,7 @@ async function tryRecording() {
     await until(() => page.evaluate(() => window.vibe.drive.driving), 'control');
     if ((await shown('play')) === 'Pause') await page.click('#play');
     const duration = await page.$eval('#seek', (element) => Number(element.max));
+    expect((await shown('trouble')) === '', await shown('trouble')); // control was asked for
     for (const share of [0.8, 0.2]) {
       const seen = await page.evaluate(() => window.vibe.stage.time);
       await goTo(share * duration);
@@ -32,20 +34,35 @@ async function tryRecording() {
     await page.screenshot({ path: `${more}/recording.png` });
     return { duration };
   });
-  await check('it plays and pauses', async () => {
-    const begin = await time();
+  await check('it plays, at another speed, and pauses', async () => {
+    await goTo(0);
+    await until(async () => (await time()) < 0.1, 'the begin');
+    await page.select('#rate', '4');
     await page.click('#play');
-    await until(async () => (await time()) > begin + 0.5, 'playing');
+    await until(async () => (await time()) > 0.5, 'playing');
     await page.click('#play');
     await until(async () => (await shown('play')) === 'Play', 'a pause');
+    expect((await page.$eval('#rate', ({ value }) => value)) === '4', 'the player keeps the speed');
+    await until(async () => (await shown('clock')).startsWith(await page.$eval('#state dd', ({ textContent }) => textContent)), 'two times that agree');
+  });
+  await check('events are on the line, and the arrows go to them', async () => {
+    const marks = await page.$$eval('#marks i', (all) => all.map(({ title }) => title)); // a recording may have none
+    await page.focus('#seek');
+    const before = await time();
+    await page.keyboard.press('ArrowRight');
+    await until(async () => Math.abs((await time()) - before - 1) < 0.2, 'a second later');
+    return { marks };
+  });
+  await check('accessibility of the line (axe)', async () => {
+    const found = await violations(page);
+    expect(found.length === 0, found.join('\n'));
   });
 }
 
 async function tryLan() {
   await check('a browser needs the token', async () => {
     await page.goto(`https://localhost:${port}/`);
-    await wait(1500);
-    expect((await shown('status')).startsWith('No connection'), await shown('status'));
+    await until(async () => (await shown('status')).startsWith('The token is missing'), 'the reason');
   });
   await check('with the token it shows the session, and may enter a headset', async () => {
     await page.goto('about:blank');
@@ -55,6 +72,18 @@ async function tryLan() {
   });
 }
 
-await (what === 'lan' ? tryLan() : tryRecording());
+async function tryNothing() {
+  await check('a page says that nothing is published', async () => {
+    await page.goto(`http://localhost:${port}/`);
+    await until(async () => (await shown('trouble')).startsWith('Nothing publishes'), 'the sentence');
+  });
+  await check('a browser without WebGL says so', async () => {
+    await page.evaluateOnNewDocument(() => (HTMLCanvasElement.prototype.getContext = () => null));
+    await page.goto(`http://localhost:${port}/`);
+    await until(async () => (await shown('status')).includes('WebGL'), 'the sentence');
+  });
+}
+
+await { lan: tryLan, recording: tryRecording, nothing: tryNothing }[what]();
 await browser.close();
 process.exit(0);

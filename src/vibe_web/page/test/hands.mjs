@@ -1,13 +1,10 @@
 // What the page sends is what the person holds: random sequences of keys, pointers, focus, gamepad, headset and link, beside a
-// model of what is physically held. Needs no browser. Argument: number of sequences.
+// model of what is physically held; and which sentence the page says. Needs no browser. Argument: number of sequences.
 
-import { readFileSync } from 'node:fs';
-import { transformSync } from 'esbuild';
-import { check, expect } from './checks.mjs';
+import { check, expect, load } from './checks.mjs';
 
 const count = Number(process.argv[2]);
-const source = transformSync(readFileSync(new URL('../src/hands.ts', import.meta.url), 'utf8'), { loader: 'ts', format: 'esm' }).code;
-const { Hands, kLapse } = await import('data:text/javascript,' + encodeURIComponent(source));
+const { Hands, kLapse } = await load('hands'), { noticeOf } = await load('notice');
 
 const kNames = { KeyW: 'w', KeyG: 'g', ArrowUp: 'ArrowUp', Space: ' ', Digit3: '3', ShiftLeft: 'Shift', ShiftRight: 'Shift', Enter: 'Enter', ControlLeft: 'Control', AltLeft: 'Alt', MetaLeft: 'Meta' };
 const kNumbers = { KeyW: 87, KeyG: 71, ArrowUp: 0x01000013, Space: 32, Digit3: 51, ShiftLeft: 0x01000020, ShiftRight: 0x01000020 };
@@ -233,5 +230,22 @@ await check('each rule that is missing is found', async () => {
   const found = Object.entries(kWorse).map(([name, Kind]) => [name, Array.from({ length: 400 }, (_, seed) => differs(Kind, seed)).filter((text) => text).length]);
   for (const [name, sequences] of found) expect(sequences > 0, `not found: ${name}`);
   return Object.fromEntries(found);
+});
+
+await check('of what is wrong the most important is said', async () => {
+  const well = { silence: 0, health: { text: '', alarm: false }, trouble: '', driving: true, delay: 200, drawing: 100, strangePad: '' };
+  const kSaid = [ // from the last to the first
+    [{ health: { text: 'paused', alarm: false } }, 'paused', false], [{ strangePad: 'X' }, "'X'", false], [{ delay: 1100 }, '1.0 s old, because the link', false],
+    [{ drawing: 900 }, 'this device draws', false], [{ trouble: 'moves not' }, 'moves not', true], [{ health: { text: 'gone', alarm: true } }, 'gone', true],
+    [{ silence: 7000 }, 'more than 5 s', true],
+  ];
+  expect(noticeOf(well).text === '', noticeOf(well).text);
+  const facts = { ...well };
+  for (const [more, part, alarm] of kSaid) {
+    const notice = noticeOf(Object.assign(facts, more));
+    expect(notice.text.includes(part) && notice.alarm === alarm, `${part}: ${JSON.stringify(notice)}`);
+  }
+  const watching = noticeOf({ ...well, driving: false, delay: 1100, trouble: 'moves not', strangePad: 'X' }); // which does not concern who looks on
+  expect(watching.text === '', watching.text);
 });
 process.exit(0);

@@ -28,7 +28,7 @@ function noteFirst() {
 
 async function open() {
   const context = await browser.createBrowserContext(), page = await context.newPage();
-  await page.setViewport({ width: 800, height: 600 });
+  await page.setViewport({ width: 850, height: 600 });
   await page.evaluateOnNewDocument(noteFirst);
   await page.goto(`http://localhost:${port}/`);
   await until(() => page.evaluate(() => window.vibe?.stats.firstPicture > 0), 'a picture', 120);

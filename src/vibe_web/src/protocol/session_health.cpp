@@ -19,17 +19,21 @@ std::string lasting(double seconds) {
 
 HealthNote noteOf(const SessionHealth& health) {
   if (!health.published)
-    return {"Nothing publishes tissue/particles; start a simulator or vibe_player with the ROS_MASTER_URI and the "
-            "namespace of web_node.",
-            true};
+    return {
+        "Nothing publishes tissue/particles; start a simulator or vibe_player with the ROS_MASTER_URI and the "
+        "namespace of web_node.",
+        true};
   if (health.paused) return {"The simulator is paused."};
   if (!health.rests && health.silence > kStale)
     return {"No states " + lasting(health.silence) + "; has the simulator stopped, or does it take that long?", true};
   if (!health.robot)
-    return {"There is no endoscope: robot_description holds no URDF that can be read; set this parameter to "
-            "vibe_description/urdf/scope.urdf."};
+    return {
+        "There is no endoscope: robot_description holds no URDF that can be read; set this parameter to "
+        "vibe_description/urdf/scope.urdf."};
   if (!health.base)
-    return {"There is no endoscope: no message on /tf_static says where scope_base is; a simulator and vibe_player send it."};
+    return {
+        "There is no endoscope: no message on /tf_static says where scope_base is; a simulator and vibe_player send "
+        "it."};
   return {};
 }
 

@@ -86,6 +86,9 @@ class Web(unittest.TestCase):
             self.skipTest("Chromium is not installed")
         return self.run_script(script, *arguments)
 
+    def test_0_hands(self):
+        self.run_script("hands.mjs", 10000)
+
     def test_1_stream(self):
         self.run_script("stream.mjs", self.port)
         self.assertTrue(self.server.is_running(), self.server.last_words())
@@ -160,14 +163,29 @@ class Web(unittest.TestCase):
             with open(os.path.join(self.folder, name, "part.obj"), "w", encoding="utf-8") as file:
                 file.write("# {}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".format(name))
         links = link.format(self.folder, "a") + link.format(self.folder, "b")
-        rospy.set_param("/other/robot_description", '<robot name="r">' + links + joint + "</robot>")
         server = Program("vibe_web", "web_node", "__ns:=other", name="web_other", port=0)
         self.addCleanup(server.stop)
-        for number, name in enumerate("ab"):
-            connection = http.client.HTTPConnection("localhost", port_of(server), timeout=20)
+        port = port_of(server)
+
+        def part(number):
+            connection = http.client.HTTPConnection("localhost", port, timeout=20)
             connection.request("GET", "/mesh/{}/part.obj".format(number))
-            self.assertTrue(connection.getresponse().read().decode().startswith("# " + name))
-            connection.close()
+            try:
+                return connection.getresponse().read().decode()
+            finally:
+                connection.close()
+
+        self.assertFalse(part(0).startswith("#"))  # the description comes later than the server
+        rospy.set_param("/other/robot_description", '<robot name="r">' + links + joint + "</robot>")
+        for number, name in enumerate("ab"):
+            self.assertTrue(wait_until(lambda: part(number).startswith("# " + name)), part(number))
+        self.run_in_chromium("elsewhere.mjs", "nothing", port, CHROMIUM)
+
+    def test_7_presses_end(self):
+        self.run_in_chromium("presses.mjs", self.port, CHROMIUM, 60)
+
+    def test_8_the_page_says_what_is_wrong(self):
+        self.run_in_chromium("truth.mjs", self.port, CHROMIUM, self.simulator.process.pid, self.server.process.pid)
 
 
 if __name__ == "__main__":
