@@ -23,6 +23,9 @@ void check(const web::Command& command) {
   for (const double axis : command.axes) require(axis >= -1 && axis <= 1);
   require(command.speed > 0 && command.speed <= 100);
   require(command.time >= 0 && std::isfinite(command.time));
+  for (const auto& pose : command.viewer.poses)
+    for (std::size_t k = 0; pose && k < pose->size(); ++k) require(std::abs((*pose)[k]) <= web::kFarthest);
+  for (const double stick : command.viewer.sticks) require(stick >= -1 && stick <= 1);
 }
 
 }  // namespace

@@ -42,6 +42,7 @@ OperatorDrive::OperatorDrive(ros::NodeHandle& handle)
     : seat_(isButton),
       drive_("web_node"),
       replay_(handle.advertise<vibe_msgs::ReplayCommand>("replay/command", 10)),
+      viewer_(handle),
       last_(steadyNow()) {}
 
 void OperatorDrive::receive(ClientId client, const Command& command) {
@@ -66,6 +67,7 @@ void OperatorDrive::tick(WebServer& server) {
   for (const ClientId client : left) seat_.leave(client);
   const double now = steadyNow();
   seat_.tick(now);
+  viewer_.tick(now, server);
   move(std::min(now - last_, kLongestStep));
   last_ = now;
   if (now - ticked_ < kButtonPeriod) return;
@@ -90,6 +92,9 @@ void OperatorDrive::obey(ClientId client, const Command& command, WebServer& ser
       return;
     case Command::Kind::Replay:
       if (client == seat_.holder()) replay(command);
+      return;
+    case Command::Kind::Viewer:
+      if (client == seat_.holder()) viewer_.receive(command.viewer);
       return;
     case Command::Kind::Rate:
     case Command::Kind::Ping:

@@ -10,6 +10,7 @@
 #include "operator/operator_seat.hpp"
 #include "server/web_server.hpp"
 #include "vibe_operator/driving/manual_drive.hpp"
+#include "viewer_topics.hpp"
 
 namespace vibe::web {
 
@@ -41,6 +42,7 @@ class OperatorDrive {
   OperatorSeat seat_;
   operating::ManualDrive drive_;
   ros::Publisher replay_;
+  ViewerTopics viewer_;
   std::set<int> down_;  // keys that drive_ knows of
   bool started_ = false;
   std::uint32_t seats_ = 0;  // how often the seat was taken

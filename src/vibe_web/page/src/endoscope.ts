@@ -4,6 +4,7 @@ import {
   FloatType, HalfFloatType, LinearFilter, LinearMipmapLinearFilter, Mesh, OrthographicCamera, PerspectiveCamera, PlaneGeometry, Scene, Vector2, WebGLRenderTarget,
   type Object3D, type RawShaderMaterial, type WebGLRenderer, DoubleSide, BufferAttribute,
 } from 'three';
+import { wallAhead } from './convergence';
 import { AutoExposure } from './exposure';
 import type { Lens, Source } from './messages';
 import { kEndoscopeLayer, type Organ } from './organ';
@@ -12,7 +13,8 @@ import { castShadow } from './shadow';
 import { materialOf } from './shaders';
 import type { SutureView } from './sutures';
 
-const kBase = 0.004; // from the left lens to the right one, as in endoscope_camera [m]
+const kBase = 1 / 60; // from the left lens to the right one, in distances of the wall: then eyes can fuse also what is four times nearer
+const kFollow = 0.1; // share of the way to where the lenses should meet, per picture: nothing jumps
 const kMeter = 32; // edge of the picture that measures the level [px]
 
 /** As unseenShare() of endoscope_lens.cpp: within this share of half the picture of the whole only that of the middle is shown. */
@@ -30,6 +32,7 @@ export class EndoscopeView {
   readonly camera = new PerspectiveCamera(90, 1, 0.0005, 2);
   readonly target: WebGLRenderTarget; // of the only lens, or the left one
   readonly right: WebGLRenderTarget;
+  private meeting = 0; // where the views of both lenses meet [m]
   private whole: WebGLRenderTarget;
   private middle: WebGLRenderTarget;
   private meter = new WebGLRenderTarget(kMeter, kMeter);
@@ -83,25 +86,28 @@ export class EndoscopeView {
     renderer.xr.enabled = false;
     frame.updateWorldMatrix(true, false);
     this.subject.scene.updateMatrixWorld();
-    this.drawEye(frame, 0);
+    this.drawEye(frame);
     do {
       this.bend(this.target, this.lens.size);
       this.exposure.see(this.level(), time);
     } while (this.exposure.isLost);
     if (stereo) {
-      this.drawEye(frame, kBase);
+      const { organ } = this.subject, there = wallAhead(organ.particles, this.camera.matrixWorldInverse.clone().multiply(organ.root.matrixWorld));
+      this.meeting += (this.meeting > 0 ? kFollow : 1) * (there - this.meeting);
+      this.drawEye(frame, kBase * this.meeting, kBase);
       this.bend(this.right, this.lens.size);
     }
     renderer.setRenderTarget(null);
     renderer.xr.enabled = wasXr;
   }
 
-  /** The plane pictures of a lens that stands `aside` to the right. */
-  private drawEye(frame: Object3D, aside: number) {
+  /** The plane pictures of a lens that stands `aside` to the right, and is turned to the left by this angle [rad]. */
+  private drawEye(frame: Object3D, aside = 0, turn = 0) {
     const { camera, subject } = this;
     frame.matrixWorld.decompose(camera.position, camera.quaternion, camera.scale);
     camera.rotateX(Math.PI);
     camera.translateX(aside);
+    camera.rotateY(turn);
     camera.updateMatrixWorld();
     const { capsules: numbers, capsule_count: count } = subject.organ.mucosa.uniforms;
     count.value = castShadow(subject.robot.capsules, camera, numbers.value);

@@ -13,6 +13,7 @@ const kRate = 60; // frames asked for [Hz]
 const kOtherTime = 10000, kSlow = 1000 / 60; // [ms]
 const kTold = 500; // what is told of the link and the delay is renewed [ms]
 const kSmall = matchMedia('(max-width: 50rem), (max-height: 30rem)'); // as in style.css
+const kHeadsets = [['headset', 'immersive-vr'], ['passthrough', 'immersive-ar']] as const; // buttons
 const options = new URLSearchParams(location.hash.slice(1));
 
 const askPattern = () => fetch('pattern').then((answer) => (answer.ok ? answer.arrayBuffer() : null), () => null);
@@ -36,7 +37,7 @@ const stats = { frames: 0, drawn: 0, firstPicture: 0, latencies: [] as number[],
 
 function makeStage(): Stage {
   try {
-    return new Stage(canvas, Number(options.get('size') ?? 0));
+    return new Stage(canvas, Number(options.get('size') ?? 0), options.get('view') === 'instructor');
   } catch (error) {
     stream.close();
     element('status').textContent = 'This browser draws nothing, because it has no WebGL 2; switch hardware acceleration on in its settings, or take another browser.';
@@ -51,8 +52,8 @@ async function takeScene(text: SceneText) {
   stage.setLens(text.lens);
   drive.setTable(text.keys);
   panel.showKeys(text.keys);
-  headset = new Headset(stage, drive, text.lens);
-  element('headset').hidden = !((await navigator.xr?.isSessionSupported('immersive-vr').catch(() => false)) ?? false);
+  headset = new Headset(stage, drive, stream, text);
+  for (const [id, mode] of kHeadsets) element(id).hidden = !((await navigator.xr?.isSessionSupported(mode).catch(() => false)) ?? false);
   const bytes = (await pattern) ?? (await askPattern());
   if (!bytes) return panel.status('The server does not give the look of the mucosa; load this page again.');
   stage.organ.setPattern(new Uint8Array(bytes), text.pattern.size);
@@ -78,6 +79,11 @@ onLook(Kind.Folds, (bytes) => stage.organ.setFolds(bytes, scene?.tallest_fold ??
 onLook(Kind.Heat, (bytes) => stage.organ.setHeat(readHeat(bytes)));
 onLook(Kind.Sutures, (bytes) => stage.sutures.set(readSutures(bytes)));
 onLook(Kind.Threads, (bytes) => stage.sutures.setThreads(readShape(bytes)));
+stream.on(Kind.Viewer, (bytes) => {
+  stage.driver.set(bytes);
+  stage.driver.visible = !stage.renderer.xr.isPresenting; // else it is who looks
+  stage.dirty = true;
+});
 onLook(Kind.Blood, (bytes) => stage.sutures.setBlood(readShape(bytes), stage.organ.particles));
 
 drive.onChange = () => panel.showDriving();
@@ -91,7 +97,7 @@ element('control').onclick = () => {
   else drive.take();
   canvas.focus();
 };
-element('headset').onclick = async () => panel.status((await headset?.enter()) ?? '');
+for (const [id, mode] of kHeadsets) element(id).onclick = async () => panel.status((await headset?.enter(mode)) ?? '');
 element('picture').onclick = () => savePicture(canvas);
 element('video').onclick = () => {
   video.toggle();

@@ -1,7 +1,7 @@
 // What the server sends: the layouts are in src/vibe_web/src/protocol of the sources.
 
 export enum Kind {
-  Scene = 1, Topology, Frame, Folds, Heat, Sutures, State, Events, Replay, Operator, Pong, Refusal, Grant, Blood, Threads, Health,
+  Scene = 1, Topology, Frame, Folds, Heat, Sutures, State, Events, Replay, Operator, Pong, Refusal, Grant, Blood, Threads, Health, Viewer,
 }
 
 export interface Topology {

@@ -5,6 +5,7 @@ import {
   OrthographicCamera, PerspectiveCamera, PlaneGeometry, Scene, Vector3, Vector4, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { DriverFigure } from './driver';
 import { EndoscopeView } from './endoscope';
 import type { Frame, Lens } from './messages';
 import { kPlainLayer, Organ } from './organ';
@@ -18,6 +19,7 @@ const kQuick = 15, kTooLong = 60; // [ms]
 const kPatience = 20; // pictures before one of another size
 const kAside = 0.35; // the organ from the middle, in edges of the endoscope's picture
 const kArrow = 0.02; // length of a newton [m]
+const kOrganAlone = new Vector3(0.4, -0.19, 0.08), kWithDriver = new Vector3(0.8, -0.7, 1.8); // camera from the organ [m]
 const kLensFrame = 'scope_camera_optical', kTipFrame = 'scope_tip';
 
 ColorManagement.enabled = false; // shaders give shades as screens show them
@@ -28,6 +30,7 @@ export class Stage {
   readonly organ = new Organ();
   readonly robot = new Robot();
   readonly sutures = new SutureView();
+  readonly driver = new DriverFigure(); // in a headset, as others see it
   readonly renderer: WebGLRenderer;
   readonly camera = new PerspectiveCamera(40, 1, 0.01, 10);
   readonly controls: OrbitControls;
@@ -49,20 +52,21 @@ export class Stage {
   private flat = new OrthographicCamera(-1, 1, 1, -1, 0, 1);
   private picture = new Mesh(new PlaneGeometry(2, 2), new MeshBasicMaterial({ depthTest: false, depthWrite: false }));
 
-  constructor(readonly canvas: HTMLCanvasElement, private fixedSize: number) {
+  /** @param withDriver  looks from far enough away to see who drives in a headset */
+  constructor(readonly canvas: HTMLCanvasElement, private fixedSize: number, withDriver = false) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.renderer.autoClear = false;
     this.renderer.info.autoReset = false;
     this.scene.add(this.body);
-    this.body.add(this.organ.root, this.robot.root, this.sutures.root, this.arrow);
+    this.body.add(this.organ.root, this.robot.root, this.sutures.root, this.arrow, this.driver);
     this.light();
     this.arrow.traverse((part) => part.layers.set(kPlainLayer));
     this.arrow.visible = false;
     this.robot.onLoad = () => this.refresh();
     this.camera.layers.set(kPlainLayer);
-    this.camera.up.set(0, 0, 1);
-    this.camera.position.set(0.4, -0.19, 0.08);
+    this.camera.up.set(withDriver ? 1 : 0, 0, withDriver ? 0 : 1); // the patient lies there
+    this.camera.position.copy(withDriver ? kWithDriver : kOrganAlone);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => (this.dirty = true));
     this.screen.add(this.picture);

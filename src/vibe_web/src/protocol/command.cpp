@@ -13,12 +13,18 @@ constexpr double kSlowest = 0.01, kFastest = 100;  // as vibe_player
 constexpr double kLongest = 1e7;                   // of a recording [s]
 constexpr std::uint32_t kLastKey = 0x01ffffff;     // of Qt::Key
 constexpr std::size_t kDriveHead = 28;             // [bytes]
+constexpr std::size_t kViewerHead = 12;            // [bytes]
+constexpr float kUnit = 1e-3F;                     // by which the norm of a quaternion may miss 1
 
 template <class T>
 T at(const std::uint8_t* bytes, std::size_t place) {
   T value;
   std::memcpy(&value, bytes + place, sizeof value);
   return value;
+}
+
+double shareAt(const std::uint8_t* bytes, std::size_t place) {
+  return std::clamp(at<std::int16_t>(bytes, place) / 32767.0, -1.0, 1.0);
 }
 
 std::optional<Command> readRate(const std::uint8_t* bytes, std::size_t size) {
@@ -52,8 +58,7 @@ std::optional<Command> readDrive(const std::uint8_t* bytes, std::size_t size) {
   command.kind = Command::Kind::Drive;
   command.grant = at<std::uint32_t>(bytes, 4);
   command.number = at<std::uint32_t>(bytes, 8);
-  for (std::size_t k = 0; k < kAxes; ++k)
-    command.axes[k] = std::clamp(at<std::int16_t>(bytes, 12 + 2 * k) / 32767.0, -1.0, 1.0);
+  for (std::size_t k = 0; k < kAxes; ++k) command.axes[k] = shareAt(bytes, 12 + 2 * k);
   for (std::size_t k = 0; k < keys; ++k) {
     const auto key = at<std::uint32_t>(bytes, kDriveHead + 4 * k);
     if (key > kLastKey) return std::nullopt;
@@ -72,6 +77,30 @@ std::optional<Command> readReplay(const std::uint8_t* bytes, std::size_t size) {
   command.time = at<double>(bytes, 8);
   if (!(command.speed >= kSlowest - 1e-6 && command.speed <= kFastest)) return std::nullopt;
   if (!(command.time >= 0 && command.time <= kLongest)) return std::nullopt;
+  return command;
+}
+
+bool isPose(const ViewerState::Pose& pose) {
+  const bool near = std::all_of(pose.begin(), pose.begin() + 3, [](float x) { return std::abs(x) <= kFarthest; });
+  const float norm = std::hypot(std::hypot(pose[3], pose[4]), std::hypot(pose[5], pose[6]));
+  return near && std::abs(norm - 1) <= kUnit;  // neither is true of what is not a number
+}
+
+std::optional<Command> readViewer(const std::uint8_t* bytes, std::size_t size) {
+  constexpr std::size_t pose_size = sizeof(ViewerState::Pose);
+  const auto buttons = size < kViewerHead ? 0U : at<std::uint16_t>(bytes, 2);
+  if (size != kViewerHead + kViewerBodies * pose_size || bytes[1] >> kViewerBodies || buttons >> kViewerButtons)
+    return std::nullopt;
+  Command command;
+  command.kind = Command::Kind::Viewer;
+  ViewerState& viewer = command.viewer;
+  for (std::size_t k = 0; k < kViewerBodies; ++k) {
+    if ((bytes[1] >> k & 1) == 0) continue;
+    viewer.poses[k] = at<ViewerState::Pose>(bytes, kViewerHead + k * pose_size);
+    if (!isPose(*viewer.poses[k])) return std::nullopt;
+  }
+  for (std::size_t k = 0; k < kViewerButtons; ++k) viewer.buttons[k] = (buttons >> k & 1) != 0;
+  for (std::size_t k = 0; k < viewer.sticks.size(); ++k) viewer.sticks[k] = shareAt(bytes, 4 + 2 * k);
   return command;
 }
 
@@ -100,6 +129,8 @@ std::optional<Command> decodeCommand(const std::uint8_t* bytes, std::size_t size
       return readPing(bytes, size);
     case Command::Kind::Drawn:
       return readDrawn(bytes, size);
+    case Command::Kind::Viewer:
+      return readViewer(bytes, size);
   }
   return std::nullopt;
 }

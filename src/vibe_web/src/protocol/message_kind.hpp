@@ -25,9 +25,10 @@ enum class Kind : std::uint8_t {
   Grant = 13,    ///< text, to one client: it drives, and what its drive messages have to name
   Blood = 14,    ///< shape_message.hpp
   Threads = 15,  ///< shape_message.hpp: thread, T-tags and cinches as the endoscope sees them
-  Health = 16    ///< text: what is wrong with what is heard of the session
+  Health = 16,   ///< text: what is wrong with what is heard of the session
+  Viewer = 17    ///< viewer_message.hpp: head and hands of the one who drives in a headset
 };
-constexpr std::size_t kKinds = 17;  ///< one more than the largest number
+constexpr std::size_t kKinds = 18;  ///< one more than the largest number
 
 using Bytes = std::vector<std::uint8_t>;
 using SharedBytes = std::shared_ptr<const Bytes>;

@@ -14,7 +14,8 @@ import unittest
 
 import rospy
 import rostest
-from sensor_msgs.msg import JointState
+from geometry_msgs.msg import PoseStamped
+from sensor_msgs.msg import JointState, Joy
 from vibe_testing.program import Program, find_program
 from vibe_testing.recorder import Recorder
 from vibe_testing.wait import wait_until
@@ -186,6 +187,21 @@ class Web(unittest.TestCase):
 
     def test_8_the_page_says_what_is_wrong(self):
         self.run_in_chromium("truth.mjs", self.port, CHROMIUM, self.simulator.process.pid, self.server.process.pid)
+
+    def test_7_headset(self):
+        seen = {name: Recorder("/viewer/" + name, PoseStamped) for name in ("head", "left_hand", "right_hand")}
+        buttons = Recorder("/viewer/buttons", Joy)
+        self.run_in_chromium("room.mjs", self.port, CHROMIUM, self.folder)
+        for name, recorder in seen.items():
+            self.assertTrue(recorder.messages, name)
+            self.assertEqual({message.header.frame_id for message in recorder.messages}, {"world"})
+        self.assertTrue(any(message.buttons[6] for message in buttons.messages), "the grip of the right hand")
+        self.assertTrue(any(message.axes[1] > 0.9 for message in buttons.messages), "the stick of the left hand, ahead")
+        # the patient lies, and the viewer stands to the right: above the organ, and looking to the patient's left
+        head = seen["head"].messages[-1].pose
+        self.assertGreater(head.position.x, 0.3)
+        self.assertLess(head.position.y, -0.3)
+        self.assertTrue(self.server.is_running(), self.server.last_words())
 
 
 if __name__ == "__main__":

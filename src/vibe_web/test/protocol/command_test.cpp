@@ -1,9 +1,12 @@
 #include "protocol/command.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
 #include <gtest/gtest.h>
+
+#include "protocol/viewer_message.hpp"
 
 namespace vibe::web::command_test {
 namespace {
@@ -37,6 +40,16 @@ Row replay(float speed, double time) {
   return row;
 }
 
+/// A head and a right hand, each turned by half a turn about x.
+Row viewer(std::uint8_t present = 5, std::uint16_t buttons = 1 << 9, float x = 1, float w = 0) {
+  Row row{8, present};
+  put(row, buttons);
+  for (const int stick : {0, 32767, -32768, 0}) put(row, static_cast<std::int16_t>(stick));
+  for (int k = 0; k < 3; ++k)
+    for (const float number : {x, 2.F, 3.F, 1.F, 0.F, 0.F, w}) put(row, number);
+  return row;
+}
+
 TEST(Command, DriveSaysAllThatIsHeld) {
   const auto command = decode(drive(2));
   ASSERT_TRUE(command);
@@ -48,8 +61,25 @@ TEST(Command, DriveSaysAllThatIsHeld) {
   EXPECT_EQ(command->axes[0], 0);
 }
 
+TEST(Command, ViewerSaysWhatIsThere) {
+  const auto command = decode(viewer());
+  ASSERT_TRUE(command);
+  const ViewerState& seen = command->viewer;
+  EXPECT_EQ(seen.poses[0], (ViewerState::Pose{1, 2, 3, 1, 0, 0, 0}));
+  EXPECT_FALSE(seen.poses[1]);
+  EXPECT_TRUE(seen.poses[2]);
+  EXPECT_EQ(seen.sticks, (std::array<double, 4>{0, 1, -1, 0}));
+  EXPECT_TRUE(seen.buttons[9]);
+  EXPECT_FALSE(seen.buttons[0]);
+  const Bytes told = encodeViewer(seen), row = viewer();
+  ASSERT_EQ(told.size(), 88U);
+  EXPECT_EQ(told[1], 5);
+  EXPECT_TRUE(std::equal(told.begin() + 4, told.begin() + 32, row.begin() + 12));  // the head, as it came
+  EXPECT_EQ(told[32], 0);                                                          // no left hand
+}
+
 TEST(Command, OfAnotherLengthIsNone) {
-  for (const Row& good : {drive(0), drive(16), replay(1, 2), Row{1, 60}, Row{2}, Row{3}, Row{7, 0}, Row(16, 6)}) {
+  for (const Row& good : {drive(0), drive(16), replay(1, 2), Row{1, 60}, Row{2}, Row{3}, Row{7, 0}, Row(16, 6), viewer()}) {
     EXPECT_TRUE(decode(good)) << int{good[0]};
     Row longer = good, shorter = good;
     longer.push_back(0);
@@ -63,11 +93,17 @@ TEST(Command, OutsideOfItsLimitsIsNone) {
   EXPECT_FALSE(decode(drive(17)));
   EXPECT_FALSE(decode({1, 0}));
   EXPECT_FALSE(decode({1, 61}));
-  EXPECT_FALSE(decode({8}));
+  EXPECT_FALSE(decode({9}));
   EXPECT_FALSE(decode(replay(0, 1)));
   EXPECT_FALSE(decode(replay(std::numeric_limits<float>::quiet_NaN(), 1)));
   EXPECT_FALSE(decode(replay(1, -1)));
   EXPECT_FALSE(decode(replay(1, std::numeric_limits<double>::infinity())));
+  EXPECT_FALSE(decode(viewer(8)));                                         // a body that nobody has
+  EXPECT_FALSE(decode(viewer(5, 1 << 10)));                                // a button that no hand has
+  EXPECT_FALSE(decode(viewer(1, 0, 101)));                                 // too far
+  EXPECT_FALSE(decode(viewer(1, 0, std::numeric_limits<float>::quiet_NaN())));
+  EXPECT_FALSE(decode(viewer(1, 0, 1, 1)));                                // no rotation
+  EXPECT_TRUE(decode(viewer(0, 0, std::numeric_limits<float>::quiet_NaN())));  // nothing is there
   Row key = drive(1);
   key.back() = 0xff;
   EXPECT_FALSE(decode(key));

@@ -1,0 +1,151 @@
+// Hands of a headset at the handle of the scope: their way becomes axes of the drive, buttons and sticks its keys.
+
+import { Quaternion, Raycaster, Vector3, type Scene, type WebXRManager, type XRGripSpace, type XRTargetRaySpace } from 'three';
+import type { Drive } from './drive';
+import { HandFigure, Holds } from './held';
+import { kPlainLayer } from './organ';
+import type { Button, Readings } from './readings';
+import { Way } from './way';
+
+const kInsertion = 0.03, kRotation = 0.8; // speeds of the hand that are those of a key: [m/s], [rad/s]
+const kTold = 2; // way that is lost and told, as a small rest always is when a hand lets go [mm], [degrees]
+const kStrong = 8; // force of the strongest pulse [N]
+
+const enum Pad { Trigger = 0, Squeeze = 1, Stick = 3, Lower = 4, Upper = 5 }
+// Keys of the table that buttons hold: of the hand at the handle, and of the other one, which works the device.
+const keyOf = (letter: string) => letter.charCodeAt(0);
+const kHandle: [Pad, number][] = [[Pad.Trigger, keyOf(' ')], [Pad.Lower, keyOf('G')], [Pad.Upper, keyOf('I')], [Pad.Stick, keyOf('T')]];
+const kDevice: [Pad, number][] = [[Pad.Trigger, keyOf('R')], [Pad.Lower, keyOf('N')], [Pad.Upper, keyOf('C')], [Pad.Stick, keyOf('F')]];
+const kHelixAdvance = 4, kHelixRotation = 5; // joints
+
+/** A controller or a hand, and how it was held in the frame before. */
+interface Grip {
+  ray: XRTargetRaySpace; space: XRGripSpace; figure: HandFigure; source: XRInputSource | null; held: boolean; pointed: Button | null;
+  place: Vector3; turn: Quaternion; pressed: boolean[];
+}
+
+export class Grips {
+  readonly way = new Way(); // of the hand at the handle
+  onView = () => {}; // buttons of a hand that holds nothing
+  onRecentre = () => {};
+  private grips: Grip[];
+  private pointer = new Raycaster();
+
+  constructor(xr: WebXRManager, scene: Scene, private drive: Drive, private readings: Readings) {
+    this.pointer.layers.set(kPlainLayer);
+    this.grips = [0, 1].map((k) => this.makeGrip(xr, k, scene));
+  }
+
+  /** Left and right, where they are there. */
+  get hands() {
+    return (['left', 'right'] as const).map((side) => this.grips.find(({ source, space }) => source?.handedness === side && space.visible) ?? null);
+  }
+
+  get pointed() {
+    return this.grips.map(({ pointed }) => pointed);
+  }
+
+  get holding() {
+    return this.grips.some(({ held }) => held);
+  }
+
+  private makeGrip(xr: WebXRManager, k: number, scene: Scene): Grip {
+    const grip: Grip = {
+      ray: xr.getController(k), space: xr.getControllerGrip(k), figure: new HandFigure(xr, k, scene), source: null, held: false, pointed: null,
+      place: new Vector3(), turn: new Quaternion(), pressed: [],
+    };
+    const release = () => (grip.held = false);
+    grip.ray.addEventListener('connected', ({ data }) => (grip.source = data));
+    grip.ray.addEventListener('disconnected', () => ((grip.source = null), release()));
+    grip.ray.addEventListener('squeezestart', () => this.hold(grip));
+    grip.ray.addEventListener('squeezeend', release);
+    grip.ray.addEventListener('selectstart', () => {
+      if (grip.pointed) grip.pointed.act();
+      else if (grip.source?.hand) this.hold(grip); // hands pinch instead of squeezing
+    });
+    grip.ray.addEventListener('selectend', () => grip.source?.hand && release());
+    scene.add(grip.ray);
+    return grip;
+  }
+
+  /** One hand holds the handle, whichever it is: left- and right-handed people need no setting. */
+  private hold(grip: Grip) {
+    for (const other of this.grips) other.held = other === grip;
+    grip.place.copy(grip.ray.position);
+    grip.turn.copy(grip.ray.quaternion);
+    this.way.begin();
+  }
+
+  release() {
+    for (const grip of this.grips) grip.held = false;
+    this.drive.headset.keys.clear();
+    this.drive.headset.axes.fill(0);
+    this.way.end();
+  }
+
+  /** @param force  of the tissue on the tool, which is felt [N] */
+  read(force: number) {
+    const { axes, keys } = this.drive.headset, { holding } = this;
+    axes.fill(0, 2); // but insertion and rotation
+    keys.clear();
+    for (const grip of this.grips) {
+      if (grip.held) this.moveHandle(grip);
+      this.readPad(grip, axes, keys, force);
+      grip.pointed = grip.held ? null : this.buttonBefore(grip);
+      grip.figure.show(!!grip.source?.hand, grip.held ? Holds.Handle : holding ? Holds.Device : Holds.Nothing);
+    }
+    if (!holding) this.way.end();
+  }
+
+  private buttonBefore(grip: Grip): Button | null {
+    if (!grip.source) return null;
+    grip.ray.updateWorldMatrix(true, false);
+    const [hit] = this.pointer.setFromXRController(grip.ray).intersectObject(this.readings);
+    return hit?.uv ? this.readings.buttonAt(hit.uv) : null;
+  }
+
+  private moveHandle(grip: Grip) {
+    const ahead = new Vector3(0, 0, -1).applyQuaternion(grip.turn);
+    const along = grip.ray.position.clone().sub(grip.place).dot(ahead);
+    const turned = grip.turn.clone().invert().multiply(grip.ray.quaternion);
+    const roll = 2 * Math.atan2(-turned.z, turned.w);
+    this.way.add([along / kInsertion, Math.atan2(Math.sin(roll), Math.cos(roll)) / kRotation]);
+    grip.place.copy(grip.ray.position);
+    grip.turn.copy(grip.ray.quaternion);
+  }
+
+  /** Before the server is told what hands hold. */
+  tellWay(seconds: number, period: number, silence: number) {
+    if (!this.drive.driving) this.way.begin(); // then nothing is lost
+    this.way.told(seconds, silence);
+    this.way.next(Math.max(seconds, period), silence).forEach((axis, joint) => (this.drive.headset.axes[joint] = axis));
+  }
+
+  /** What the hand has gone in vain since it took the handle. */
+  get lostWay() {
+    const [insertion, rotation] = this.way.lost;
+    const parts = [[1000 * kInsertion * insertion, 'mm'], [(180 / Math.PI) * kRotation * rotation, 'degrees']] as const;
+    return parts.filter(([much]) => much >= kTold).map(([much, unit]) => `${much.toFixed(0)} ${unit}`).join(' and ');
+  }
+
+  // Without a hand at the handle the buttons are those of the room.
+  private readPad(grip: Grip, axes: number[], keys: Set<number>, force: number) {
+    const pad = grip.source?.gamepad;
+    if (!pad) return;
+    const pressed = (button: Pad) => (pad.buttons[button]?.pressed ?? false) && !grip.pressed[button];
+    const { holding } = this;
+    if (!holding && pressed(Pad.Lower)) this.onView();
+    if (!holding && pressed(Pad.Upper)) this.onRecentre();
+    if (holding) for (const [button, key] of grip.held ? kHandle : kDevice) if (pad.buttons[button]?.pressed) keys.add(key);
+    const [across, up] = [pad.axes[2] ?? 0, -(pad.axes[3] ?? 0)];
+    if (holding && !grip.held) {
+      axes[kHelixAdvance] += up;
+      axes[kHelixRotation] += across;
+    } else {
+      axes[3] -= across;
+      axes[2] += up;
+    }
+    if (grip.held && force > 0.3) void pad.hapticActuators?.[0]?.pulse(Math.min(1, force / kStrong), 30);
+    grip.pressed = pad.buttons.map((button) => button.pressed);
+  }
+}
