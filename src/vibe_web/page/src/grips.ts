@@ -1,14 +1,16 @@
 // Hands of a headset at the handle of the scope: their way becomes axes of the drive, buttons and sticks its keys.
 
-import { Quaternion, Raycaster, Vector3, type Scene, type WebXRManager, type XRGripSpace, type XRTargetRaySpace } from 'three';
+import { Group, Quaternion, Raycaster, Vector3, type WebXRManager, type XRGripSpace, type XRTargetRaySpace } from 'three';
 import type { Drive } from './drive';
 import { HandFigure, Holds } from './held';
 import { kPlainLayer } from './organ';
 import type { Button, Readings } from './readings';
 import { Way } from './way';
 
-const kInsertion = 0.03, kRotation = 0.8; // speeds of the hand that are those of a key: [m/s], [rad/s]
-const kTold = 2; // way that is lost and told, as a small rest always is when a hand lets go [mm], [degrees]
+const kSpeeds = [0.03, 0.8]; // of the hand that are those of a key, insertion and rotation: [m/s], [rad/s]
+const kUnits = [[1000, 'mm'], [180 / Math.PI, 'degrees']] as const;
+const kTold = 2, kBehind = [15, 25]; // way not followed that is told: of a hand that rests, and of one that moves [mm], [degrees]
+const kRest = 500; // then the server has told where the scope is [ms]
 const kStrong = 8; // force of the strongest pulse [N]
 
 const enum Pad { Trigger = 0, Squeeze = 1, Stick = 3, Lower = 4, Upper = 5 }
@@ -21,19 +23,23 @@ const kHelixAdvance = 4, kHelixRotation = 5; // joints
 /** A controller or a hand, and how it was held in the frame before. */
 interface Grip {
   ray: XRTargetRaySpace; space: XRGripSpace; figure: HandFigure; source: XRInputSource | null; held: boolean; pointed: Button | null;
-  place: Vector3; turn: Quaternion; pressed: boolean[];
+  place: Vector3 | null; turn: Quaternion; pressed: boolean[];
 }
 
 export class Grips {
+  readonly root = new Group(); // of what they look like, in the space of the headset
   readonly way = new Way(); // of the hand at the handle
+  private from: (number | null)[] = []; // where joints were when the hand took the handle
+  private behind = [0, 0]; // way that they have not followed since, in units of people
+  private moved = 0; // the hand, the last time [ms]
   onView = () => {}; // buttons of a hand that holds nothing
   onRecentre = () => {};
   private grips: Grip[];
   private pointer = new Raycaster();
 
-  constructor(xr: WebXRManager, scene: Scene, private drive: Drive, private readings: Readings) {
+  constructor(xr: WebXRManager, private drive: Drive, private readings: Readings) {
     this.pointer.layers.set(kPlainLayer);
-    this.grips = [0, 1].map((k) => this.makeGrip(xr, k, scene));
+    this.grips = [0, 1].map((k) => this.makeGrip(xr, k));
   }
 
   /** Left and right, where they are there. */
@@ -49,10 +55,10 @@ export class Grips {
     return this.grips.some(({ held }) => held);
   }
 
-  private makeGrip(xr: WebXRManager, k: number, scene: Scene): Grip {
+  private makeGrip(xr: WebXRManager, k: number): Grip {
     const grip: Grip = {
-      ray: xr.getController(k), space: xr.getControllerGrip(k), figure: new HandFigure(xr, k, scene), source: null, held: false, pointed: null,
-      place: new Vector3(), turn: new Quaternion(), pressed: [],
+      ray: xr.getController(k), space: xr.getControllerGrip(k), figure: new HandFigure(xr, k, this.root), source: null, held: false, pointed: null,
+      place: null, turn: new Quaternion(), pressed: [],
     };
     const release = () => (grip.held = false);
     grip.ray.addEventListener('connected', ({ data }) => (grip.source = data));
@@ -64,16 +70,21 @@ export class Grips {
       else if (grip.source?.hand) this.hold(grip); // hands pinch instead of squeezing
     });
     grip.ray.addEventListener('selectend', () => grip.source?.hand && release());
-    scene.add(grip.ray);
+    this.root.add(grip.ray);
     return grip;
   }
 
   /** One hand holds the handle, whichever it is: left- and right-handed people need no setting. */
   private hold(grip: Grip) {
     for (const other of this.grips) other.held = other === grip;
-    grip.place.copy(grip.ray.position);
-    grip.turn.copy(grip.ray.quaternion);
+    grip.place = null; // the next frame knows where the hand is now
+    this.begin();
+  }
+
+  private begin() {
     this.way.begin();
+    this.from = [...(this.drive.operator?.joints ?? [])];
+    this.behind.fill(0);
   }
 
   release() {
@@ -105,27 +116,44 @@ export class Grips {
   }
 
   private moveHandle(grip: Grip) {
+    if (grip.place) this.addWay(grip, grip.place);
+    grip.place = grip.ray.position.clone();
+    grip.turn.copy(grip.ray.quaternion);
+  }
+
+  private addWay(grip: Grip, place: Vector3) {
     const ahead = new Vector3(0, 0, -1).applyQuaternion(grip.turn);
-    const along = grip.ray.position.clone().sub(grip.place).dot(ahead);
+    const along = grip.ray.position.clone().sub(place).dot(ahead);
     const turned = grip.turn.clone().invert().multiply(grip.ray.quaternion);
     const roll = 2 * Math.atan2(-turned.z, turned.w);
-    this.way.add([along / kInsertion, Math.atan2(Math.sin(roll), Math.cos(roll)) / kRotation]);
-    grip.place.copy(grip.ray.position);
-    grip.turn.copy(grip.ray.quaternion);
+    this.way.add([along, Math.atan2(Math.sin(roll), Math.cos(roll))].map((part, joint) => part / kSpeeds[joint]));
+    if (along !== 0 || roll !== 0) this.moved = performance.now();
   }
 
   /** Before the server is told what hands hold. */
   tellWay(seconds: number, period: number, silence: number) {
-    if (!this.drive.driving) this.way.begin(); // then nothing is lost
+    if (!this.drive.driving) this.begin(); // then nothing is expected
     this.way.told(seconds, silence);
     this.way.next(Math.max(seconds, period), silence).forEach((axis, joint) => (this.drive.headset.axes[joint] = axis));
+    if (this.holding || !this.rests) this.compare();
   }
 
-  /** What the hand has gone in vain since it took the handle. */
-  get lostWay() {
-    const [insertion, rotation] = this.way.lost;
-    const parts = [[1000 * kInsertion * insertion, 'mm'], [(180 / Math.PI) * kRotation * rotation, 'degrees']] as const;
-    return parts.filter(([much]) => much >= kTold).map(([much, unit]) => `${much.toFixed(0)} ${unit}`).join(' and ');
+  private get rests() {
+    return performance.now() > this.moved + kRest;
+  }
+
+  private compare() {
+    const joints = this.drive.operator?.joints ?? [];
+    kUnits.forEach(([scale], joint) => {
+      const [from, now] = [this.from[joint] ?? null, joints[joint] ?? null];
+      if (from !== null && now !== null) this.behind[joint] = scale * Math.abs(this.way.hand[joint] * kSpeeds[joint] - (now - from));
+    });
+  }
+
+  /** What the scope has not followed of the hand since it took the handle, as text. */
+  get notFollowed() {
+    const told = this.behind.map((way, joint) => way >= (this.rests ? kTold : kBehind[joint]));
+    return this.behind.map((way, joint) => `${way.toFixed(0)} ${kUnits[joint][1]}`).filter((_, joint) => told[joint]).join(' and ');
   }
 
   // Without a hand at the handle the buttons are those of the room.

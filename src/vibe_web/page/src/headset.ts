@@ -1,7 +1,7 @@
 // The session in a headset, through WebXR: a room with the endoscope's picture on a monitor, the organ as a model to walk
 // around, and hands that hold the handle of the scope.
 
-import { Vector3 } from 'three';
+import { Group, Vector3 } from 'three';
 import type { Drive } from './drive';
 import { encodeDriver } from './driver';
 import { Grips } from './grips';
@@ -18,6 +18,7 @@ const kViews: Record<View, string> = { [View.Monitor]: 'monitor', [View.Around]:
 export class Headset {
   readonly room: Room;
   readonly grips: Grips;
+  private inside = new Group(); // all that is seen in the headset only
   stereo = false; // endoscopes have one lens
   force = 0; // [N]
   private last = 0; // [ms]
@@ -30,9 +31,10 @@ export class Headset {
     xr.enabled = true;
     xr.setReferenceSpaceType('local-floor');
     this.room = new Room(scene.lens.field_of_view);
-    this.room.visible = false;
-    stage.scene.add(this.room);
-    this.grips = new Grips(xr, stage.scene, drive, this.room.readings);
+    this.grips = new Grips(xr, drive, this.room.readings);
+    this.inside.add(this.room, this.grips.root);
+    this.inside.visible = false;
+    stage.scene.add(this.inside);
     this.grips.onView = () => this.nextView();
     this.grips.onRecentre = () => this.recentre();
     drive.onSend = (seconds) => this.tell(seconds);
@@ -57,7 +59,7 @@ export class Headset {
   private begin() {
     const { room, stage } = this;
     this.placed = false;
-    room.visible = true;
+    this.inside.visible = true;
     room.passThrough = this.passThrough;
     room.show(View.Monitor);
     room.model.add(stage.body);
@@ -66,7 +68,7 @@ export class Headset {
   }
 
   private end() {
-    this.room.visible = false;
+    this.inside.visible = false;
     this.stage.scene.add(this.stage.body);
     this.stage.body.position.set(0, 0, 0);
     this.grips.release();
@@ -108,8 +110,8 @@ export class Headset {
 
   /** What the page says, and besides who drives, and what was not followed. */
   private says(): Said {
-    const { drive, grips } = this, said = pageSays(), lost = grips.lostWay;
-    const reason = this.period > kSlow ? 'Slow picture' : 'Too fast';
+    const { drive, grips } = this, said = pageSays(), lost = grips.notFollowed;
+    const reason = this.period > kSlow ? 'Slow picture' : 'Too fast, or at a limit';
     const now = drive.driving ? `You drive. ${said.now}` : drive.taken ? 'Another page drives.' : 'Nobody drives: take control to move the scope.';
     return { ...said, now, urgent: lost ? `${reason}: ${lost} of the hand were not followed. ${said.urgent}` : said.urgent };
   }

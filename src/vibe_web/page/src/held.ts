@@ -1,7 +1,7 @@
 // What hands look like in the room of a headset: controllers, the joints of hands that are tracked, and what they hold.
 
 import {
-  BoxGeometry, CylinderGeometry, InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, SphereGeometry, TorusGeometry, Vector3, type Scene, type WebXRManager,
+  BoxGeometry, CylinderGeometry, InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, SphereGeometry, TorusGeometry, Vector3, type Group, type WebXRManager,
 } from 'three';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import { kPlainLayer } from './organ';
@@ -36,12 +36,12 @@ export class HandFigure {
   private bodies = [controller(), handle(), device()].map((body) => new Mesh(body, this.material)); // as Holds says
   private joints = new InstancedMesh(shaded(new SphereGeometry(1, 10, 8), kSkin), this.material, kJoints);
 
-  constructor(private xr: WebXRManager, private k: number, scene: Scene) {
+  constructor(private xr: WebXRManager, private k: number, root: Group) {
     const grip = xr.getControllerGrip(k);
     for (const part of [...this.bodies, this.joints]) part.layers.set(kPlainLayer);
     this.joints.frustumCulled = false;
     grip.add(...this.bodies);
-    scene.add(grip, this.joints);
+    root.add(grip, this.joints);
   }
 
   /** @param isHand  tracked, without a controller */

@@ -19,7 +19,7 @@ const kQuick = 15, kTooLong = 60; // [ms]
 const kPatience = 20; // pictures before one of another size
 const kAside = 0.35; // the organ from the middle, in edges of the endoscope's picture
 const kArrow = 0.02; // length of a newton [m]
-const kOrganAlone = new Vector3(0.4, -0.19, 0.08), kWithDriver = new Vector3(0.8, -0.7, 1.8); // camera from the organ [m]
+const kOrganAlone = new Vector3(0.4, -0.19, 0.08), kWithDriver = new Vector3(1, -0.6, 2.3); // camera from the organ [m]
 const kLensFrame = 'scope_camera_optical', kTipFrame = 'scope_tip';
 
 ColorManagement.enabled = false; // shaders give shades as screens show them
