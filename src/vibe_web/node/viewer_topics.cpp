@@ -10,7 +10,7 @@ namespace vibe::web {
 namespace {
 
 constexpr double kPosePeriod = 1.0 / 60;  // [s]
-constexpr double kPoseSilence = 1;         // [s]
+constexpr double kPoseSilence = 1;        // [s]
 constexpr std::uint32_t kPoseQueue = 10;
 
 geometry_msgs::PoseStamped poseMessage(const ViewerState::Pose& pose, const ros::Time& stamp) {

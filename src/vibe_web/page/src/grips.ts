@@ -18,7 +18,14 @@ const enum Pad { Trigger = 0, Squeeze = 1, Stick = 3, Lower = 4, Upper = 5 }
 const keyOf = (letter: string) => letter.charCodeAt(0);
 const kHandle: [Pad, number][] = [[Pad.Trigger, keyOf(' ')], [Pad.Lower, keyOf('G')], [Pad.Upper, keyOf('I')], [Pad.Stick, keyOf('T')]];
 const kDevice: [Pad, number][] = [[Pad.Trigger, keyOf('R')], [Pad.Lower, keyOf('N')], [Pad.Upper, keyOf('C')], [Pad.Stick, keyOf('F')]];
+const kNames: Record<string, string> = { // of what does the same as these keys
+  W: 'the handle ahead', G: 'A or X', I: 'B or Y', T: 'the stick', R: 'the other trigger', N: 'the other A or X', C: 'the other B or Y',
+  F: 'the other stick', E: 'the other stick ahead', Q: 'the other stick back', X: 'the other stick to the right',
+};
 const kHelixAdvance = 4, kHelixRotation = 5; // joints
+
+/** A sentence about keys, for hands that have none. */
+export const forHands = (text: string) => text.replace(/\b(press|hold|with) ([A-Z])\b/gi, (all, verb: string, key: string) => (kNames[key] ? `${verb} ${kNames[key]}` : all));
 
 /** A controller or a hand, and how it was held in the frame before. */
 interface Grip {

@@ -4,11 +4,11 @@
 import { Group, Vector3 } from 'three';
 import type { Drive } from './drive';
 import { encodeDriver } from './driver';
-import { Grips } from './grips';
+import { forHands, Grips } from './grips';
 import type { SceneText } from './messages';
 import { kPlainLayer } from './organ';
 import { pageSays, type Button, type Said } from './readings';
-import { kBackground, Room, View } from './room';
+import { Room, View } from './room';
 import type { Stage } from './stage';
 import type { Stream } from './stream';
 
@@ -101,7 +101,7 @@ export class Headset {
     if (endoscope && second) room.showPictures([endoscope.target.texture, second.texture]);
     renderer.xr.getCamera().layers.enable(kPlainLayer);
     stage.camera.layers.set(kPlainLayer);
-    renderer.setClearColor(kBackground, this.passThrough ? 0 : 1);
+    renderer.setClearColor(room.background, this.passThrough ? 0 : 1);
     renderer.clear();
     renderer.render(stage.scene, stage.camera);
     stage.counts = { calls: renderer.info.render.calls, triangles: renderer.info.render.triangles };
@@ -112,7 +112,7 @@ export class Headset {
   private says(): Said {
     const { drive, grips } = this, said = pageSays(), lost = grips.notFollowed;
     const reason = this.period > kSlow ? 'Slow picture' : 'Too fast, or at a limit';
-    const now = drive.driving ? `You drive. ${said.now}` : drive.taken ? 'Another page drives.' : 'Nobody drives: take control to move the scope.';
+    const now = drive.driving ? `You drive. ${forHands(said.now)}` : drive.taken ? 'Another page drives.' : 'Nobody drives: take control to move the scope.';
     return { ...said, now, urgent: lost ? `${reason}: ${lost} of the hand were not followed. ${said.urgent}` : said.urgent };
   }
 

@@ -7,6 +7,7 @@ import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import { kPlainLayer } from './organ';
 import { shaded } from './room';
 
+const kBeam = 0.5; // length [m]
 const kJoints = 25, kRadius = 0.009; // of a hand, at most [m]: its joints, not its flesh
 const kDark = 0x2a2f34, kLight = 0xd0d6da, kTip = 0x4d9de0, kSkin = 0xd2a48c;
 
@@ -29,24 +30,30 @@ const device = () => mergeGeometries([
   rod(0.011, 0.13, kLight), shaded(new BoxGeometry(0.012, 0.07, 0.014).rotateX(-0.4).translate(0, -0.04, 0.03), kTip), rod(0.004, 0.1, kDark).translate(0, 0, 0.11),
 ]);
 
+/** Along a ray, to point with. */
+const beam = () => rod(0.0012, kBeam, kTip).translate(0, 0, -kBeam / 2);
+
 export enum Holds { Nothing, Handle, Device }
 
 export class HandFigure {
   private material = new MeshBasicMaterial({ vertexColors: true });
   private bodies = [controller(), handle(), device()].map((body) => new Mesh(body, this.material)); // as Holds says
+  private beam = new Mesh(beam(), this.material);
   private joints = new InstancedMesh(shaded(new SphereGeometry(1, 10, 8), kSkin), this.material, kJoints);
 
   constructor(private xr: WebXRManager, private k: number, root: Group) {
     const grip = xr.getControllerGrip(k);
-    for (const part of [...this.bodies, this.joints]) part.layers.set(kPlainLayer);
+    for (const part of [...this.bodies, this.beam, this.joints]) part.layers.set(kPlainLayer);
     this.joints.frustumCulled = false;
     grip.add(...this.bodies);
+    xr.getController(k).add(this.beam);
     root.add(grip, this.joints);
   }
 
   /** @param isHand  tracked, without a controller */
   show(isHand: boolean, holds: Holds) {
     this.bodies.forEach((body, k) => (body.visible = k === holds && !(isHand && holds === Holds.Nothing)));
+    this.beam.visible = holds === Holds.Nothing;
     const place = new Matrix4();
     this.joints.count = 0;
     if (isHand) for (const joint of Object.values(this.xr.getHand(this.k).joints)) {

@@ -138,7 +138,6 @@ setInterval(() => {
   // a recording, and a simulation that is not in real time, have stamps of another time
   const known = delay >= 0 && delay < kOtherTime && performance.now() < drawnAt + kOtherTime / 2;
   panel.showHealth(stream.silence, known ? delay : NaN, stage.drawMs);
-  headset?.showDelay(known ? `${delay.toFixed(0)} ms from state to picture` : '');
 }, kTold);
 
 /** The small picture is where no stick is: beside the right one, or above it. */

@@ -5,7 +5,7 @@ import { kPlainLayer } from './organ';
 
 export const kWidth = 0.52, kHeight = 0.86, kCapital = 0.021; // capital letters [m]
 const kDots = 1000; // [px/m]
-const kFont = (kCapital * kDots) / 0.72, kLine = 1.36 * kFont, kEdge = 0.7 * kFont, kButton = 2 * kFont; // [px]
+const kFont = (kCapital * kDots) / 0.72, kLine = 1.25 * kFont, kEdge = 0.7 * kFont, kButton = 2 * kFont; // [px]
 const kColours = { back: '#12161a', dim: '#9fb0bd', plain: '#eef2f5', urgent: '#ffb347', button: '#2f3d49', pointed: '#4d7ea8' };
 
 export interface Button { text: string; act: () => void }
@@ -22,9 +22,9 @@ const textOf = (id: string) => {
 export function pageSays(): Said {
   const terms = [...document.querySelectorAll('#state dt')], values = [...document.querySelectorAll('#state dd')];
   const rows = terms.map((term, k): [string, string] => [term.textContent ?? '', values[k]?.textContent ?? '']);
-  const [force, torque] = textOf('newton').split(', ');
+  const [force] = textOf('newton').split(', ');
   const status = textOf('status');
-  return { rows: [['Force', force], ['Torque', torque ?? ''], ...rows], now: textOf('step'), urgent: [textOf('trouble'), status === 'Connected' ? '' : status].filter(Boolean).join(' ') };
+  return { rows: [['Force', force], ...rows], now: textOf('step'), urgent: [textOf('trouble'), status === 'Connected' ? '' : status].filter(Boolean).join(' ') };
 }
 
 export class Readings extends Mesh<PlaneGeometry, MeshBasicMaterial> {
@@ -54,8 +54,8 @@ export class Readings extends Mesh<PlaneGeometry, MeshBasicMaterial> {
     pen.fillRect(0, 0, this.canvas.width, this.canvas.height);
     let y = kEdge;
     for (const row of said.rows) y = this.row(row, y);
-    y = this.sentence(said.now, kColours.plain, y + kEdge / 2);
-    this.sentence(said.urgent, kColours.urgent, y);
+    y = this.sentence(said.urgent, kColours.urgent, y + kEdge / 2);
+    this.sentence(said.now, kColours.plain, y);
     buttons.forEach(({ text }, k) => this.button(text, marked[k], k));
     this.material.map!.needsUpdate = true;
   }

@@ -19,8 +19,8 @@ const kNear = { ahead: 0.6, below: 0.95 }; // the readings beside that picture [
 const kFloor = 3; // radius [m]
 const kWallAhead = 2.3, kWallWidth = 4.4, kWallHeight = 2.7; // [m]
 
-export const kBackground = 0x3a424b;
-const kFloorColour = 0x59626a, kWall = 0x4b555e, kSheet = 0x8099a8, kSkin = 0xc09a84, kSteel = 0x8d979f, kPillow = 0xb9c3c8, kBlack = 0x0a0c0e;
+const kDim = 0x3a424b, kDark = 0x0a0c0e; // background of the room, and of the picture around the viewer
+const kFloorColour = 0x59626a, kWall = 0x66727d, kSheet = 0x8099a8, kSkin = 0xc09a84, kSteel = 0x8d979f, kPillow = 0xb9c3c8;
 
 export enum View { Monitor, Around, Middle }
 
@@ -57,7 +57,7 @@ function furniture(eye: number): BufferGeometry {
     column(0.09, table, 0.2, -kModelAhead), foot(0.2, -kModelAhead, 0.9, 0.5),
     column(0.035, eye - edge / 2, 0, behind), foot(0, behind, 0.6, 0.4),
     shaded(new BoxGeometry(kWallWidth, kWallHeight, 0.05).translate(0, kWallHeight / 2, -kWallAhead), kWall),
-    shaded(new BoxGeometry(edge, edge, 0.05).translate(0, eye, -kMonitorAhead - 0.03), kBlack),
+    shaded(new BoxGeometry(edge, edge, 0.05).translate(0, eye, -kMonitorAhead - 0.03), kDark),
   ])!;
 }
 
@@ -70,7 +70,7 @@ const plain = (body: BufferGeometry) => {
 /** Becomes the background at its edge. */
 function floor(): Mesh {
   const disc = new CircleGeometry(kFloor, 48).rotateX(-Math.PI / 2), count = disc.getAttribute('position').count;
-  const shades = [new Color(kFloorColour), new Color(kBackground)].map(({ r, g, b }) => [r, g, b]);
+  const shades = [new Color(kFloorColour), new Color(kDim)].map(({ r, g, b }) => [r, g, b]);
   disc.setAttribute('color', new BufferAttribute(Float32Array.from({ length: 3 * count }, (_, k) => shades[k < 3 ? 0 : 1][k % 3]), 3)); // the middle is first
   return plain(disc);
 }
@@ -121,6 +121,10 @@ export class Room extends Group {
     if (view === View.Monitor) readings.position.set(kMonitor / 2 + kRim + kGap, eye, -kMonitorAhead);
     else readings.position.set(0, eye - kNear.below, -kNear.ahead);
     readings.rotation.set(view === View.Monitor ? 0 : -Math.atan2(kNear.below, kNear.ahead), view === View.Monitor ? kTurn : 0, 0);
+  }
+
+  get background() {
+    return this.view === View.Monitor ? kDim : kDark;
   }
 
   showPictures(pictures: Texture[]) {

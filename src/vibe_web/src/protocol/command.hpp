@@ -25,7 +25,7 @@ struct ViewerState {
 
 /// What a page asks for. Any bytes may come, so nothing here is trusted before decodeCommand() has looked at it.
 struct Command {
-  enum class Kind : std::uint8_t { Rate = 1, Take = 2, GiveBack = 3, Drive = 4, Replay = 5, Ping = 6, Drawn = 7, Viewer = 8 };
+  enum class Kind : std::uint8_t { Rate = 1, Take, GiveBack, Drive, Replay, Ping, Drawn, Viewer };
   Kind kind = Kind::Ping;
 
   int rate = 0;   ///< Rate: frames per second, 1 to 60

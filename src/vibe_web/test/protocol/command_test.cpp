@@ -79,7 +79,8 @@ TEST(Command, ViewerSaysWhatIsThere) {
 }
 
 TEST(Command, OfAnotherLengthIsNone) {
-  for (const Row& good : {drive(0), drive(16), replay(1, 2), Row{1, 60}, Row{2}, Row{3}, Row{7, 0}, Row(16, 6), viewer()}) {
+  for (const Row& good :
+       {drive(0), drive(16), replay(1, 2), Row{1, 60}, Row{2}, Row{3}, Row{7, 0}, Row(16, 6), viewer()}) {
     EXPECT_TRUE(decode(good)) << int{good[0]};
     Row longer = good, shorter = good;
     longer.push_back(0);
@@ -98,11 +99,11 @@ TEST(Command, OutsideOfItsLimitsIsNone) {
   EXPECT_FALSE(decode(replay(std::numeric_limits<float>::quiet_NaN(), 1)));
   EXPECT_FALSE(decode(replay(1, -1)));
   EXPECT_FALSE(decode(replay(1, std::numeric_limits<double>::infinity())));
-  EXPECT_FALSE(decode(viewer(8)));                                         // a body that nobody has
-  EXPECT_FALSE(decode(viewer(5, 1 << 10)));                                // a button that no hand has
-  EXPECT_FALSE(decode(viewer(1, 0, 101)));                                 // too far
+  EXPECT_FALSE(decode(viewer(8)));           // a body that nobody has
+  EXPECT_FALSE(decode(viewer(5, 1 << 10)));  // a button that no hand has
+  EXPECT_FALSE(decode(viewer(1, 0, 101)));   // too far
   EXPECT_FALSE(decode(viewer(1, 0, std::numeric_limits<float>::quiet_NaN())));
-  EXPECT_FALSE(decode(viewer(1, 0, 1, 1)));                                // no rotation
+  EXPECT_FALSE(decode(viewer(1, 0, 1, 1)));                                    // no rotation
   EXPECT_TRUE(decode(viewer(0, 0, std::numeric_limits<float>::quiet_NaN())));  // nothing is there
   Row key = drive(1);
   key.back() = 0xff;
