@@ -22,6 +22,7 @@ keysOf() {
     measurements) echo @count ;;
     firmware) echo @firmware ;;
     packages) echo @package ;;
+    web) echo @web ;;
     tests) echo @test @lint ;;
   esac
 }

@@ -44,6 +44,18 @@ listOn() { VIBE_OS_RELEASE=$scratch/$1 "$setup" --list; }
 check 'setup takes the line of the system' bash -c '
   grep -qx qt6-base-dev <<<"$1" && ! grep -qx qtbase5-dev <<<"$1" && grep -qx qtbase5-dev <<<"$2"' - "$(listOn trixie)" "$(listOn bookworm)"
 
+providedIsInstalled() {
+  mkdir -p "$scratch/provided/bin"
+  cp -r "$root/scripts" "$scratch/provided/"
+  printf '#!/bin/sh\nprintf "installed nodejs nodejs-dev, npm (= 9)\ndeinstall yarn npx\n"\n' >"$scratch/provided/bin/dpkg-query"
+  chmod +x "$scratch/provided/bin/dpkg-query"
+  sed -i "s#export PATH=#export PATH=$scratch/provided/bin:#" "$scratch/provided/scripts/lib/common.sh"
+  echo 'odd nodejs npm npx' >>"$scratch/provided/scripts/apt_packages.txt"
+  workspaceWith provided '<package format="2"><name>pkg</name><depend>odd</depend></package>'
+  [ "$("$scratch/provided/scripts/setup" --missing --source "$scratch/provided" | grep -x 'nodejs\|npm\|npx')" = npx ]
+}
+check 'setup takes what an installed package provides' providedIsInstalled
+
 # --- an apt that gets its lists and then fails
 saysThatAptFailed() {
   local copy=$scratch/failing said status=0

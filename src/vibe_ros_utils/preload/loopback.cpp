@@ -1,10 +1,12 @@
 // Preloaded by scripts/run (LD_PRELOAD): TCP servers listen on the loopback interface instead of on all of them. With
-// ROS_HOSTNAME=localhost roscpp does so for its data, but its XML-RPC server always binds to all interfaces.
+// ROS_HOSTNAME=localhost roscpp does so for its data, but its XML-RPC server always binds to all interfaces. The port
+// VIBE_OPEN_PORT is let be: that of a page, whose server asks for a token.
 #include <arpa/inet.h>
 #include <dlfcn.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
+#include <cstdlib>
 #include <cstring>
 
 namespace {
@@ -17,7 +19,14 @@ bool isTcp(int socket) {
   return getsockopt(socket, SOL_SOCKET, SO_TYPE, &type, &size) == 0 && type == SOCK_STREAM;
 }
 
+bool isOpen(in_port_t port) {
+  const char* open = std::getenv("VIBE_OPEN_PORT");
+  return port != 0 && open != nullptr && ntohs(port) == std::strtol(open, nullptr, 10);
+}
+
 void closeToTheNetwork(sockaddr_storage& address) {
+  // of both families at the same place
+  if (isOpen(reinterpret_cast<sockaddr_in&>(address).sin_port)) return;
   if (address.ss_family == AF_INET) {
     auto& in = reinterpret_cast<sockaddr_in&>(address);
     if (in.sin_addr.s_addr == htonl(INADDR_ANY)) in.sin_addr.s_addr = htonl(INADDR_LOOPBACK);

@@ -21,7 +21,8 @@ constexpr double kMasterPatience = 10;  // [s]
 constexpr double kTick = 0.01;          // [s]
 
 const char* const kHelp =
-    "Usage: rosrun vibe_web web_node [--lan] [_port:=8890] [_lan:=true] [_page:=FOLDER] [_certificates:=FOLDER]\n"
+    "Usage: rosrun vibe_web web_node [--lan] [_port:=8890] [_lan:=true] [_behind:=URL] [_page:=FOLDER]\n"
+    "       [_certificates:=FOLDER]\n"
     "Shows the session of a simulator, or of vibe_player, to browsers of this machine; with --lan to those of its\n"
     "network, with a token and TLS. docs/web.md has more.\n";
 
@@ -30,15 +31,24 @@ int fail(const std::exception& error, int status) {
   return status;
 }
 
-void run(const web::ServerOptions& options) {
+void invite(const web::NodeOptions& options, const web::Opening& opening, std::uint16_t port) {
+  const std::vector<std::string> addresses = web::pageAddresses(options, opening, port);
+  std::printf("%s\n", web::invitation(opening.certificates, addresses).c_str());
+  std::fflush(stdout);
+  if (!opening.server.token.empty()) web::printQrCode(addresses.front());
+}
+
+void run(const web::NodeOptions& options, const web::Opening& opening) {
   ros::NodeHandle handle;
   web::OperatorDrive drive(handle);
   web::WebServer server(
-      options, [&](web::ClientId client, const web::Command& command) { drive.receive(client, command); },
+      opening.server, [&](web::ClientId client, const web::Command& command) { drive.receive(client, command); },
       [&](web::ClientId client) { drive.leave(client); });
   web::SessionStream stream(handle, server);
-  std::printf("%s\n", web::invitation(options, server.port()).c_str());
-  std::fflush(stdout);
+  const std::string& root = opening.certificates.root;
+  if (!root.empty())
+    server.provide("/root.crt", {"application/x-x509-ca-cert", std::make_shared<const std::string>(root), false});
+  invite(options, opening, server.port());
   int ticks = 0;
   const ros::WallTimer timer = handle.createWallTimer(ros::WallDuration(kTick), [&](const ros::WallTimerEvent&) {
     drive.tick(server);
@@ -53,16 +63,18 @@ void run(const web::ServerOptions& options) {
 
 int main(int argc, char** argv) {
   if (vibe::ros_utils::asksForHelp(argc, argv)) return std::fputs(kHelp, stdout), 0;
-  web::ServerOptions options;
+  web::NodeOptions options;
+  web::Opening opening;
   try {
     vibe::ros_utils::initWithGoodbye(argc, argv, "web_node");
     if (!vibe::ros_utils::waitForMaster(kMasterPatience)) return 0;
-    options = web::serverOptions(web::readOptions(ros::NodeHandle("~"), argc, argv));
+    options = web::readOptions(ros::NodeHandle("~"), argc, argv);
+    opening = web::openingOf(options);
   } catch (const std::exception& error) {
     return fail(error, kUsage);
   }
   try {
-    run(options);
+    run(options, opening);
   } catch (const std::exception& error) {
     return fail(error, kFailure);
   }

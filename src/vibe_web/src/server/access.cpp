@@ -40,7 +40,7 @@ std::string streamRefusal(const AccessRule& rule, const Caller& caller) {
   const std::string host = hostRefusal(rule, caller);
   if (!host.empty()) return host;
   const std::string own = (rule.secure ? "https://" : "http://") + caller.host;
-  if (!caller.origin.empty() && caller.origin != own)
+  if (!caller.origin.empty() && caller.origin != own && (rule.origin.empty() || caller.origin != rule.origin))
     return "The page comes from another server; open the address that the terminal of the server shows.";
   if (rule.token.empty() || isSame(queryValue(caller.target, "token"), rule.token)) return "";
   return "The token is missing or wrong; open the address that the terminal of the server shows.";

@@ -8,6 +8,7 @@ namespace vibe::web {
 struct AccessRule {
   std::string token;    ///< that the address has to contain; empty: pages of this machine only, without one
   bool secure = false;  ///< the server speaks TLS
+  std::string origin;   ///< of pages that a reverse proxy serves; empty: there is none
 };
 
 /// What a request says about where it comes from.

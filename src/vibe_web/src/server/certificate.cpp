@@ -1,18 +1,23 @@
 #include "server/certificate.hpp"
 
-#include <arpa/inet.h>
+#include "server/host_names.hpp"
+
 #include <fcntl.h>
-#include <ifaddrs.h>
-#include <net/if.h>
+#include <openssl/err.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
 #include <openssl/rand.h>
 #include <openssl/x509v3.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -21,112 +26,213 @@ namespace vibe::web {
 
 namespace {
 
-constexpr long kLife = 3650L * 24 * 3600;  // [s]
+constexpr long kDay = 24L * 3600;            // [s]
+constexpr long kRootLife = 3650;             // [days]
+constexpr long kLife = 397;                  // browsers take 398 at most [days]
+constexpr long kRenewal = 30;                // before the end [days]
+const char* const kIssuer = "ViBE for ROS";  // begins the name of the root, and was all of the name in 1.0.0
 
 template <class T>
 using Owned = std::unique_ptr<T, void (*)(T*)>;
 
-[[noreturn]] void fail(const std::string& what) {
-  throw std::runtime_error(what + "; remove the folder of the certificate or make it writable.");
-}
+struct Pair {
+  Owned<X509> certificate{nullptr, X509_free};
+  Owned<EVP_PKEY> key{nullptr, EVP_PKEY_free};
+  explicit operator bool() const { return certificate && key; }
+};
+
+struct PairFiles {
+  std::string certificate, key;
+};
 
 void closeFile(std::FILE* file) {
   std::fclose(file);
 }
 
-/// Not through an existing file or link.
-Owned<std::FILE> newFile(const std::string& path, mode_t mode) {
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
-  if (descriptor < 0) fail("The file " + path + " cannot be made");
-  return {::fdopen(descriptor, "w"), closeFile};
+[[noreturn]] void fail(const std::string& what) {
+  throw std::runtime_error(what + "; choose another folder with _certificates:=, or make this one writable.");
 }
 
-bool isNumeric(const std::string& name) {
-  std::array<unsigned char, 16> address;
-  return ::inet_pton(AF_INET, name.c_str(), address.data()) == 1 ||
-         ::inet_pton(AF_INET6, name.c_str(), address.data()) == 1;
+[[noreturn]] void refuse(const PairFiles& files, const std::string& why) {
+  throw std::runtime_error("The certificate " + files.certificate + " cannot be used (" + why +
+                           "); remove it and its key " + files.key + ", and new ones are made.");
+}
+
+template <class T, class Read>
+Owned<T> readFrom(const PairFiles& files, const std::string& path, Read read, void (*release)(T*), const char* what) {
+  const Owned<std::FILE> file(std::fopen(path.c_str(), "re"), closeFile);
+  if (!file) refuse(files, path + ": " + std::strerror(errno));
+  Owned<T> found(read(file.get(), nullptr, nullptr, nullptr), release);
+  if (!found) refuse(files, path + " holds no " + what);
+  return found;
+}
+
+/// Empty where neither file is there.
+Pair readPair(const PairFiles& files) {
+  std::error_code error;
+  if (!std::filesystem::exists(files.certificate, error) && !std::filesystem::exists(files.key, error) && !error)
+    return {};
+  Pair pair;
+  pair.certificate = readFrom<X509>(files, files.certificate, PEM_read_X509, X509_free, "certificate");
+  pair.key = readFrom<EVP_PKEY>(files, files.key, PEM_read_PrivateKey, EVP_PKEY_free, "key");
+  const bool match = X509_check_private_key(pair.certificate.get(), pair.key.get()) == 1;
+  ERR_clear_error();
+  if (!match) refuse(files, "the key is that of another one");
+  return pair;
+}
+
+/// Under another name first, so that no other program ever reads half of it.
+template <class Write>
+void writeFile(const std::string& path, mode_t mode, Write write) {
+  const std::string part = path + "." + std::to_string(::getpid());
+  const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
+  Owned<std::FILE> file(descriptor < 0 ? nullptr : ::fdopen(descriptor, "w"), closeFile);
+  const bool written = file && write(file.get()) && std::fflush(file.get()) == 0;
+  if (!written || std::rename(part.c_str(), path.c_str()) != 0)
+    fail("The file " + path + " cannot be written (" + std::strerror(errno) + ")");
+}
+
+void writePair(const PairFiles& files, const Pair& pair, const X509* issuer) {
+  writeFile(files.key, 0600, [&](std::FILE* file) {
+    return PEM_write_PrivateKey(file, pair.key.get(), nullptr, nullptr, 0, nullptr, nullptr) == 1;
+  });
+  writeFile(files.certificate, 0644, [&](std::FILE* file) {
+    return PEM_write_X509(file, pair.certificate.get()) == 1 &&
+           (issuer == nullptr || PEM_write_X509(file, issuer) == 1);
+  });
 }
 
 std::string alternativeNames(const std::vector<std::string>& names) {
   std::string list;
-  for (const std::string& name : names)
-    list += (list.empty() ? "" : ",") + std::string(isNumeric(name) ? "IP:" : "DNS:") + name;
+  for (const std::string& name : names) {
+    const Owned<ASN1_OCTET_STRING> address(a2i_IPADDRESS(name.c_str()), ASN1_OCTET_STRING_free);
+    list += (list.empty() ? "" : ",") + std::string(address ? "IP:" : "DNS:") + name;
+  }
   return list;
 }
 
-void addExtension(X509* certificate, int kind, const std::string& value) {
+void addExtension(X509* certificate, X509* issuer, int kind, const std::string& value) {
   X509V3_CTX context;
   X509V3_set_ctx_nodb(&context);
-  X509V3_set_ctx(&context, certificate, certificate, nullptr, nullptr, 0);
+  X509V3_set_ctx(&context, issuer, certificate, nullptr, nullptr, 0);
   const Owned<X509_EXTENSION> extension(X509V3_EXT_conf_nid(nullptr, &context, kind, value.c_str()),
                                         X509_EXTENSION_free);
   if (!extension || X509_add_ext(certificate, extension.get(), -1) != 1)
-    fail("OpenSSL takes no names into a certificate");
+    throw std::runtime_error("OpenSSL takes '" + value + "' into no certificate.");
 }
 
-Owned<X509> signedBy(EVP_PKEY* key, const std::vector<std::string>& names) {
-  Owned<X509> certificate(X509_new(), X509_free);
-  std::uint64_t serial = 1;
-  if (RAND_bytes(reinterpret_cast<unsigned char*>(&serial), sizeof serial) != 1)
-    fail("The system gives no random numbers");
-  X509_set_version(certificate.get(), 2);
-  ASN1_INTEGER_set_uint64(X509_get_serialNumber(certificate.get()), serial >> 1);
-  X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -60);
-  X509_gmtime_adj(X509_getm_notAfter(certificate.get()), kLife);
-  X509_set_pubkey(certificate.get(), key);
-  X509_NAME* name = X509_get_subject_name(certificate.get());
-  X509_NAME_add_entry_by_txt(name, "CN", MBSTRING_ASC, reinterpret_cast<const unsigned char*>("ViBE for ROS"), -1, -1,
-                             0);
-  X509_set_issuer_name(certificate.get(), name);
-  addExtension(certificate.get(), NID_subject_alt_name, alternativeNames(names));
-  addExtension(certificate.get(), NID_basic_constraints, "critical,CA:FALSE");
-  addExtension(certificate.get(), NID_ext_key_usage, "serverAuth");
-  if (X509_sign(certificate.get(), key, EVP_sha256()) == 0) fail("OpenSSL does not sign the certificate");
-  return certificate;
+std::uint64_t randomNumber() {
+  std::uint64_t number = 1;
+  if (RAND_bytes(reinterpret_cast<unsigned char*>(&number), sizeof number) != 1)
+    throw std::runtime_error("The system gives no random numbers for a certificate.");
+  return number >> 1;
+}
+
+/// A new key with a certificate that has all but its extensions and its signature.
+Pair unsignedPair(const std::string& common_name, long days) {
+  Pair pair;
+  pair.key.reset(EVP_EC_gen("P-256"));
+  pair.certificate.reset(X509_new());
+  if (!pair) throw std::runtime_error("OpenSSL makes no key.");
+  X509* certificate = pair.certificate.get();
+  X509_set_version(certificate, 2);
+  ASN1_INTEGER_set_uint64(X509_get_serialNumber(certificate), randomNumber());
+  X509_gmtime_adj(X509_getm_notBefore(certificate), -3600);  // the clock of a phone may be late
+  X509_gmtime_adj(X509_getm_notAfter(certificate), days * kDay - 3600);
+  X509_set_pubkey(certificate, pair.key.get());
+  X509_NAME_add_entry_by_txt(X509_get_subject_name(certificate), "CN", MBSTRING_UTF8,
+                             reinterpret_cast<const unsigned char*>(common_name.c_str()), -1, -1, 0);
+  return pair;
+}
+
+void sign(X509* certificate, const Pair& issuer) {
+  X509_set_issuer_name(certificate, X509_get_subject_name(issuer.certificate.get()));
+  if (X509_sign(certificate, issuer.key.get(), EVP_sha256()) == 0)
+    throw std::runtime_error("OpenSSL does not sign the certificate.");
+}
+
+Pair makeRoot() {
+  // phones list it by its name, which X.509 limits to 64 characters
+  Pair root = unsignedPair((kIssuer + std::string(", ") + hostNames().front()).substr(0, 64), kRootLife);
+  X509* certificate = root.certificate.get();
+  addExtension(certificate, certificate, NID_basic_constraints, "critical,CA:TRUE,pathlen:0");
+  addExtension(certificate, certificate, NID_key_usage, "critical,keyCertSign,cRLSign");
+  addExtension(certificate, certificate, NID_subject_key_identifier, "hash");
+  sign(certificate, root);
+  return root;
+}
+
+Pair makeLeaf(const Pair& root, const std::vector<std::string>& names) {
+  Pair leaf = unsignedPair(kIssuer, kLife);
+  X509* certificate = leaf.certificate.get();
+  X509* issuer = root.certificate.get();
+  addExtension(certificate, issuer, NID_subject_alt_name, alternativeNames(names));
+  addExtension(certificate, issuer, NID_basic_constraints, "critical,CA:FALSE");
+  addExtension(certificate, issuer, NID_key_usage, "critical,digitalSignature");
+  addExtension(certificate, issuer, NID_ext_key_usage, "serverAuth");
+  addExtension(certificate, issuer, NID_subject_key_identifier, "hash");
+  addExtension(certificate, issuer, NID_authority_key_identifier, "keyid");
+  sign(certificate, root);
+  return leaf;
+}
+
+bool endsWithin(const X509* certificate, long days) {
+  std::time_t then = std::time(nullptr) + days * kDay;
+  return X509_cmp_time(X509_get0_notAfter(certificate), &then) < 0;
+}
+
+bool hasName(X509* certificate, const std::string& name) {
+  return X509_check_ip_asc(certificate, name.c_str(), 0) == 1 ||
+         X509_check_host(certificate, name.c_str(), name.size(), 0, nullptr) == 1;
+}
+
+bool isOurs(const X509* certificate) {
+  std::array<char, 80> name{};
+  X509_NAME_get_text_by_NID(X509_get_issuer_name(certificate), NID_commonName, name.data(), name.size());
+  return std::string(name.data()).rfind(kIssuer, 0) == 0;
+}
+
+bool isFit(X509* certificate, const Pair& root, const std::vector<std::string>& names) {
+  return !endsWithin(certificate, kRenewal) && X509_verify(certificate, root.key.get()) == 1 &&
+         std::all_of(names.begin(), names.end(), [&](const std::string& name) { return hasName(certificate, name); });
+}
+
+std::string derOf(const X509* certificate) {
+  std::string der(static_cast<std::size_t>(i2d_X509(certificate, nullptr)), '\0');
+  auto* bytes = reinterpret_cast<unsigned char*>(der.data());
+  i2d_X509(certificate, &bytes);
+  return der;
 }
 
 }  // namespace
 
-CertificateFiles provideCertificate(const std::string& folder, const std::vector<std::string>& names) {
-  const CertificateFiles files{folder + "/certificate.pem", folder + "/key.pem"};
+Certificates provideCertificates(const std::string& folder, const std::vector<std::string>& names) {
   std::error_code error;
-  if (std::filesystem::exists(files.certificate, error) && std::filesystem::exists(files.key, error)) return files;
   std::filesystem::create_directories(folder, error);
-  const Owned<EVP_PKEY> key(EVP_EC_gen("P-256"), EVP_PKEY_free);
-  if (!key) fail("OpenSSL makes no key");
-  const Owned<X509> certificate = signedBy(key.get(), names);
-  const Owned<std::FILE> secret = newFile(files.key, 0600);
-  if (PEM_write_PrivateKey(secret.get(), key.get(), nullptr, nullptr, 0, nullptr, nullptr) != 1)
-    fail("The key cannot be written");
-  const Owned<std::FILE> open = newFile(files.certificate, 0644);
-  if (PEM_write_X509(open.get(), certificate.get()) != 1) fail("The certificate cannot be written");
-  return files;
-}
-
-std::vector<std::string> networkAddresses() {
-  std::vector<std::string> addresses;
-  ifaddrs* all = nullptr;
-  if (::getifaddrs(&all) != 0) return addresses;
-  const Owned<ifaddrs> owned(all, ::freeifaddrs);
-  for (const ifaddrs* each = all; each != nullptr; each = each->ifa_next) {
-    if (each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET || (each->ifa_flags & IFF_LOOPBACK) != 0)
-      continue;
-    std::array<char, INET_ADDRSTRLEN> text;
-    const auto* address = reinterpret_cast<const sockaddr_in*>(each->ifa_addr);
-    if (::inet_ntop(AF_INET, &address->sin_addr, text.data(), text.size()) != nullptr)
-      addresses.emplace_back(text.data());
+  const PairFiles of_root{folder + "/root.pem", folder + "/root_key.pem"};
+  const PairFiles of_leaf{folder + "/certificate.pem", folder + "/key.pem"};
+  Pair leaf = readPair(of_leaf);
+  if (leaf && !isOurs(leaf.certificate.get())) {
+    if (endsWithin(leaf.certificate.get(), 0)) refuse(of_leaf, "it has expired");
+    return {of_leaf.certificate, of_leaf.key, derOf(leaf.certificate.get()), ""};
   }
-  return addresses;
+  Pair root = readPair(of_root);
+  if (!root || endsWithin(root.certificate.get(), kRenewal)) {
+    root = makeRoot();
+    writePair(of_root, root, nullptr);
+  }
+  if (!leaf || !isFit(leaf.certificate.get(), root, names)) {
+    leaf = makeLeaf(root, names);
+    writePair(of_leaf, leaf, root.certificate.get());
+  }
+  ERR_clear_error();
+  return {of_leaf.certificate, of_leaf.key, derOf(leaf.certificate.get()), derOf(root.certificate.get())};
 }
 
 std::string fingerprint(const std::string& certificate) {
-  const Owned<std::FILE> file(std::fopen(certificate.c_str(), "r"), closeFile);
-  if (!file) fail("The certificate " + certificate + " cannot be read");
-  const Owned<X509> read(PEM_read_X509(file.get(), nullptr, nullptr, nullptr), X509_free);
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
   unsigned size = 0;
-  if (!read || X509_digest(read.get(), EVP_sha256(), digest.data(), &size) != 1)
-    fail("The file " + certificate + " holds no certificate");
+  EVP_Digest(certificate.data(), certificate.size(), digest.data(), &size, EVP_sha256(), nullptr);
   std::string text;
   for (unsigned k = 0; k < size; ++k) {
     std::array<char, 4> pair;

@@ -5,23 +5,21 @@
 
 namespace vibe::web {
 
-/// Files in PEM.
-struct CertificateFiles {
-  std::string certificate, key;
+struct Certificates {
+  std::string certificate, key;  ///< files in PEM; the first ends with the root
+  std::string leaf, root;        ///< the same in DER; root empty: somebody else has signed
 };
 
-/// A certificate that nobody but this server signs, made in the folder if it is not there: browsers warn of it once and
-/// then speak TLS, without which they offer no virtual reality. P-256, ten years; the key is readable by its owner
-/// only.
+/// What a server of this machine proves its name with: a root of this machine alone (`root.pem`, ten years), and a
+/// certificate that the root has signed (`certificate.pem`, 397 days, as browsers demand), whose keys only their owner
+/// can read (P-256). What is not there is made. The certificate is made anew where it ends within 30 days, lacks one of
+/// the names or is of another root; the root only where it ends. A certificate that somebody else has signed is used as
+/// it is.
 /// @param names  host names and numeric addresses under which the server is reached
-/// @throws std::runtime_error  the folder cannot be written, or OpenSSL fails
-CertificateFiles provideCertificate(const std::string& folder, const std::vector<std::string>& names);
+/// @throws std::runtime_error  a file cannot be used or written
+Certificates provideCertificates(const std::string& folder, const std::vector<std::string>& names);
 
-/// Numeric IPv4 addresses of this machine in networks, without loopback.
-std::vector<std::string> networkAddresses();
-
-/// SHA-256 of a certificate as colon-separated pairs, as browsers show it.
-/// @throws std::runtime_error  it cannot be read
+/// SHA-256 of a certificate in DER as colon-separated pairs, as browsers show it.
 std::string fingerprint(const std::string& certificate);
 
 }  // namespace vibe::web

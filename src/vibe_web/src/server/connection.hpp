@@ -28,30 +28,63 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
  public:
   template <class... Context>
   Connection(asio::ip::tcp::socket&& socket, std::shared_ptr<Shared> shared, Context&... context)
-      : stream_(std::move(socket), context...), shared_(std::move(shared)) {
-    ++shared_->connections;
-  }
-  ~Connection() { --shared_->connections; }
+      : stream_(std::move(socket), context...), shared_(std::move(shared)) {}
+  ~Connection() { shared_->guests.exit(guest_); }
 
   void run() {
-    beast::get_lowest_layer(stream_).expires_after(kReadTimeout);
+    Error gone;
+    const auto from = beast::get_lowest_layer(stream_).socket().remote_endpoint(gone).address();
+    if (gone) return;
+    guest_ = shared_->guests.enter(from, [weak = this->weak_from_this()] {
+      if (const auto self = weak.lock()) beast::get_lowest_layer(self->stream_).close();
+    });
     if constexpr (std::is_same_v<Stream, beast::tcp_stream>) {
       read();
     } else {
-      stream_.async_handshake(asio::ssl::stream_base::server, [self = this->shared_from_this()](Error error) {
-        if (!error) self->read();
+      beast::get_lowest_layer(stream_).expires_after(kReadTimeout);
+      beast::async_detect_ssl(stream_.next_layer(), buffer_, [self = this->shared_from_this()](Error error, bool tls) {
+        if (error) return;
+        if (tls) return self->shakeHands();
+        self->read(self->stream_.next_layer(), [&self = *self](const Request& request) { self.redirect(request); });
       });
     }
   }
 
  private:
+  void shakeHands() {
+    stream_.async_handshake(asio::ssl::stream_base::server, buffer_.data(),
+                            [self = this->shared_from_this()](Error error, std::size_t used) {
+                              self->buffer_.consume(used);
+                              if (!error) self->read();
+                            });
+  }
+
   void read() {
+    read(stream_, [this](const Request& request) { handle(request); });
+  }
+
+  template <class Layer, class Handler>
+  void read(Layer& layer, Handler handler) {
     parser_.emplace();
     parser_->header_limit(kMaxHeader);
     parser_->body_limit(0);
-    beast::get_lowest_layer(stream_).expires_after(kReadTimeout);
-    http::async_read(stream_, buffer_, *parser_, [self = this->shared_from_this()](Error error, std::size_t) {
-      if (!error) self->handle(self->parser_->release());
+    beast::get_lowest_layer(layer).expires_after(kReadTimeout);
+    http::async_read(layer, buffer_, *parser_, [self = this->shared_from_this(), handler](Error error, std::size_t) {
+      if (!error) handler(self->parser_->release());
+    });
+  }
+
+  /// Of plain HTTP to TLS; for now, because a browser would remember more than this start of the server.
+  void redirect(const Request& request) {
+    const Caller caller = callerOf(request);
+    auto response = std::make_shared<http::response<http::empty_body>>(http::status::temporary_redirect, 11);
+    response->set(http::field::location, "https://" + caller.host + (caller.target[0] == '/' ? caller.target : "/"));
+    response->keep_alive(false);
+    response->prepare_payload();
+    auto& plain = beast::get_lowest_layer(stream_);
+    http::async_write(plain, *response, [self = this->shared_from_this(), response](Error, std::size_t) {
+      Error ignored;
+      beast::get_lowest_layer(self->stream_).socket().shutdown(asio::socket_base::shutdown_send, ignored);
     });
   }
 
@@ -88,6 +121,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
       return answerText(request, http::status::service_unavailable, "Too many pages look already; close one of them.");
     if (!websocket::is_upgrade(request))  // a page asks so why its stream was refused
       return answerText(request, http::status::upgrade_required, "This is the stream of the page, a WebSocket.");
+    shared_->guests.exit(guest_);
     beast::get_lowest_layer(stream_).expires_never();
     Error ignored;
     beast::get_lowest_layer(stream_).socket().set_option(asio::ip::tcp::no_delay(true), ignored);
@@ -126,6 +160,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
 
   Stream stream_;
   std::shared_ptr<Shared> shared_;
+  Guests::Id guest_ = 0;
   beast::flat_static_buffer<kMaxHeader + 1024> buffer_;
   boost::optional<http::request_parser<http::empty_body>> parser_;
 };

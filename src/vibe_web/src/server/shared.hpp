@@ -15,6 +15,7 @@
 #include <boost/beast/websocket.hpp>
 #include <boost/beast/websocket/ssl.hpp>
 
+#include "server/guests.hpp"
 #include "server/web_server.hpp"
 
 namespace vibe::web {
@@ -27,7 +28,7 @@ using Clock = std::chrono::steady_clock;
 using Error = beast::error_code;
 using Request = http::request<http::empty_body>;
 
-constexpr auto kReadTimeout = std::chrono::seconds(15);  ///< for a request, an answer or a handshake
+constexpr auto kReadTimeout = std::chrono::seconds(10);  ///< for a request, an answer or a handshake
 
 /// What a server and its connections share. All of it belongs to the thread of the server.
 struct Shared {
@@ -38,10 +39,10 @@ struct Shared {
   std::map<std::string, PageFile> provided;
   std::map<ClientId, std::function<void(Kind, SharedBytes)>> clients;
   std::atomic<std::size_t> client_count{0};
-  std::size_t connections = 0;
+  Guests guests{kMaxConnections};
   ClientId last_id = 0;
 
-  AccessRule rule() const { return {options.token, !options.certificate.empty()}; }
+  AccessRule rule() const { return {options.token, !options.certificate.empty(), options.origin}; }
 };
 
 }  // namespace vibe::web

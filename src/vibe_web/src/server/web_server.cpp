@@ -1,9 +1,11 @@
 #include "server/web_server.hpp"
 
+#include <deque>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
+#include <boost/asio/ip/v6_only.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/ssl/context.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -15,13 +17,14 @@ namespace vibe::web {
 class WebServer::Core {
  public:
   Core(const ServerOptions& options, CommandHandler on_command, LeaveHandler on_leave)
-      : shared_(std::make_shared<Shared>()), acceptor_(io_), pause_(io_) {
+      : shared_(std::make_shared<Shared>()) {
     shared_->options = options;
     shared_->on_command = std::move(on_command);
     shared_->on_leave = std::move(on_leave);
     if (!options.certificate.empty()) readCertificate(options);
-    listen(options);
-    accept();
+    port_ = options.port;
+    for (const std::string& address : options.addresses) listen(asio::ip::make_address(address));
+    for (Door& door : doors_) accept(door);
     thread_ = std::thread([this] { io_.run(); });
   }
 
@@ -66,32 +69,44 @@ class WebServer::Core {
                                "); remove it and its key, and new ones are made.");
   }
 
-  void listen(const ServerOptions& options) {
+  /// One of the addresses where the server listens.
+  struct Door {
+    asio::ip::tcp::acceptor acceptor;
+    asio::steady_timer pause;
+  };
+
+  void listen(const asio::ip::address& address) {
     Error error;
-    const asio::ip::tcp::endpoint here(asio::ip::make_address(options.address, error), options.port);
-    if (!error) acceptor_.open(here.protocol(), error);
-    if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
-    if (!error) acceptor_.bind(here, error);
-    if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
+    const asio::ip::tcp::endpoint here(address, port_);
+    Door door{asio::ip::tcp::acceptor(io_), asio::steady_timer(io_)};
+    door.acceptor.open(here.protocol(), error);
+    if (!error) door.acceptor.set_option(asio::socket_base::reuse_address(true), error);
+    if (!error && address.is_v6()) door.acceptor.set_option(asio::ip::v6_only(true), error);
+    if (!error) door.acceptor.bind(here, error);
+    if (address.is_v6() &&
+        (error == asio::error::address_family_not_supported || error == boost::system::errc::address_not_available))
+      return;
+    if (!error) door.acceptor.listen(asio::socket_base::max_listen_connections, error);
     if (error)
-      throw std::runtime_error("The port " + std::to_string(options.port) + " of " + options.address +
-                               " cannot be had (" + error.message() + "); choose another one.");
-    port_ = acceptor_.local_endpoint().port();
+      throw std::runtime_error("The port " + std::to_string(port_) + " of " + address.to_string() + " cannot be had (" +
+                               error.message() + "); choose another one with _port:=, or with --port of scripts/run.");
+    port_ = door.acceptor.local_endpoint().port();
+    doors_.push_back(std::move(door));
   }
 
-  void accept() {
-    acceptor_.async_accept([this](Error error, asio::ip::tcp::socket socket) {
-      if (error) return acceptLater();                          // no more files, for instance
+  void accept(Door& door) {
+    door.acceptor.async_accept([this, &door](Error error, asio::ip::tcp::socket socket) {
+      if (error) return acceptLater(door);                      // no more files, for instance
       socket.set_option(asio::ip::tcp::no_delay(true), error);  // a frame waits for nothing that was sent before
-      if (shared_->connections < kMaxConnections) begin(std::move(socket));
-      accept();
+      begin(std::move(socket));
+      accept(door);
     });
   }
 
-  void acceptLater() {
-    pause_.expires_after(std::chrono::milliseconds(100));
-    pause_.async_wait([this](Error error) {
-      if (!error) accept();
+  void acceptLater(Door& door) {
+    door.pause.expires_after(std::chrono::milliseconds(100));
+    door.pause.async_wait([this, &door](Error error) {
+      if (!error) accept(door);
     });
   }
 
@@ -105,8 +120,7 @@ class WebServer::Core {
   std::shared_ptr<Shared> shared_;  // before the context of events, whose connections use it as they go
   asio::ssl::context context_{asio::ssl::context::tls_server};
   asio::io_context io_{1};
-  asio::ip::tcp::acceptor acceptor_;
-  asio::steady_timer pause_;
+  std::deque<Door> doors_;
   std::uint16_t port_ = 0;
   std::thread thread_;
 };

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "operator/operator_seat.hpp"
 #include "protocol/message_kind.hpp"
@@ -13,15 +14,16 @@
 namespace vibe::web {
 
 constexpr std::size_t kMaxClients = 24;      ///< pages with a stream
-constexpr std::size_t kMaxConnections = 96;  ///< in all
+constexpr std::size_t kMaxConnections = 96;  ///< besides them
 constexpr int kMaxCommands = 250;            ///< of a client in a second; one that sends more is let go
 
 struct ServerOptions {
-  std::string address = "127.0.0.1";  ///< numeric
-  std::uint16_t port = 8890;          ///< 0: one that is free
-  std::string page;                   ///< folder with the built page
-  std::string token;                  ///< see AccessRule
-  std::string certificate, key;       ///< files for TLS; empty: without
+  /// Numeric; where the system has no IPv6, its own are passed over.
+  std::vector<std::string> addresses{"127.0.0.1", "::1"};
+  std::uint16_t port = 8890;     ///< 0: one that is free
+  std::string page;              ///< folder with the built page
+  std::string token, origin;     ///< see AccessRule
+  std::string certificate, key;  ///< files for TLS; empty: without
 };
 
 /// Serves a page, and to each of its clients the newest message of each kind, with a thread of its own for all of

@@ -7,10 +7,12 @@ import json
 import os
 import re
 import shutil
+import socket
 import ssl
 import subprocess
 import tempfile
 import unittest
+import urllib.request
 
 import rospy
 import rostest
@@ -20,9 +22,28 @@ from vibe_testing.program import Program, find_program
 from vibe_testing.recorder import Recorder
 from vibe_testing.wait import wait_until
 
+NGINX = shutil.which("nginx")
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 NODE = shutil.which("node")
 SIMULATOR = "stomach.yaml"
+ADDRESS = r"https?://(?:\[[^]]*\]|[^:/]+):(\d+)"
+UPGRADE = {
+    "Connection": "Upgrade",
+    "Upgrade": "websocket",
+    "Sec-WebSocket-Version": "13",
+    "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA==",
+}
+# around the lines of docs/web.md
+NGINX_CONFIGURATION = """
+daemon off; pid {folder}/pid; error_log {folder}/errors; events {{}}
+http {{
+  access_log off; client_body_temp_path {folder}/b; proxy_temp_path {folder}/p; fastcgi_temp_path {folder}/f;
+  uwsgi_temp_path {folder}/u; scgi_temp_path {folder}/s;
+  server {{
+    listen 127.0.0.1:{port} ssl; ssl_certificate {certificates}/certificate.pem; ssl_certificate_key {certificates}/key.pem;
+    {location}
+  }}
+}}"""
 
 
 def page_work():
@@ -36,9 +57,29 @@ def page_work():
 
 def port_of(server):
     """Of the address that it prints."""
-    wait_until(lambda: re.search(r"https?://[^:/]+:\d+", server.output()))
-    found = re.search(r"https?://[^:/]+:(\d+)", server.output())
+    wait_until(lambda: re.search(ADDRESS, server.output()))
+    found = re.search(ADDRESS, server.output())
     return int(found.group(1)) if found else 0
+
+
+def token_of(server):
+    return re.search(r"#token=([0-9a-f]{32})", server.output()).group(1)
+
+
+def status(port, target, kind=http.client.HTTPSConnection, origin="", **options):
+    """What a server on this machine answers to a request for a stream."""
+    connection = kind("localhost", port, timeout=20, **options)
+    try:
+        connection.request("GET", target, headers={**UPGRADE, **({"Origin": origin} if origin else {})})
+        return connection.getresponse().status
+    finally:
+        connection.close()
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
 
 
 class Web(unittest.TestCase):
@@ -107,36 +148,28 @@ class Web(unittest.TestCase):
             server = Program("vibe_web", "web_node", "--lan", name="web_node_lan", port=0, certificates=folder)
             self.addCleanup(server.stop)
             port = port_of(server)
-            token = re.search(r"#token=([0-9a-f]{32})", server.output()).group(1)
-            context = ssl.create_default_context(cafile=folder + "/certificate.pem")
-            self.assertEqual(os.stat(folder + "/key.pem").st_mode & 0o777, 0o600)
-            upgrade = {
-                "Connection": "Upgrade",
-                "Upgrade": "websocket",
-                "Sec-WebSocket-Version": "13",
-                "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA==",
-            }
-
-            def status(target, kind=http.client.HTTPSConnection, **options):
-                connection = kind("localhost", port, timeout=20, **options)
-                try:
-                    connection.request("GET", target, headers=upgrade)
-                    return connection.getresponse().status
-                finally:
-                    connection.close()
-
-            self.assertEqual(status("/stream", context=context), 403)
-            self.assertEqual(status("/stream?token=" + "0" * 32, context=context), 403)
-            self.assertEqual(status("/stream?token=" + token, context=context), 101)
-            with self.assertRaises((OSError, http.client.HTTPException)):
-                status("/stream?token=" + token, http.client.HTTPConnection)
+            token = token_of(server)
+            context = ssl.create_default_context(cafile=folder + "/root.pem")
+            self.assertEqual(status(port, "/stream", context=context), 403)
+            self.assertEqual(status(port, "/stream?token=" + "0" * 32, context=context), 403)
+            self.assertEqual(status(port, "/stream?token=" + token, context=context), 101)
             with self.assertRaises(ssl.SSLError):  # signed by nobody that a machine knows
-                status("/stream?token=" + token, context=ssl.create_default_context())
+                status(port, "/stream?token=" + token, context=ssl.create_default_context())
+            plain = http.client.HTTPConnection("localhost", port, timeout=20)
+            plain.request("GET", "/a?b")
+            answer = plain.getresponse()
+            self.assertEqual((answer.status, answer.headers["Location"]), (307, "https://localhost:{}/a?b".format(port)))
+            with urllib.request.urlopen("https://localhost:{}/root.crt".format(port), context=context) as answer:
+                self.assertEqual(answer.headers["Content-Type"], "application/x-x509-ca-cert")
+                root = ssl.DER_cert_to_PEM_cert(answer.read())
+            with open(folder + "/root.pem", encoding="ascii") as file:
+                self.assertEqual(file.read(), root)
             self.run_in_chromium("elsewhere.mjs", "lan", port, CHROMIUM, token)
             self.assertEqual(server.stop(), 0)
 
     def test_4_wrong_options_are_refused(self):
-        for arguments, parameters in ((["--wan"], {}), ([], {"port": 70000}), ([], {"lann": True})):
+        wrong = (["--wan"], {}), ([], {"port": 70000}), ([], {"lann": True}), ([], {"behind": "lab.example/vibe"})
+        for arguments, parameters in wrong:
             server = Program("vibe_web", "web_node", *arguments, name="web_node_wrong", **parameters)
             self.assertEqual(server.ends(), 2, server.output())
             self.assertEqual(len([line for line in server.lines if line.startswith("web_node:")]), 1, server.output())
@@ -202,6 +235,41 @@ class Web(unittest.TestCase):
         self.assertGreater(head.position.x, 0.3)
         self.assertLess(head.position.y, -0.3)
         self.assertTrue(self.server.is_running(), self.server.last_words())
+
+    def start_nginx(self, folder, server_port):
+        """Before the server, below /vibe/ as docs/web.md shows it; returns its port."""
+        with open(os.path.join(os.path.dirname(__file__), "proxy.conf"), encoding="utf-8") as file:
+            location = file.read().replace("8890", str(server_port))
+        port = free_port()
+        with open(folder + "/nginx.conf", "w", encoding="utf-8") as file:
+            file.write(NGINX_CONFIGURATION.format(folder=folder, certificates=folder, port=port, location=location))
+        nginx = subprocess.Popen([NGINX, "-p", folder, "-c", folder + "/nginx.conf"])
+        self.addCleanup(nginx.wait)
+        self.addCleanup(nginx.terminate)
+        self.assertTrue(wait_until(lambda: os.path.exists(folder + "/pid")))
+        return port
+
+    def test_7_behind_a_proxy(self):
+        if not NGINX:
+            self.skipTest("nginx is not installed")
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        lan = Program("vibe_web", "web_node", "--lan", name="web_certificate", port=0, certificates=folder)
+        port_of(lan)
+        lan.stop()
+        context = ssl.create_default_context(cafile=folder + "/root.pem")
+        server_port = free_port()
+        port = self.start_nginx(folder, server_port)
+        address = "https://localhost:{}".format(port)
+        server = Program("vibe_web", "web_node", name="web_behind", port=server_port, behind=address + "/vibe")
+        self.addCleanup(server.stop)
+        self.assertTrue(wait_until(lambda: address + "/vibe/#token=" in server.output()), server.output())
+        target = "/vibe/stream?token=" + token_of(server)
+        self.assertEqual(status(port, target, origin=address, context=context), 101)
+        self.assertEqual(status(port, target, origin="https://evil.example", context=context), 403)
+        self.assertEqual(status(port, "/vibe/stream", origin=address, context=context), 403)
+        self.assertEqual(status(self.port, "/stream", http.client.HTTPConnection, origin=address), 403)  # of another server
+        self.run_in_chromium("elsewhere.mjs", "lan", "{}/vibe".format(port), CHROMIUM, token_of(server))
 
 
 if __name__ == "__main__":

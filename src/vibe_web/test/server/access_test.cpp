@@ -7,7 +7,7 @@
 namespace vibe::web::access_test {
 namespace {
 
-const AccessRule kLocal, kLan{"0123456789abcdef", true};
+const AccessRule kLocal, kLan{"0123456789abcdef", true, ""};
 
 TEST(Access, OfThisMachineNeedsNoTokenButItsName) {
   for (const char* host : {"localhost", "localhost:8890", "127.0.0.1:8890", "[::1]:8890", "[::1]"}) {
@@ -25,6 +25,17 @@ TEST(Access, OfPagesOfOtherServersIsRefused) {
   const std::string target = "/stream?token=" + kLan.token;
   EXPECT_EQ(streamRefusal(kLan, {"10.0.0.2:8890", "https://10.0.0.2:8890", target}), "");
   EXPECT_NE(streamRefusal(kLan, {"10.0.0.2:8890", "http://10.0.0.2:8890", target}), "");
+}
+
+TEST(Access, OfAProxyIsThatOfItsAddressAlone) {
+  const AccessRule rule{kLan.token, false, "https://lab.example"};
+  for (const char* host : {"lab.example", "127.0.0.1:8890"})
+    for (const auto& [origin, good] : {std::pair{"https://lab.example", true},
+                                       {"http://lab.example", host[0] == 'l'},  // its own, as far as it knows
+                                       {"https://lab.example.evil", false},
+                                       {"https://evil.example", false}})
+      EXPECT_EQ(streamRefusal(rule, {host, origin, "/stream?token=" + rule.token}).empty(), good) << host << origin;
+  EXPECT_NE(streamRefusal(rule, {"lab.example", "https://lab.example", "/stream"}), "");
 }
 
 TEST(Access, OfTheNetworkNeedsTheToken) {
