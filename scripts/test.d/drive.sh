@@ -11,10 +11,10 @@ scene=$root/src/vibe_sim/test/node/scenes/light.yaml
 recording=$root/src/vibe_hardware/test/node/pad_session.evemu
 hand=script:$root/src/vibe_core/trainees/demo/smoke.yaml
 
-check 'run names who may drive' refuses 2 "nobody is called 'walk'; choose one of trainee device emulator gamepad keyboard" \
+check 'run names who may drive' refuses 2 "nobody is called 'walk'; choose one of trainee device emulator gamepad keyboard web" \
   "$run" --drive walk
 check 'run asks who drives' refuses 2 '^run: --drive needs a value' "$run" --drive
-for driver in device emulator gamepad keyboard; do
+for driver in device emulator gamepad keyboard web; do
   check "--fast does not go with $driver" refuses 2 "'$driver' drives in wall time" "$run" --drive "$driver" --fast
   check "--script does not go with $driver" refuses 2 "--script goes with --drive trainee, not with --drive $driver" \
     "$run" --drive "$driver" --script "$scene"

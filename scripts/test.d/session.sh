@@ -1,7 +1,7 @@
 # scripts/run as a user meets it: it ends well, says why when it does not, and leaves nothing behind.
 # kind: computing
 # cost: 100
-# packages: vibe_bringup
+# packages: vibe_bringup vibe_web
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if [ -n "${VIBE_VARIANT:-}" ]; then
@@ -125,20 +125,24 @@ os.execv(sys.argv[1], sys.argv[1:])' "$run" --headless --duration 3600 --output 
   done
 }
 
-# listensOnlyTo MARK ADDRESS: every TCP port that the programs of a session listen on is on this address. Addresses are
-# those of /proc/net/tcp: 0100007F is 127.0.0.1.
-listensOnlyTo() {
-  local inode pid sockets=' ' count=0 address state rest
+# doors MARK: ADDRESS:PORT of every TCP port that the programs of a session listen on, as in /proc/net/tcp: 0100007F is
+# 127.0.0.1, and ports are hexadecimal.
+doors() {
+  local inode pid sockets=' ' address state rest
   for pid in $(processesWith "VIBE_TEST_MARK=$1"); do
     sockets+=$(find "/proc/$pid/fd" -lname 'socket:*' -printf '%l ' 2>/dev/null)
   done
   while read -r _ address _ state _ _ _ _ _ inode rest; do
-    [ "$state" = 0A ] && [[ $sockets == *"socket:[$inode]"* ]] || continue
-    count=$((count + 1))
-    [ "${address%:*}" = "$2" ] || { echo "listens on $address"; return 1; }
+    if [ "$state" = 0A ] && [[ $sockets == *"socket:[$inode]"* ]]; then echo "$address"; fi
   done < <(cat /proc/net/tcp /proc/net/tcp6 2>/dev/null)
-  echo "$count ports"
-  [ "$count" -ge 6 ]
+}
+
+# listensOnlyTo MARK ADDRESS: at least six ports, all of them on this address
+listensOnlyTo() {
+  local found
+  found=$(doors "$1")
+  printf '%s\n' "$found"
+  [ "$(wc -l <<<"$found")" -ge 6 ] && ! grep -v "^$2:" <<<"$found"
 }
 
 # One session for both: control of the address, that another one is told apart.
@@ -194,3 +198,55 @@ namesTheDead() {
   [ "$status" -eq 1 ] && grep -q '^run: vibe_trainee died' "$scratch/$mark.txt" && nobodyLeft "$mark" 0
 }
 check 'a session names the program that died' namesTheDead
+
+if [ ! -f "$root/devel/share/vibe_web/page/index.html" ]; then
+  echo 'skipped the page of a session (the build left it out: it needs nodejs and npm)'
+  exit 0
+fi
+# a port that is free, and a home for certificates
+port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("", 0)); print(s.getsockname()[1])')
+export ROS_HOME=$scratch/home
+# answers SCHEME TEXT: something on the port does, with a page that contains this
+answers() {
+  /usr/bin/python3 -c 'import ssl, sys, urllib.request
+page = urllib.request.urlopen(sys.argv[1], context=ssl._create_unverified_context() if sys.argv[1][4] == "s" else None, timeout=60)
+sys.exit(sys.argv[2] not in page.read().decode())' "$1://127.0.0.1:$port/" "$2"
+}
+
+showsItsEnd() {
+  local mark=shown-$$ status=0 deadline=$((SECONDS + 120))
+  startSession "$mark" --web --port "$port" --fast --duration 2 || return 1
+  until grep -q '^The session has ended. It is still shown by the page, until Ctrl-C.' "$scratch/$mark.txt"; do
+    [ "$SECONDS" -lt "$deadline" ] || return 1
+    sleep 0.2
+  done
+  isRecorded "$scratch/$mark" && grep -q '^state hash: ' "$scratch/$mark.txt" && answers http '<canvas' || return 1
+  kill -INT "$session_pid"
+  wait "$session_pid" || status=$?
+  cat "$scratch/$mark.txt"
+  [ "$status" -eq 0 ] && nobodyLeft "$mark" 0
+}
+check 'a page shows how a session ended, until Ctrl-C' showsItsEnd
+
+opensThePageAlone() {
+  local mark=lan-$$ status=0 open
+  startSession "$mark" --drive web --lan --port "$port" || return 1
+  grep -q "https://.*:$port/#token=" "$scratch/$mark.txt" && answers https '<canvas' || { cat "$scratch/$mark.txt"; return 1; }
+  open=$(doors "$mark" | grep -Ev '^(0100007F|00000000000000000000000001000000):')
+  printf '%s\n' "$open"
+  kill -INT "$session_pid"
+  wait "$session_pid" || status=$?
+  [ "$status" -eq 0 ] && [ -n "$open" ] && ! grep -v ":$(printf %04X "$port")$" <<<"$open"
+}
+check 'with --lan the port of the page alone is open to the network' opensThePageAlone
+
+namesTakenPort() {
+  /usr/bin/python3 -m http.server --bind 127.0.0.1 "$port" >"$scratch/http.txt" 2>&1 &
+  local server=$! status=0
+  until answers http Directory 2>/dev/null; do sleep 0.1; done
+  "$run" --headless --web --port "$port" --duration 3600 --output "$scratch/taken" >"$scratch/taken.txt" 2>&1 || status=$?
+  kill "$server"
+  cat "$scratch/taken.txt"
+  [ "$status" -eq 1 ] && grep -q "port $port of 127.0.0.1 cannot be had .*; choose another one with .*--port" "$scratch/taken.txt"
+}
+check 'a port that is taken is said with its remedy' namesTakenPort

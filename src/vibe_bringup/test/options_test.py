@@ -14,7 +14,7 @@ from unittest import mock
 
 import yaml
 
-from vibe_bringup import dataset, places, run, session
+from vibe_bringup import dataset, graph, places, run, session
 
 PROGRAMS = os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "programs")
 NAMES = sorted(os.listdir(PROGRAMS))
@@ -92,6 +92,9 @@ class EveryProgram(OptionsTest):
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, b"needs: session\n", b""))
         done = subprocess.run([*program, "--drive", "gamepad"], capture_output=True, check=False)
         self.assertEqual(done.stdout, b"needs: session devices\n")
+        for words in (["--web"], ["--drive", "web", "--headless"]):
+            done = subprocess.run([*program, *words], capture_output=True, check=False)
+            self.assertEqual(done.stdout, b"needs: session web\n", done.stderr)
         self.assertEqual(subprocess.run([*program, "--fats"], capture_output=True, check=False).returncode, 2)
 
 
@@ -151,9 +154,42 @@ class Run(OptionsTest):
             ("remove one of them", "--drive device --instruments camera --camera fake --vision-config file.yaml"),
             ("DISPLAY is not set", "--drive keyboard"),
             ("remove --headless", "--drive keyboard --headless"),
+            ("--lan goes with --web or --drive web", "--lan"),
+            ("--port goes with --web or --drive web", "--drive gamepad --port 8000"),
+            ("--port needs a port, not '0'", "--web --port 0"),
+            ("--behind goes with --web or --drive web", "--behind https://lab.example/"),
         ):
             self.refuses(sentence, "run", *words.split())
         self.accepts("run", "--drive", "device", "--config", "file.yaml")
+
+    def test_a_page_that_was_not_built_is_said_before_anything_starts(self):
+        complained = io.StringIO()
+        arguments = self.accepts("run", "--web")
+        with mock.patch.dict(os.environ, CMAKE_PREFIX_PATH=self.folder), contextlib.redirect_stderr(complained):
+            self.assertEqual(run.run(arguments), 1)
+        self.assertIn("install Node 18 or newer and npm", complained.getvalue())
+        self.assertEqual(os.listdir(self.folder), ["file.yaml"])
+
+    def test_rviz_is_an_x_client_on_a_wayland_desktop(self):
+        for platform, desktop, changed in (
+            (None, None, False),
+            (None, "wayland-0", True),
+            ("wayland;xcb", "wayland-0", True),
+            ("wayland", None, True),
+            ("xcb", "wayland-0", False),
+        ):
+            made = graph.Graph(self.folder)
+            made.env = {k: v for k, v in (("QT_QPA_PLATFORM", platform), ("WAYLAND_DISPLAY", desktop)) if v}
+            said = io.StringIO()
+            with mock.patch.object(made, "start") as start, contextlib.redirect_stdout(said):
+                made.start_rviz("x.rviz")
+            self.assertEqual("QT_QPA_PLATFORM=xcb" in start.call_args[0][1], changed, (platform, desktop))
+            self.assertEqual("xcb" in said.getvalue(), changed)
+
+    def test_progress_takes_one_line_of_a_terminal(self):
+        shown = graph.on_one_line(b"Open https://x/\nt = 1.00 s\n") + graph.on_one_line(b"t = 2.00 s\nstate hash: 3\n")
+        self.assertEqual(shown.count(b"\n"), 2)
+        self.assertEqual(shown.split(b"\r")[-1], b"state hash: 3\n")
 
     def test_a_second_thread_steps_where_four_cores_are(self):
         for cores, threads in ((1, 1), (3, 1), (4, 2), (64, 2)):

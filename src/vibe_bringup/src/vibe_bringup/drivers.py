@@ -140,4 +140,10 @@ class Keyboard(Driver):
     )
 
 
-DRIVERS = {"trainee": Trainee, "device": Device, "emulator": Emulator, "gamepad": Gamepad, "keyboard": Keyboard}
+class Web(Driver):
+    """Whoever takes control in a page, which the session serves."""
+
+    first_words = "Driving from a browser: open the address, and press 'Take control'. More: docs/web.md"
+
+
+DRIVERS = {"trainee": Trainee, "device": Device, "emulator": Emulator, "gamepad": Gamepad, "keyboard": Keyboard, "web": Web}

@@ -2,6 +2,7 @@
 
 import ctypes
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -16,6 +17,7 @@ from . import places
 
 PR_SET_PDEATHSIG = 1
 TAIL_LINES = 15
+PROGRESS = re.compile(rb"^(t = .*)\n", re.MULTILINE)  # a line a second, of sim_node
 
 
 class GraphError(Exception):
@@ -44,6 +46,11 @@ def write_all(descriptor, data):
             data = data[os.write(descriptor, data) :]
     except OSError:
         pass
+
+
+def on_one_line(data):
+    """For a terminal: the progress takes one line, so that what was said before, such as an address, stays in view."""
+    return b"\033[K" + PROGRESS.sub(rb"\1\033[K\r", data)
 
 
 def loopback_library():
@@ -79,7 +86,7 @@ class Process:
                 data = os.read(source.fileno(), 65536)
                 if not data:
                     return
-                write_all(ours, data)
+                write_all(ours, on_one_line(data) if os.isatty(ours) else data)
                 write_all(log.fileno(), data)
 
     def flush(self, seconds=2.0):
@@ -176,6 +183,19 @@ class Graph:
 
     def start_node(self, package, name, *options, **settings):
         return self.start(name, ["rosrun", package, name, *options], **settings)
+
+    def start_rviz(self, config):
+        """As an X client on a Wayland desktop, too: into the window of a Wayland client OGRE cannot draw, and rviz aborts."""
+        command = ["rosrun", "rviz", "rviz", "-d", config]
+        if self.env.get("QT_QPA_PLATFORM", "wayland" if self.env.get("WAYLAND_DISPLAY") else "").startswith("wayland"):
+            print("On this Wayland desktop rviz runs through Xwayland (QT_QPA_PLATFORM=xcb).", flush=True)
+            command = ["env", "QT_QPA_PLATFORM=xcb", *command]
+        return self.start("rviz", command, essential=False)
+
+    def start_page(self, port):
+        """The page of the session. Its port alone is open to the network if web_node wants it to be."""
+        command = ["env", "VIBE_OPEN_PORT={}".format(port), "rosrun", "vibe_web", "web_node"]
+        return self.start("web_node", command, visible=True)
 
     def start_robot(self):
         """The endoscope, and the transforms of its links."""

@@ -4,17 +4,20 @@ import argparse
 import os
 import re
 import subprocess
+import sys
 
 from . import cli, places
 
-DRIVERS = ("trainee", "device", "emulator", "gamepad", "keyboard")
+DRIVERS = ("trainee", "device", "emulator", "gamepad", "keyboard", "web")
 GRABS = "package://vibe_core/trainees/demo/grabs.yaml"
 OWNERS = {"script": "trainee", "hand": "emulator", "config": "emulator", "pad": "gamepad", "mapping": "gamepad",
           "replay_pad": "gamepad"}  # fmt: skip
 PADS = "package://vibe_hardware/config/gamepads"
+PAGE_OPTIONS = ("lan", "port", "behind")  # parameters of web_node
 DESCRIPTION = """\
 Runs a session: the simulator, somebody who drives it, robot_state_publisher, a recorder and, with a display, rviz,
 around a ROS master of their own (or yours, see --master). Prints one line a second, then the summary."""
+NO_PAGE = "install Node 18 or newer and npm, let npm reach its registry, and run scripts/build --part web"
 EPILOG = """\
 Ends with status 0 when the session went through or was interrupted, 1 when something failed, 2 on a wrong call."""
 
@@ -78,13 +81,15 @@ def parser():
         "emulator: the same two devices without hardware, with an emulated hand\n"
         "gamepad: a gamepad or joystick\n"
         "keyboard: keys and mouse in the window of rviz\n"
-        "All but the trainee drive in wall time, until Ctrl-C or until rviz is closed.")  # fmt: skip
+        "web: a browser, on this machine or with --lan on others\n"
+        "All but the trainee drive in wall time, until Ctrl-C or, without a page, until rviz is closed.")  # fmt: skip
     add("--scene", metavar="FILE", type=cli.file, default=places.SCENE, help="what is simulated (default: %(default)s)")
     add("--mesh", metavar="FILE", type=cli.file, help="a closed surface (obj, stl, ply, gltf) instead of the scene's "
         "stomach")  # fmt: skip
     add("--duration", metavar="S", type=cli.positive("a number of seconds above zero"), help="simulated seconds "
         "(default: until the trainee has done all of its goals; otherwise no end)")  # fmt: skip
     add("--headless", action="store_true", help="without rviz")
+    add("--web", action="store_true", help="show the session in a browser, too, until Ctrl-C; --drive web includes it")
     add("--master", action="store_true", help="use the ROS master of ROS_MASTER_URI, which must be running; parameters "
         "are put back at the end")  # fmt: skip
     add("--record-all", action="store_true", help="record every message of every topic (7 MB per second) instead of "
@@ -98,6 +103,11 @@ def parser():
 
 
 def add_options_of_drivers(made):
+    add = made.add_argument_group("With --web or --drive web").add_argument
+    add("--lan", action="store_true", default=None, help="for phones, tablets and other machines of the network: with "
+        "TLS and a token, and with the address as a QR code")  # fmt: skip
+    add("--port", metavar="N", type=cli.whole("a port", 5), help="of the page (default: 8890)")
+    add("--behind", metavar="URL", help="where others open the page, served by a reverse proxy; docs/web.md")
     add = made.add_argument_group("With --drive trainee").add_argument
     add("--script", metavar="WHAT", type=trainee, help="what the trainee does: a protocol of goals or a script of "
         "motions, as a file or by name:\n"
@@ -144,6 +154,7 @@ def check_drive(arguments, fail):
         fail("--pad and --replay-pad exclude each other; remove one of them")
     if drive == "keyboard":
         check_display(arguments, fail)
+    check_page(arguments, fail)
     fill_in(arguments)
 
 
@@ -171,6 +182,14 @@ def check_display(arguments, fail):
     if not os.environ.get("DISPLAY"):
         fail("--drive keyboard needs the window of rviz, but DISPLAY is not set; run it on a desktop or use "
              "--drive gamepad")  # fmt: skip
+
+
+def check_page(arguments, fail):
+    """What is about the page needs one."""
+    arguments.web = arguments.web or arguments.drive == "web"
+    for name in PAGE_OPTIONS:
+        if getattr(arguments, name) is not None and not arguments.web:
+            fail("--{} goes with --web or --drive web; add one of them".format(name))
 
 
 def fill_in(arguments):
@@ -208,13 +227,24 @@ def parts(arguments):
         wanted.append("devices")
     if arguments.instruments:
         wanted.append("vision")
+    if arguments.web:
+        wanted.append("web")
     return wanted
+
+
+def page_is_built():
+    from vibe_sessions.headless import find_in_package
+
+    return find_in_package("vibe_web", "page/index.html", "share") is not None
 
 
 def run(arguments):
     from .session import perform
 
     arguments.headless = arguments.headless or not os.environ.get("DISPLAY")
+    if arguments.web and not page_is_built():
+        print("run: there is no page to show, because the build left it out; {}".format(NO_PAGE), file=sys.stderr)
+        return 1
     if arguments.duration is None:
         arguments.duration = 0.0
         if arguments.drive == "trainee":  # a script has a length; goals take as long as they take

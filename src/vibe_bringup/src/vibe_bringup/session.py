@@ -1,7 +1,7 @@
 """One session: master, robot_state_publisher, simulator, who drives it, recorder and, with a display, rviz.
 
 The simulator ends by itself after the duration, if there is one, and decides how the session ended. A person ends a
-session by closing rviz, too.
+session by closing rviz, too. What shows the session, rviz or a page, goes on to show how it ended.
 """
 
 import contextlib
@@ -16,8 +16,10 @@ import yaml
 from . import places
 from .drivers import DRIVERS
 from .graph import Graph, GraphError
+from .run import PAGE_OPTIONS
 from .vision import Vision
 
+PORT = 8890  # of the page, by default
 SETTLE = 1.0  # for the recorder to receive what the simulator sent last [s]
 # For the trainee to answer [s]: on a machine that is much too busy it plans for longer than the simulator would wait by
 # itself, and a simulator that has paused waits for good. Whether it is alive is watched here.
@@ -53,7 +55,9 @@ class Session:
         self.graph = Graph(self.logs, own_master=not arguments.master)
         self.driver = DRIVERS[arguments.drive](arguments)
         self.vision = Vision(arguments) if arguments.camera else None
-        self.sim = self.recorder = self.rviz = None
+        self.sim = self.recorder = self.rviz = self.page = None
+        self.finished, self.forced = False, []  # programs that had to be killed
+        self.rviz_death = ""
 
     def describe(self):
         """What people say of the session, for its report, where they can change it afterwards."""
@@ -81,7 +85,9 @@ class Session:
         self.recorder = graph.start_node("vibe_sim", "vibe_record", *record, patience=RECORDER_PATIENCE)
         if not self.arguments.headless:
             config = places.find(self.driver.rviz_config)
-            self.rviz = graph.start_node("rviz", "rviz", "-d", config, essential=False)
+            self.rviz = graph.start_rviz(config)
+        if self.arguments.web:
+            self.page = graph.start_page(self.arguments.port or PORT)
 
     def set_parameters(self):
         arguments, put = self.arguments, self.graph.set_parameter
@@ -99,6 +105,9 @@ class Session:
         put("/sim_node/await_recorder", True)
         put("/sim_node/duration", arguments.duration)
         put("/sim_node/summary_file", self.summary)
+        for name in PAGE_OPTIONS:
+            if getattr(arguments, name) is not None:
+                put("/web_node/" + name, getattr(arguments, name))
         self.driver.set_parameters(put)
 
     def watch(self):
@@ -125,34 +134,58 @@ class Session:
 
     def is_closed(self):
         """Whether the person who drives has closed rviz. Raises GraphError when it died and somebody drives with it."""
-        if self.rviz is None or self.driver.simulated_time or self.rviz.status() is None:
+        if self.rviz is None or self.rviz.status() is None:
             return False
-        if self.rviz.status() != 0 and self.driver.needs_rviz:
-            raise GraphError(
-                "rviz died with status {}; the last it said (all of it: {}):\n{}".format(
-                    self.rviz.status(), self.rviz.log, self.rviz.last_words()
-                )
+        if self.rviz.status() != 0 and not self.rviz_death:
+            death = "rviz died with status {}; the last it said (all of it: {}):\n{}".format(
+                self.rviz.status(), self.rviz.log, self.rviz.last_words()
             )
-        return self.rviz.status() == 0
+            if self.driver.needs_rviz:
+                raise GraphError(death)
+            self.rviz_death = death
+            print("rviz died; the session goes on without it.", flush=True)
+        return self.rviz.status() == 0 and not self.driver.simulated_time and self.page is None
 
-    def stop(self):
-        """Ends everything in reverse order, the simulator before the recorder so that its last words are kept."""
-        forced = []
-        if self.sim is not None:
-            self.sim.stop()
-            forced = self.driver.stop()
-            time.sleep(SETTLE)
-        forced += self.graph.stop_all()
-        self.driver.clean_up()
-        if forced:
-            raise GraphError("{} did not stop when asked and was killed; see {}".format(", ".join(forced), self.logs))
-        if self.recorder is not None and (not os.path.exists(self.bag) or glob.glob(self.bag + "*.active")):
-            raise GraphError("the recording {} is not complete; see {}".format(self.bag, self.recorder.log))
-
-    def report(self):
-        """Where the session lies; the simulator has printed the summary itself."""
+    def finish(self):
+        """Ends what computes and records, the simulator before the recorder so that its last words are kept, and says
+        where the session lies; the simulator has printed the summary itself."""
+        if self.sim is None or self.finished:
+            return
+        self.finished = True
+        self.sim.stop()
+        self.forced += self.driver.stop()
+        time.sleep(SETTLE)
+        if self.recorder is None:
+            return
+        if not self.recorder.stop():
+            self.forced.append(self.recorder.name)
         if os.path.exists(self.bag):
             print("recorded: {} ({:.1f} MB)".format(self.bag, os.path.getsize(self.bag) / 1e6), flush=True)
+
+    def show(self):
+        """How the session ended, until a person has seen it."""
+
+        def running():
+            shown = {"rviz": self.rviz, "the page": self.page}
+            return [name for name, process in shown.items() if process is not None and process.status() is None]
+
+        if running():
+            end = "Ctrl-C" if self.page else "it is closed, or Ctrl-C"
+            print("The session has ended. It is still shown by {}, until {}.".format(" and ".join(running()), end), flush=True)
+        while running():
+            time.sleep(0.1)
+
+    def stop(self):
+        """Ends everything in reverse order."""
+        self.finish()
+        self.forced += self.graph.stop_all()
+        self.driver.clean_up()
+        if self.forced:
+            raise GraphError("{} did not stop when asked and was killed; see {}".format(", ".join(self.forced), self.logs))
+        if self.recorder is not None and (not os.path.exists(self.bag) or glob.glob(self.bag + "*.active")):
+            raise GraphError("the recording {} is not complete; see {}".format(self.bag, self.recorder.log))
+        if self.rviz_death:
+            raise GraphError(self.rviz_death)
 
 
 def attempt(action, failures):
@@ -204,10 +237,4 @@ def perform(arguments):
         print("run: {}".format(error), file=sys.stderr)
         return 1
 
-    def end():
-        try:
-            session.stop()
-        finally:
-            session.report()
-
-    return carry_out("run", [session.start, session.watch], end, may_be_interrupted=True)
+    return carry_out("run", [session.start, session.watch, session.finish, session.show], session.stop, may_be_interrupted=True)

@@ -30,7 +30,7 @@ def show(graph, arguments, folder):
     graph.set_parameter("/vibe_player/namespace", arguments.namespace or "")
     graph.start_robot()
     player = graph.start_node("vibe_sim", "vibe_player", visible=True)
-    rviz = graph.start_node("rviz", "rviz", "-d", rviz_config(folder), essential=False)
+    rviz = graph.start_rviz(rviz_config(folder))
     while rviz.status() is None:
         dead = graph.dead()
         if dead is player:
