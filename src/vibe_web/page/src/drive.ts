@@ -47,7 +47,7 @@ export class Drive {
     for (const end of ['pointerup', 'pointercancel', 'lostpointercapture'] as const)
       addEventListener(end, ({ pointerId }) => this.change(() => this.hands.pointerUp(pointerId)));
     addEventListener('blur', () => this.letGo());
-    for (const end of ['visibilitychange', 'freeze']) document.addEventListener(end, () => this.letGo());
+    document.addEventListener('visibilitychange', () => document.hidden && this.letGo());
     setInterval(() => this.tick(), kPeriod);
   }
 

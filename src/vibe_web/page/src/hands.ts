@@ -2,7 +2,7 @@
 // new press until it ends, and no longer; nothing here knows of a browser, so any sequence of events can be tried.
 
 export const kAxes = 7;
-export const kLapse = 2000; // a page that slept for longer, or heard nothing, wants new presses; so does the server [ms]
+export const kLapse = 5000; // a page that slept for longer wants new presses; so does the server [ms]
 
 /** What one of the hands holds: keys of the table, and joints with shares of the speed of a key. */
 export interface Hand { keys: Set<number>; axes: number[] }

@@ -1,10 +1,10 @@
 // The connection to the server: messages by kind, commands, whether the link is alive, and a new try when it is lost.
 
-import { kLapse } from './hands';
 import { Kind } from './messages';
 
 const kRetry = 1000; // [ms]
 const kAsk = 500; // time of the server [ms]
+const kPatience = 4; // questions without an answer, after which the link counts as silent
 const kSentences = [403, 503]; // statuses whose text the server writes for people
 const kAnswers = 20; // of which the quickest compares the clocks: a clock that is set right counts after 10 s
 
@@ -12,7 +12,7 @@ export class Stream {
   private socket: WebSocket | null = null;
   private handlers = new Map<Kind, (bytes: ArrayBuffer) => void>();
   received = 0; // [bytes]
-  private heard = -Infinity; // the last message; -Infinity: there is no connection [ms]
+  private unanswered = Infinity; // questions since the last message, which a page that is busy for a while does not ask; Infinity: there is no connection
   private answers: { took: number; ahead: number }[] = []; // took how long; the clock of the server is how far ahead [ms]
 
   /** @param onState  whether there is a connection, and else why not in one sentence; empty: it is being made */
@@ -29,8 +29,7 @@ export class Stream {
 
   /** For how long nothing has come, though answers are asked for all the time; 0: not for long [ms]. */
   get silence() {
-    const silence = performance.now() - this.heard;
-    return silence > kLapse ? silence : 0;
+    return this.unanswered < kPatience ? 0 : kAsk * this.unanswered;
   }
 
   private get quickest() {
@@ -38,6 +37,7 @@ export class Stream {
   }
 
   private askTime() {
+    this.unanswered++;
     const bytes = new ArrayBuffer(16), view = new DataView(bytes);
     view.setUint8(0, 6);
     view.setFloat64(8, performance.now(), true);
@@ -71,7 +71,7 @@ export class Stream {
     const socket = new WebSocket(address);
     socket.binaryType = 'arraybuffer';
     socket.onopen = () => {
-      this.heard = performance.now();
+      this.unanswered = 0;
       this.answers = [];
       this.send(Uint8Array.of(7, 0)); // this page tells what it has drawn
       this.send(Uint8Array.of(1, this.rate));
@@ -79,12 +79,12 @@ export class Stream {
       this.onState(true, '');
     };
     socket.onmessage = ({ data }) => {
-      this.heard = performance.now();
+      this.unanswered = 0;
       this.received += data.byteLength;
       this.handlers.get(new Uint8Array(data, 0, 1)[0])?.(data);
     };
     socket.onclose = () => {
-      this.heard = -Infinity;
+      this.unanswered = Infinity;
       this.onState(false, '');
       void this.askWhy(address.search).then((why) => {
         this.onState(false, why);

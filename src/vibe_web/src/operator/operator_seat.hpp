@@ -12,7 +12,7 @@ namespace vibe::web {
 using ClientId = std::uint64_t;  ///< of a connection; 0: nobody
 
 constexpr double kDeadMan = 0.3;  ///< a page that drives and is silent for longer lets go of everything [s]
-constexpr double kLapse = 2;      ///< one that was silent for longer wants new presses: its link or its tab slept [s]
+constexpr double kLapse = 5;      ///< one that was silent for longer wants new presses: its link or its tab slept [s]
 constexpr double kAbsent = 10;    ///< one that is silent for longer gives its place to others [s]
 
 /// The place of the one page that may drive. Times are of a steady clock [s].
