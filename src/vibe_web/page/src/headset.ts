@@ -93,12 +93,13 @@ export class Headset {
     stage.body.position.copy(stage.organ.centre).negate(); // the model stands where its middle is
     grips.read(this.force);
     room.readings.show(this.says(), this.buttons(), grips.pointed);
+    const two = this.stereo && room.view === View.Monitor;
     renderer.info.reset();
     room.model.visible = true; // the endoscope is in it
-    stage.drawEndoscope(this.stereo);
+    stage.drawEndoscope(two);
     room.model.visible = room.view === View.Monitor;
-    const { endoscope } = stage, second = this.stereo && room.view === View.Monitor ? endoscope?.right : endoscope?.target;
-    if (endoscope && second) room.showPictures([endoscope.target.texture, second.texture]);
+    const { endoscope } = stage;
+    if (endoscope) room.showPictures([endoscope.target.texture, (two ? endoscope.right : endoscope.target).texture]);
     renderer.xr.getCamera().layers.enable(kPlainLayer);
     stage.camera.layers.set(kPlainLayer);
     renderer.setClearColor(room.background, this.passThrough ? 0 : 1);

@@ -234,6 +234,8 @@ class Web(unittest.TestCase):
         head = seen["head"].messages[-1].pose
         self.assertGreater(head.position.x, 0.3)
         self.assertLess(head.position.y, -0.3)
+        turn = head.orientation
+        self.assertGreater(abs(turn.x + turn.y + turn.z + turn.w) / 2, 0.99)  # x ahead is y of the world, and z is x
         self.assertTrue(self.server.is_running(), self.server.last_words())
 
     def start_nginx(self, folder, server_port):
