@@ -213,6 +213,10 @@ def group_of(paths):
 def display(report):
     report.section("Display")
     name = os.environ.get("DISPLAY", "")
+    report.check(not os.environ.get("QT_QPA_PLATFORM", "").startswith("wayland"), "windows of Qt", "QT_QPA_PLATFORM makes rviz a "
+                 "Wayland client, and it aborts; scripts/run sets xcb itself, for other rviz: export QT_QPA_PLATFORM=xcb")  # fmt: skip
+    report.check(name or not os.environ.get("WAYLAND_DISPLAY"), "Xwayland", "this Wayland desktop has no X display, which rviz "
+                 "needs; install xwayland and log in again")  # fmt: skip
     if not name:
         report.fact("display", "none: sessions run without rviz, as with --headless; --drive keyboard and replay --view need one")
         return
@@ -259,6 +263,9 @@ def last_session(report):
         lines = [line for line in read(log).splitlines() if COMPLAINT.search(line)]
         for line in lines[-LOG_LINES:]:
             report.fact(os.path.basename(log), line[:200])
+    death = re.search("^rviz died .*", read(os.path.join(folder, "log/rviz.log")), re.MULTILINE)
+    report.check(not death, "rviz", "{} in the session in {}; the end of its log/rviz.log says why: where it is the graphics "
+                 "driver, try LIBGL_ALWAYS_SOFTWARE=1".format(death and death.group(), folder))  # fmt: skip
     return bag if os.path.exists(bag) else None
 
 

@@ -45,8 +45,18 @@ check 'what the import says of a surface' finds 'open.obj is not closed: it has 
 check 'a file that is not there' finds 'none.bag cannot be read .No such file'
 check 'topics that were left out' finds 'filtered.bag lacks applied_input, session_info, snapshot'
 check 'nothing of the machine' isQuietAbout 'X server|ROS_HOME'
+mkdir -p sessions/dead/log
+printf 'ok\nrviz died with status -6\n' >sessions/dead/log/rviz.log
+export QT_QPA_PLATFORM=wayland WAYLAND_DISPLAY=wayland-0
+check 'a Wayland desktop is looked at' asks good.yaml
+check 'an rviz that died' finds 'rviz died with status -6 in the session in sessions/dead'
+check 'a platform of Qt in which rviz aborts' finds 'QT_QPA_PLATFORM makes rviz a Wayland client'
+check 'a desktop without X' finds 'no X display, .* install xwayland'
+unset QT_QPA_PLATFORM WAYLAND_DISPLAY
+echo ok >sessions/dead/log/rviz.log
 export DISPLAY=:987 ROS_HOME=$scratch/page.glb/none
 check 'the machine is looked at' asks good.yaml
+check 'an rviz that lives, with X' isQuietAbout 'rviz died|QT_QPA|xwayland'
 check 'a display that does not answer' finds 'no X server answers at DISPLAY=:987'
 check 'a folder that cannot be written to' finds 'ROS_HOME is .*/page.glb/none, which cannot'
 

@@ -195,3 +195,46 @@ keyboardDrives() {
     grep -q '^state hash: ' "$scratch/keyboard.txt" && [ "$(commands keyboard)" -gt 0 ]
 }
 check 'rviz drives with the keyboard from its start, and closing it ends the session' keyboardDrives
+
+# windowOf NAME: the process of rviz of a session, once it is that program
+windowOf() {
+  local pid deadline=$((SECONDS + 60))
+  while [ "$SECONDS" -lt "$deadline" ]; do
+    for pid in $(processesWith "VIBE_TEST_MARK=$1-$$"); do
+      if [[ $(readlink "/proc/$pid/exe") == */rviz ]]; then echo "$pid"; return; fi
+    done
+    sleep 0.2
+  done
+  return 1
+}
+
+staysWithTheResult() {
+  local status=0 deadline=$((SECONDS + 180))
+  startDisplay && startSession result --drive emulator --hand "$hand" --duration 6 || return 1
+  until grep -q '^The session has ended. It is still shown by rviz, until it is closed, or Ctrl-C.' "$scratch/result.txt"; do
+    [ "$SECONDS" -lt "$deadline" ] && kill -0 "$session_pid" || { cat "$scratch/result.txt"; return 1; }
+    sleep 0.2
+  done
+  while kill -0 "$session_pid" 2>/dev/null; do
+    [ "$SECONDS" -lt "$deadline" ] || { kill -INT "$session_pid"; echo 'rviz cannot be closed'; return 1; }
+    systemTest close_window || true
+    sleep 2
+  done
+  wait "$session_pid" || status=$?
+  cat "$scratch/result.txt"
+  [ "$status" -eq 0 ] && grep -q '^recorded: ' "$scratch/result.txt"
+}
+check 'rviz shows how a session ended until it is closed' staysWithTheResult
+
+saysThatRvizDied() {
+  local status=0 rviz
+  startDisplay && QT_QPA_PLATFORM=wayland startSession died --drive emulator --hand "$hand" --duration 20 &&
+    rviz=$(windowOf died) || return 1
+  grep -qz '^QT_QPA_PLATFORM=xcb$' "/proc/$rviz/environ" && kill -KILL "$rviz" || return 1
+  wait "$session_pid" || status=$?
+  cat "$scratch/died.txt"
+  [ "$status" -eq 1 ] && grep -q '^On this Wayland desktop rviz runs through Xwayland' "$scratch/died.txt" &&
+    grep -q '^rviz died; the session goes on without it.' "$scratch/died.txt" && grep -q '^state hash: ' "$scratch/died.txt" &&
+    grep -q '^run: rviz died with status -9' "$scratch/died.txt" && grep -q '^rviz died' "$scratch/died/log/rviz.log"
+}
+check 'rviz is an X client under Wayland, and a session says when it died' saysThatRvizDied

@@ -156,7 +156,8 @@ class Run(OptionsTest):
             ("remove --headless", "--drive keyboard --headless"),
             ("--lan goes with --web or --drive web", "--lan"),
             ("--port goes with --web or --drive web", "--drive gamepad --port 8000"),
-            ("--port needs a port, not '0'", "--web --port 0"),
+            ("--port needs a number from 1 to 65535, not '0'", "--web --port 0"),
+            ("not '65536'", "--web --port 65536"),
             ("--behind goes with --web or --drive web", "--behind https://lab.example/"),
         ):
             self.refuses(sentence, "run", *words.split())

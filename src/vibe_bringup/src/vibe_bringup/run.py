@@ -69,6 +69,12 @@ def instruments(text):
     return text
 
 
+def port(text):
+    if not text.isdecimal() or not 0 < int(text) < 65536:
+        raise argparse.ArgumentTypeError("needs a number from 1 to 65535, not '{}'".format(text))
+    return int(text)
+
+
 # --- options
 
 
@@ -106,7 +112,7 @@ def add_options_of_drivers(made):
     add = made.add_argument_group("With --web or --drive web").add_argument
     add("--lan", action="store_true", default=None, help="for phones, tablets and other machines of the network: with "
         "TLS and a token, and with the address as a QR code")  # fmt: skip
-    add("--port", metavar="N", type=cli.whole("a port", 5), help="of the page (default: 8890)")
+    add("--port", metavar="N", type=port, help="of the page (default: 8890)")
     add("--behind", metavar="URL", help="where others open the page, served by a reverse proxy; docs/web.md")
     add = made.add_argument_group("With --drive trainee").add_argument
     add("--script", metavar="WHAT", type=trainee, help="what the trainee does: a protocol of goals or a script of "

@@ -143,6 +143,8 @@ class Session:
             if self.driver.needs_rviz:
                 raise GraphError(death)
             self.rviz_death = death
+            with open(self.rviz.log, "a", encoding="utf-8") as log:
+                print("rviz died with status {}".format(self.rviz.status()), file=log)  # for scripts/doctor
             print("rviz died; the session goes on without it.", flush=True)
         return self.rviz.status() == 0 and not self.driver.simulated_time and self.page is None
 

@@ -56,8 +56,9 @@ void CommandBox::makeButton(int button) {
   buttons_[static_cast<std::size_t>(button)] = widget;
 }
 
-void CommandBox::display(bool in_control, const std::array<std::int32_t, operating::kCommandCount>& down,
+void CommandBox::display(bool in_control, bool may_take, const std::array<std::int32_t, operating::kCommandCount>& down,
                          const std::string& sentence) {
+  control_->setEnabled(in_control || may_take);
   control_->setChecked(in_control);
   control_->setText(in_control ? "Give control back" : "Take control");
   if (in_control != shown_control_) control_->setIcon(lamp(in_control, palette()));

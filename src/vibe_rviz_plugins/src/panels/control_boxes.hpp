@@ -24,9 +24,10 @@ class CommandBox : public QWidget {
 
   explicit CommandBox(Actions actions, QWidget* parent = nullptr);
 
+  /// @param may_take  whether control could be taken now
   /// @param down      buttons pressed by the publisher in control
   /// @param sentence  who is in control
-  void display(bool in_control, const std::array<std::int32_t, operating::kCommandCount>& down,
+  void display(bool in_control, bool may_take, const std::array<std::int32_t, operating::kCommandCount>& down,
                const std::string& sentence);
 
  private:

@@ -2,9 +2,14 @@
 
 #include <QLabel>
 #include <QLineEdit>
+#include <QPushButton>
 #include <QScrollArea>
 #include <QTimer>
 #include <QVBoxLayout>
+
+#include <rviz/view_controller.h>
+#include <rviz/view_manager.h>
+#include <rviz/visualization_manager.h>
 
 #include <pluginlib/class_list_macros.hpp>
 
@@ -22,7 +27,8 @@ namespace {
 
 constexpr int kMinWidth = 260;                                // nothing is clipped [px]
 constexpr int kPreferredWidth = 340, kPreferredHeight = 640;  // [px]
-constexpr int kPeriod = 100;                                  // of refresh() and of the buttons' messages [ms]
+const char* const kEndoscopeView = "vibe_rviz_plugins/Endoscope";
+constexpr int kPeriod = 100;  // of refresh() and of the buttons' messages [ms]
 
 void addPart(QVBoxLayout* column, const QString& title, QWidget* part) {
   QLabel* label = wrappingLabel();
@@ -191,7 +197,8 @@ void ProcedureWidget::refresh() {
   const double now = operating::steadySeconds();
   displayStatus(now);
   const PanelMessages& messages = subscriptions_.messages();
-  commands_->display(sender_.inControl() || sender_.isTakingControl(), sender_.down(), sender_.sentence(now));
+  const bool may_take = sender_.mayTakeControl(now) && subscriptions_.problem(now).empty();
+  commands_->display(sender_.inControl() || sender_.isTakingControl(), may_take, sender_.down(), sender_.sentence(now));
   stepping_->displayState(static_cast<bool>(messages.state), messages.state && messages.state->paused);
   if (!waited_for_.empty()) stepping_->displayWaiting(waited_for_, now - waits_since_);
   recording_->refresh();
@@ -212,15 +219,31 @@ void ProcedureWidget::displayStatus(double now) {
   status_->setVisible(!sentence.empty());
 }
 
-ProcedurePanel::ProcedurePanel(QWidget* parent) : rviz::Panel(parent), widget_(new ProcedureWidget) {
+ProcedurePanel::ProcedurePanel(QWidget* parent)
+    : rviz::Panel(parent), endoscope_(new QPushButton("Endoscope's picture")), widget_(new ProcedureWidget) {
+  endoscope_->setCheckable(true);
+  endoscope_->setToolTip("Looks through the endoscope instead of at the organ from outside.");
+  connect(endoscope_, &QPushButton::clicked, this, &ProcedurePanel::lookThroughEndoscope);
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
+  column->addWidget(endoscope_);
   column->addWidget(widget_);
   widget_->onNamespaceChanged([this] { Q_EMIT configChanged(); });
 }
 
 void ProcedurePanel::onInitialize() {
   widget_->start();
+  rviz::ViewManager* views = vis_manager_->getViewManager();
+  connect(views, &rviz::ViewManager::currentChanged, this,
+          [this, views] { endoscope_->setChecked(views->getCurrent()->getClassId() == kEndoscopeView); });
+}
+
+/// A saved view, so that it is where the configuration has it, else one of that kind.
+void ProcedurePanel::lookThroughEndoscope(bool on) {
+  rviz::ViewManager& views = *vis_manager_->getViewManager();
+  for (int k = 0; k < views.getNumViews(); ++k)
+    if ((views.getViewAt(k)->getClassId() == kEndoscopeView) == on) return views.setCurrentFrom(views.getViewAt(k));
+  views.setCurrentViewControllerType(on ? kEndoscopeView : "rviz/Orbit");
 }
 
 void ProcedurePanel::load(const rviz::Config& config) {

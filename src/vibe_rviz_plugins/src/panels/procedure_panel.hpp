@@ -12,6 +12,7 @@
 
 class QLabel;
 class QLineEdit;
+class QPushButton;
 class QVBoxLayout;
 
 namespace vibe::rviz_plugins {
@@ -78,7 +79,8 @@ class ProcedureWidget : public QWidget {
   void displayStatus(double now);
 };
 
-/// ProcedureWidget as a panel of rviz. Keeps the namespace in rviz's configuration.
+/// ProcedureWidget as a panel of rviz, below a button for what the main view shows. Keeps the namespace in rviz's
+/// configuration.
 class ProcedurePanel : public rviz::Panel {
   Q_OBJECT
  public:
@@ -89,6 +91,9 @@ class ProcedurePanel : public rviz::Panel {
   void save(rviz::Config config) const override;
 
  private:
+  void lookThroughEndoscope(bool on);
+
+  QPushButton* endoscope_;
   ProcedureWidget* widget_;
 };
 

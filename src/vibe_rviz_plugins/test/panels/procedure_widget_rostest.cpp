@@ -49,6 +49,15 @@ void click(QWidget& widget, const QString& text) {
 }
 
 /// A simulator's services, in threads of their own as there.
+/// Whether control can be taken within some seconds of a simulator in this namespace, which sends states.
+bool mayTakeControl(const QWidget& widget, const std::string& name_space, double seconds) {
+  ros::Publisher publisher = ros::NodeHandle(name_space).advertise<vibe_msgs::ProcedureState>("procedure/state", 1);
+  return waitFor(seconds, [&] {
+    publisher.publish(vibe_msgs::ProcedureState());
+    return widget.findChild<QPushButton*>("control")->isEnabled();
+  });
+}
+
 class Services {
  public:
   explicit Services(const std::string& name_space) : handle_(name_space), spinner_(2, &queue_) {
@@ -187,6 +196,8 @@ TEST_F(ProcedureWidgetTest, ButtonsBecomeMessages) {
   waitFor(0.5, [] { return false; });
   EXPECT_TRUE(heard.empty()) << "nobody took control";
   EXPECT_EQ(subscriber.getNumPublishers(), 0u);
+  EXPECT_FALSE(widget->findChild<QPushButton*>("control")->isEnabled()) << "there is no simulator";
+  ASSERT_TRUE(mayTakeControl(*widget, "/quiet", 20));
   click(*widget, "Take control");
   EXPECT_TRUE(pressed({0, 0, 0, 0, 0, 0}));
   click(*widget, "Helix grab");
@@ -215,6 +226,7 @@ TEST_F(ProcedureWidgetTest, HeldButtonsStayHeld) {
   open("/held");
   waitFor(0.3, [] { return false; });
   EXPECT_EQ(applied.getNumSubscribers(), 0u) << "a simulator that waits for its recorder would take the panel for it";
+  ASSERT_TRUE(mayTakeControl(*widget, "/held", 20));
   click(*widget, "Take control");
   vibe_msgs::StepInput input;
   input.buttons = {1, 1, 0, 0, 0, 1};
@@ -231,9 +243,7 @@ TEST_F(ProcedureWidgetTest, OtherPublisherInControlIsRespected) {
   open("/busy");
   const auto sentence = [&] { return textOf(*widget, "control sentence"); };
   ASSERT_TRUE(waitFor(10, [&] { return contains(sentence(), "/busy/rival has control"); })) << sentence();
-  click(*widget, "Take control");
-  waitFor(0.5, [] { return false; });
-  EXPECT_FALSE(widget->findChild<QPushButton*>("control")->isChecked());
+  EXPECT_FALSE(mayTakeControl(*widget, "/busy", 1));
   EXPECT_FALSE(widget->findChild<QPushButton*>("Needle")->isEnabled());
 }
 

@@ -270,21 +270,24 @@ TEST_F(Widgets, buttonsTellWhatWasPressed) {
   EXPECT_TRUE(pressed.empty()) << "without control";
   box.findChild<QPushButton*>("control")->click();
   EXPECT_EQ(control, std::vector<bool>{true});
-  box.display(true, {}, "You have control.");
+  box.display(true, false, {}, "You have control.");
   for (const operating::Command& command : operating::commands())
     box.findChild<QPushButton*>(QString::fromStdString(command.label))->click();
   EXPECT_EQ(pressed, (std::vector<int>{0, 1, 2, 3, 4, 5}));
   EXPECT_EQ(released, pressed);
   EXPECT_EQ(control.size(), 1u) << "display() is not the user";
+  EXPECT_TRUE(box.findChild<QPushButton*>("control")->isEnabled()) << "it can be given back";
+  box.display(false, false, {}, "Another has control.");
+  EXPECT_FALSE(box.findChild<QPushButton*>("control")->isEnabled());
 }
 
 TEST_F(Widgets, lampsFollowTheTopic) {
   CommandBox box({});
   const auto* button = box.findChild<QPushButton*>("Insufflate");
   const QImage off = button->icon().pixmap(32, 32).toImage();
-  box.display(false, {0, 0, 0, 0, 0, 1}, "");
+  box.display(false, true, {0, 0, 0, 0, 0, 1}, "");
   EXPECT_NE(button->icon().pixmap(32, 32).toImage(), off);
-  box.display(false, {}, "");
+  box.display(false, true, {}, "");
   EXPECT_EQ(button->icon().pixmap(32, 32).toImage(), off);
 }
 
