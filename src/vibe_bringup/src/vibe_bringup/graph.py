@@ -165,7 +165,7 @@ class Graph:
     def start_master(self, seconds=30.0):
         if not self.own_master:
             return self.use_master()
-        core = self.start("roscore", ["roscore", "-p", str(self.port)])
+        core = self.start("roscore", ["roscore", "-p", str(self.port)], patience=seconds)
         deadline = time.monotonic() + seconds
         while not self.has_node("/rosout"):
             if core.status() is not None:

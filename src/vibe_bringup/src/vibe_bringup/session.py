@@ -182,12 +182,13 @@ class Session:
         self.finish()
         self.forced += self.graph.stop_all()
         self.driver.clean_up()
+        troubles = [self.rviz_death] if self.rviz_death else []
         if self.forced:
-            raise GraphError("{} did not stop when asked and was killed; see {}".format(", ".join(self.forced), self.logs))
+            troubles.append("{} did not stop when asked and was killed; see {}".format(", ".join(self.forced), self.logs))
         if self.recorder is not None and (not os.path.exists(self.bag) or glob.glob(self.bag + "*.active")):
-            raise GraphError("the recording {} is not complete; see {}".format(self.bag, self.recorder.log))
-        if self.rviz_death:
-            raise GraphError(self.rviz_death)
+            troubles.append("the recording {} is not complete; see {}".format(self.bag, self.recorder.log))
+        if troubles:
+            raise GraphError("\n".join(troubles))
 
 
 def attempt(action, failures):
