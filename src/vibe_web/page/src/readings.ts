@@ -24,7 +24,7 @@ export function pageSays(): Said {
   const rows = terms.map((term, k): [string, string] => [term.textContent ?? '', values[k]?.textContent ?? '']);
   const [force] = textOf('newton').split(', ');
   const status = textOf('status');
-  return { rows: [['Force', force], ...rows], now: textOf('step'), urgent: [textOf('trouble'), status === 'Connected' ? '' : status].filter(Boolean).join(' ') };
+  return { rows: [['Force', force], ...rows], now: [textOf('hint'), textOf('step')].filter(Boolean).join(' '), urgent: [textOf('trouble'), status === 'Connected' ? '' : status].filter(Boolean).join(' ') };
 }
 
 export class Readings extends Mesh<PlaneGeometry, MeshBasicMaterial> {

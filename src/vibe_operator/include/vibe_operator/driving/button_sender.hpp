@@ -23,7 +23,7 @@ class ButtonSender {
   /// the input of the last step, so that held tissue is not released; this takes one step, or a second if there is
   /// none.
   void setControl(bool on, double now);
-  bool mayTakeControl(double now) const { return watch_.rival(now).empty(); }
+  bool mayTakeControl(double now) const { return watch_.rival(now).empty(); }  ///< no other publisher has it
   bool inControl() const { return in_control_; }                           ///< its buttons are published
   bool isTakingControl() const { return static_cast<bool>(last_input_); }  ///< it waits for the last input
 
