@@ -24,8 +24,8 @@ class ButtonSender {
   /// none.
   void setControl(bool on, double now);
   bool mayTakeControl(double now) const { return watch_.rival(now).empty(); }  ///< no other publisher has it
-  bool inControl() const { return in_control_; }                           ///< its buttons are published
-  bool isTakingControl() const { return static_cast<bool>(last_input_); }  ///< it waits for the last input
+  bool inControl() const { return in_control_; }                               ///< its buttons are published
+  bool isTakingControl() const { return static_cast<bool>(last_input_); }      ///< it waits for the last input
 
   /// Control was given back, and the publisher is about to shut down.
   bool closing() const { return !in_control_ && static_cast<bool>(publisher_); }
