@@ -6,6 +6,7 @@
 #include <random>
 
 #include <vibe_msgs/ReplayCommand.h>
+#include <vibe_msgs/ReplayStatus.h>
 #include <nlohmann/json.hpp>
 
 #include "protocol/byte_writer.hpp"
@@ -36,12 +37,15 @@ json numberOrNull(double value) {
   return std::isfinite(value) ? json(value) : json(nullptr);
 }
 
+using Heard = boost::function<void(const vibe_msgs::ReplayStatus::ConstPtr&)>;
+
 }  // namespace
 
 OperatorDrive::OperatorDrive(ros::NodeHandle& handle)
     : seat_(isButton),
       drive_("web_node"),
       replay_(handle.advertise<vibe_msgs::ReplayCommand>("replay/command", 10)),
+      player_(handle.subscribe("replay/status", 1, Heard([](const vibe_msgs::ReplayStatus::ConstPtr&) {}))),
       viewer_(handle),
       last_(steadyNow()) {}
 
@@ -112,7 +116,8 @@ void OperatorDrive::takeSeat(ClientId client, WebServer& server) {
     return;
   }
   if (!had) ++seats_;
-  if (!started_ && replay_.getNumSubscribers() == 0) drive_.start(""), started_ = true;  // a recording cannot be driven
+  // a recording cannot be driven; a recorder, too, listens to replay/command
+  if (!started_ && player_.getNumPublishers() == 0) drive_.start(""), started_ = true;
   server.send(client, Kind::Grant, textMessage(Kind::Grant, text({{"seat", seats_}, {"grant", seat_.grant()}})));
 }
 

@@ -42,6 +42,7 @@ class OperatorDrive {
   OperatorSeat seat_;
   operating::ManualDrive drive_;
   ros::Publisher replay_;
+  ros::Subscriber player_;  // for whether there is one
   ViewerTopics viewer_;
   std::set<int> down_;  // keys that drive_ knows of
   bool started_ = false;

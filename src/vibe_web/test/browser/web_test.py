@@ -18,6 +18,7 @@ import rospy
 import rostest
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import JointState, Joy
+from vibe_msgs.msg import ReplayCommand
 from vibe_testing.program import Program, find_program
 from vibe_testing.recorder import Recorder
 from vibe_testing.wait import wait_until
@@ -93,6 +94,7 @@ class Web(unittest.TestCase):
         )
         cls.server = Program("vibe_web", "web_node", name="web_node", port=0)
         cls.port = port_of(cls.server)
+        cls.commands = Recorder("/replay/command", ReplayCommand)  # as the recorder of a session listens to all topics
         cls.setpoint = Recorder("/scope/setpoint_js", JointState)
         cls.setpoint.waits_for()
 
