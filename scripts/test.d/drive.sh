@@ -179,16 +179,21 @@ print(sum(header["callerid"].startswith(b"/rviz") for _, _, _, header in topics)
 PYTHON
 }
 
+# closesRviz COMPLAINT DEADLINE: closes the window of the session until that has ended
+closesRviz() {
+  while kill -0 "$session_pid" 2>/dev/null; do
+    [ "$SECONDS" -lt "$2" ] || { kill -INT "$session_pid"; echo "$1"; return 1; }
+    systemTest close_window || true
+    sleep 2
+  done
+}
+
 keyboardDrives() {
   startDisplay && startSession keyboard --drive keyboard || return 1
   local deadline=$((SECONDS + 180)) status=0
   # rviz asks the tool to drive when it has drawn its first pictures
   until grep -qs '^t =   1[0-9]\.' "$scratch/keyboard.txt" || ! kill -0 "$session_pid" 2>/dev/null; do sleep 0.5; done
-  while kill -0 "$session_pid" 2>/dev/null; do
-    [ "$SECONDS" -lt "$deadline" ] || { kill -INT "$session_pid"; echo 'the session goes on without rviz'; return 1; }
-    systemTest close_window || true
-    sleep 2
-  done
+  closesRviz 'the session goes on without rviz' "$deadline" || return 1
   wait "$session_pid" || status=$?
   cat "$scratch/keyboard.txt"
   [ "$status" -eq 0 ] && grep -q '^rviz was closed: the session ends.' "$scratch/keyboard.txt" &&
@@ -215,11 +220,7 @@ staysWithTheResult() {
     [ "$SECONDS" -lt "$deadline" ] && kill -0 "$session_pid" || { cat "$scratch/result.txt"; return 1; }
     sleep 0.2
   done
-  while kill -0 "$session_pid" 2>/dev/null; do
-    [ "$SECONDS" -lt "$deadline" ] || { kill -INT "$session_pid"; echo 'rviz cannot be closed'; return 1; }
-    systemTest close_window || true
-    sleep 2
-  done
+  closesRviz 'rviz cannot be closed' "$deadline" || return 1
   wait "$session_pid" || status=$?
   cat "$scratch/result.txt"
   [ "$status" -eq 0 ] && grep -q '^recorded: ' "$scratch/result.txt"

@@ -43,7 +43,7 @@ double closeness(double distance) {
 }
 
 /// Of the light of a ring of guides around the lens, what comes out of the wall `aside` from the lens, whose face is
-/// `gap` away, as seeping() of lamp.glsl.
+/// `gap` away: seeping() of lamp.glsl without direct light [1/m^2].
 Rgb seeping(double gap, double aside) {
   const double deep = gap + kFreePath, way = std::sqrt(aside * aside + kGuide * kGuide + deep * deep);
   Rgb left = (1 + kAttenuation.array() * (kFreePath / deep * way - kFreePath) / 8).inverse();  // to the 8th: exp()

@@ -80,6 +80,17 @@ class CameraTest(unittest.TestCase):
             else:
                 self.assertGreater(np.median(change), 1.2)
 
+    def test_a_wall_that_is_touched_is_red(self):
+        simulation = vibe.Simulation(self.simulation.model)
+        simulation.run(240, insertion=0.05, insufflate=True)
+        redness = []
+        for insertion in (0.16, 0.18):  # 2 mm before the wall, and pressed on it
+            simulation.run(300, insertion=insertion)
+            picture = simulation.camera(40, 40, 0.8, colour=True)
+            redness.append(picture["colour"][..., 0].mean() / picture["colour"][..., 1].mean())
+        self.assertLess(np.median(picture["depth"]), 0.001)  # else it says nothing
+        self.assertGreater(redness[1], 1.3 * redness[0])  # a lamp alone makes what is near white
+
     def test_colours_are_the_same_on_any_thread_and_marks_are_pale(self):
         colour = self.simulation.camera(40, 30, colour=True)["colour"]
         self.assertEqual((colour.shape, colour.dtype), ((30, 40, 3), np.uint8))

@@ -29,7 +29,7 @@ struct TruthFlow {
 /// the top; NaN or 0 where there is nothing to tell. Frame: z forward, x right, y down.
 class TruthCamera {
  public:
-  /// @param near, far  rigid bodies that are nearer and all that is farther along the optical axis is not seen [m]
+  /// @param near, far  along the optical axis: rigid bodies before, and everything beyond, are not seen [m]
   TruthCamera(const graphics::RoundCamera& round, double near, double far);
 
   const graphics::RoundCamera& round() const { return round_; }

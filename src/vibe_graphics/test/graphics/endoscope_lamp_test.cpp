@@ -129,16 +129,30 @@ TEST_F(EndoscopeLampTest, EveryPixelOfAWallIsAsTheEquationSays) {
   }
 }
 
+/// A smooth organ of mucosa.
+struct Tube {
+  TissueVisual tissue{*test::graphicsScene().getRootSceneNode()};
+  test::TubeOrgan organ;
+
+  Tube() {
+    tissue.setMesh(organ.mesh());
+    TissueFrame frame;
+    frame.revision = 1;
+    frame.positions = organ.places(kWider);
+    tissue.setFrame(frame);
+  }
+
+  /// Of a lens that looks at the middle of the wall from this distance [m].
+  Eigen::Isometry3d before(double distance) const {
+    return Eigen::Isometry3d(Eigen::Translation3d(0, 0, kWider * organ.radius - distance));
+  }
+
+  static constexpr double kWider = 1.15;  // than at rest, where it has folds
+};
+
 TEST_F(EndoscopeLampTest, MucosaIsBrighterOnTheSideOfItsGuide) {
-  TissueVisual tissue(*test::graphicsScene().getRootSceneNode());
-  const test::TubeOrgan organ;
-  tissue.setMesh(organ.mesh());
-  TissueFrame frame;
-  frame.revision = 1;
-  frame.positions = organ.places(1.15);  // smooth
-  tissue.setFrame(frame);
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translate(Eigen::Vector3d(0, 0, 1.15 * organ.radius - 0.012));
+  const Tube tube;
+  const Eigen::Isometry3d pose = tube.before(0.012);
   const auto shareOfLeft = [&](double right_guide, double left_guide) {
     EndoscopeLight light;
     light.guides[0].strength = right_guide, light.guides[1].strength = left_guide;
@@ -170,7 +184,9 @@ Mixture mixtureOf(const Pixels& pixels) {
       if (std::hypot(2 * x + 1 - kSize, 2 * y + 1 - kSize) > 0.96 * kSize) continue;
       const std::uint8_t* pixel = &pixels[static_cast<std::size_t>(3 * (y * kSize + x))];
       const int sum = pixel[0] + pixel[1] + pixel[2];
-      mixture.black += sum<15, mixture.white += sum> 735, ++count;
+      mixture.black += sum < 15 ? 1 : 0;
+      mixture.white += sum > 735 ? 1 : 0;
+      ++count;
       for (int c = 0; c < 3; ++c) mixture.mean[c] += pixel[c];
     }
   mixture.black /= count, mixture.white /= count, mixture.mean /= count;
@@ -178,19 +194,11 @@ Mixture mixtureOf(const Pixels& pixels) {
 }
 
 TEST_F(EndoscopeLampTest, AWallThatIsTouchedIsRedAndNeverBlack) {
-  TissueVisual tissue(*test::graphicsScene().getRootSceneNode());
-  const test::TubeOrgan organ;
-  tissue.setMesh(organ.mesh());
-  TissueFrame frame;
-  frame.revision = 1;
-  frame.positions = organ.places(1.15);
-  tissue.setFrame(frame);
-  const auto seenFrom = [&](double distance) {  // of the middle of the wall; below 0: it is behind the lens
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.translate(Eigen::Vector3d(0, 0, 1.15 * organ.radius - distance));
+  const Tube tube;
+  const auto seenFrom = [&](double distance) {  // below 0: the wall is behind the lens
     OffscreenCamera camera(test::graphicsScene(), {LensKind::Equidistant, 2.44, kSize, kSize}, 1);
     Pixels pixels;
-    camera.take(pose, 1, pixels);
+    camera.take(tube.before(distance), 1, pixels);
     return mixtureOf(pixels);
   };
   const double far = seenFrom(0.030).redness();
