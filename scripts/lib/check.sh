@@ -42,3 +42,14 @@ builtSystemTest() { (set +u && source "$root/devel/setup.bash" && systemTest "$@
 processesWith() {
   grep -lzxF -- "$1" /proc/[0-9]*/environ 2>/dev/null | sed -E 's#/proc/([0-9]+)/.*#\1#' || true
 }
+
+# freePort: a port that is free and stays so: below those that Linux gives to other tests, which run beside this one
+freePort() {
+  /usr/bin/python3 -c 'import random, socket
+while True:
+    port = random.randrange(20000, 32000)
+    with socket.socket() as door:
+        if door.connect_ex(("127.0.0.1", port)) != 0:
+            break
+print(port)'
+}

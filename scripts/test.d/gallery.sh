@@ -41,7 +41,7 @@ options=() # of the simulator, beside these
 recording=session
 withSimulator() {
   local port status=0
-  port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
+  port=$(freePort)
   export ROS_MASTER_URI=http://127.0.0.1:$port ROS_HOSTNAME=127.0.0.1
   rosmaster --core -p "$port" >/dev/null 2>&1 &
   until rosparam set /use_sim_time true >/dev/null 2>&1; do sleep 0.2; done
@@ -95,7 +95,7 @@ tracks() { prints 'frames, error of the slide [0-9]\.[0-9]+ um RMS' "$gallery/ca
 check 'gallery: instruments are tracked' tracks
 emulates() {
   local port
-  port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
+  port=$(freePort)
   export ROS_MASTER_URI=http://127.0.0.1:$port ROS_HOSTNAME=127.0.0.1
   rosmaster --core -p "$port" >/dev/null 2>&1 &
   local master=$! status=0

@@ -203,15 +203,8 @@ if [ ! -f "$root/devel/share/vibe_web/page/index.html" ]; then
   echo 'skipped the page of a session (the build left it out: it needs nodejs and npm)'
   exit 0
 fi
-# a port that is free and stays so: below those that Linux gives to the other tests, which run beside this one
-port=$(/usr/bin/python3 -c 'import random, socket
-while True:
-    port = random.randrange(20000, 32000)
-    with socket.socket() as door:
-        if door.connect_ex(("127.0.0.1", port)) != 0:
-            break
-print(port)')
-# a home for certificates
+# a port, and a home for certificates
+port=$(freePort)
 export ROS_HOME=$scratch/home
 # answers SCHEME TEXT: something on the port does, with a page that contains this
 answers() {
