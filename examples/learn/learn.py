@@ -15,11 +15,13 @@ import hashlib
 import json
 import os
 import sys
+import zipfile
 
 import numpy as np
 
+import vibe
 from vibe import Error
-from vibe.env import BREATHING, HELD_OUT, TRAINING, Environment, Expert, demonstrations
+from vibe.env import BREATHING, HELD_OUT, TRAINING, Environment, Expert, demonstrations, expert
 
 INPUTS = ("to_goal", "wrench")
 STEP_PERIOD = 1 / 60  # [s], of the tables in docs/python.md; with the default, 1/20, episodes are computed twice as fast
@@ -55,8 +57,11 @@ class Cloned:
     """Two hidden layers of 64 tanh between scaled inputs and the action."""
 
     def __init__(self, file):
-        with np.load(file) as stored:
-            self.parts = [stored[f"arr_{k}"] for k in range(len(stored.files))]
+        try:
+            with np.load(file) as stored:
+                self.parts = [stored[f"arr_{k}"] for k in range(len(stored.files))]
+        except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+            raise Error(f"{file} cannot be read as a policy ({error}); name a file of clone or ppo.py.") from None
 
     def reset(self, _):
         pass
@@ -137,10 +142,39 @@ def clone(options):
 
 def policy_of(name):
     """What a worker needs of a policy, and the words by which its episodes are kept."""
-    if name in ("random", "expert"):
+    if name == "random":
         return name, name
-    with open(name, "rb") as file:
-        return Cloned(name), hashlib.sha1(file.read()).hexdigest()
+    file = expert.__file__ if name == "expert" else name
+    policy = name if name == "expert" else Cloned(name)
+    with open(file, "rb") as bytes_of:
+        return policy, f"{name if name == 'expert' else 'file'} {hashlib.sha1(bytes_of.read()).hexdigest()}"
+
+
+def conditions(options):
+    """What besides the policy decides an episode, in words; the hash is that of some actions, so that episodes of another
+    version of the simulator are not taken for those of this one."""
+    environment = environment_of(options.task, HELD_OUT[:1], breathing=options.breathing)
+    environment.reset(seed=0)
+    for _ in range(3):
+        environment.step(np.full(environment.action_space.shape, 0.5, np.float32))
+    task = environment.task
+    return (f"{options.task}, {options.breathing or 'still'}, {task.particles} particles, steps of {task.step_period:.6g} s, "
+            f"vibe {vibe.__version__} {environment.simulation.hash():016x}")
+
+
+def kept_episodes(file):
+    """Rows by what they are of; a line that was cut while it was written is left out."""
+    known = {}
+    if not os.path.exists(file):
+        return known
+    with open(file, encoding="utf-8") as lines:
+        for line in lines:
+            try:
+                row = json.loads(line)
+                known[row["policy"], row.get("conditions"), row["seed"]] = row
+            except (ValueError, KeyError, TypeError):
+                print(f"{file}: a line that is no episode is left out: {line[:40]!r}", file=sys.stderr)
+    return known
 
 
 def episode(policy, task, breathing, seed):
@@ -176,25 +210,27 @@ def on_workers(address, policy, task, breathing, seeds):
 
 
 def evaluate(options):
-    known = {}
-    if os.path.exists(options.episodes):
-        with open(options.episodes) as file:
-            known = {(row["policy"], row["seed"]): row for row in map(json.loads, file)}
+    policies = [(name, *policy_of(name)) for name in options.policies]
+    known = kept_episodes(options.episodes)
+    with open(options.episodes, "a+", encoding="utf-8") as file:  # before anything is computed
+        file.seek(max(0, file.tell() - 1))
+        if file.read() not in ("", "\n"):  # a line that was cut
+            file.write("\n")
+    under = conditions(options)
+    print(f"{under}; kept in {options.episodes}", file=sys.stderr)
     print("| policy | success | 95 % | time [s] | greatest force [N], median |\n|---|---|---|---|---|")
-    for name in options.policies:
-        policy, key = policy_of(name)
-        key += (f" {options.task}" if options.task != "Reach" else "") + (f" {options.breathing}" if options.breathing else "")
+    for name, policy, key in policies:
         seeds = range(options.first, options.first + options.seeds)
-        missing = [seed for seed in seeds if (key, seed) not in known]
+        missing = [seed for seed in seeds if (key, under, seed) not in known]
         found = on_workers(options.scheduler, policy, options.task, options.breathing, missing) if options.scheduler \
             else ((seed, episode(policy, options.task, options.breathing, seed)) for seed in missing)
         for done, (seed, outcome) in enumerate(found):
-            known[key, seed] = {"policy": key, "seed": seed, **outcome}
-            with open(options.episodes, "a") as file:
-                file.write(json.dumps(known[key, seed]) + "\n")
+            row = known[key, under, seed] = {"policy": key, "conditions": under, "seed": seed, **outcome}
+            with open(options.episodes, "a", encoding="utf-8") as file:
+                file.write(json.dumps(row) + "\n")
             show(f"{name}: {done + 1} of {len(missing)} episodes")
         show(f"{'':60}\r")
-        print(table_row(os.path.basename(name), [known[key, seed] for seed in seeds]), flush=True)
+        print(table_row(os.path.basename(name), [known[key, under, seed] for seed in seeds]), flush=True)
 
 
 def table_row(name, rows):
@@ -207,22 +243,29 @@ def table_row(name, rows):
     return f"| {name} | {100 * share:.0f} % | {100 * low:.0f} to {100 * high:.0f} % | {time:.1f} | {force:.1f} |"
 
 
+def positive(text):
+    number = int(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"{text} is below 1")
+    return number
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", required=True)
     one = commands.add_parser("demonstrate", help="writes the expert's episodes")
     one.add_argument("file")
-    one.add_argument("--episodes", type=int, default=200)
+    one.add_argument("--episodes", type=positive, default=200)
     one.add_argument("--seed", type=int, default=10000, help="of the first episode")
     one.set_defaults(run=demonstrate)
     one = commands.add_parser("clone", help="trains a policy on demonstrations")
     one.add_argument("file")
     one.add_argument("policy")
-    one.add_argument("--epochs", type=int, default=60)
+    one.add_argument("--epochs", type=positive, default=60)
     one.set_defaults(run=clone)
     one = commands.add_parser("evaluate", help="prints the table")
     one.add_argument("policies", nargs="+", metavar="policy", help="random, expert, or a file of clone or ppo.py")
-    one.add_argument("--seeds", type=int, default=100)
+    one.add_argument("--seeds", type=positive, default=100)
     one.add_argument("--first", type=int, default=0)
     one.add_argument("--breathing", choices=tuple(BREATHING), help="of the stomachs (default: still)")
     one.add_argument("--scheduler", metavar="HOST:PORT", help="let the workers of this Dask scheduler perform the episodes")
@@ -230,11 +273,17 @@ def main():
     one.set_defaults(run=evaluate)
     for one in (commands.choices["demonstrate"], commands.choices["evaluate"]):
         one.add_argument("--task", default="Reach", help="of vibe.env, or MODULE:NAME of your own (default: %(default)s)")
-    options = parser.parse_args()
+    run(parser.parse_args())
+
+
+def run(options):
+    """The command that was asked for; what is wrong ends it with a sentence."""
     try:
         options.run(options)
-    except Error as error:
+    except (Error, OSError) as error:
         sys.exit(str(error))
+    except KeyboardInterrupt:
+        sys.exit("\nStopped; the same command goes on.")
 
 
 if __name__ == "__main__":

@@ -211,8 +211,7 @@ def main():
     one.add_argument("policy")
     one.add_argument("picture", help="file to write, .png")
     one.set_defaults(run=curve)
-    options = parser.parse_args()
-    options.run(options)
+    learn.run(parser.parse_args())
 
 
 if __name__ == "__main__":

@@ -52,19 +52,37 @@ class Evaluation(unittest.TestCase):
             file = os.path.join(folder, "episodes.jsonl")
             with open(file, "w") as out:
                 for seed in range(3):
-                    out.write(json.dumps({"policy": "random", "seed": seed, "is_success": False, "time": 10.0,
-                                          "max_force": 1.0}) + "\n")
-            run = learn.episode
-            learn.episode = None  # cannot be called
-            try:
-                options = ["learn.py", "evaluate", "random", "--seeds", "3", "--episodes", file]
-                sys.argv, before = options, sys.argv
-                learn.main()
-                with self.assertRaises(TypeError):
-                    sys.argv = options[:4] + ["4"] + options[5:]
+                    out.write(json.dumps({"policy": "random", "conditions": "Reach, as here", "seed": seed, "is_success": False,
+                                          "time": 10.0, "max_force": 1.0}) + "\n")
+                out.write('{"policy": "random", "cond')  # of a run that was killed
+            options = ["learn.py", "evaluate", "random", "--episodes", file, "--seeds"]
+            with mock.patch.object(learn, "episode", None), mock.patch.object(learn, "conditions") as conditions:
+                for words, seeds in (("Reach, as here", "3"), ("Reach, as here", "4"), ("Reach, of another version", "3")):
+                    conditions.return_value = words
+                    with mock.patch.object(sys, "argv", [*options, seeds]):
+                        if words == "Reach, as here" and seeds == "3":
+                            learn.main()
+                            continue
+                        with self.assertRaises(TypeError):  # an episode, which cannot be called
+                            learn.main()
+
+    def test_the_version_of_the_simulator_is_part_of_what_is_kept(self):
+        options = mock.Mock(task="Reach", breathing=None)
+        with mock.patch.object(learn, "HELD_OUT", [("sthenic", 1.0)]):
+            first = learn.conditions(options)
+            self.assertEqual(first, learn.conditions(options))
+            with mock.patch.object(learn, "STEP_PERIOD", 1 / 20):
+                self.assertNotEqual(first.rsplit(" ", 1)[1], learn.conditions(options).rsplit(" ", 1)[1])
+
+    def test_what_cannot_be_read_is_said(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "policy.npz")
+            with open(file, "w", encoding="utf-8") as out:
+                out.write("no policy")
+            for name in (file, os.path.join(folder, "none.npz")):
+                with self.assertRaisesRegex(SystemExit, "cannot be read as a policy"), \
+                        mock.patch.object(sys, "argv", ["learn.py", "evaluate", name, "--episodes", os.path.join(folder, "e")]):
                     learn.main()
-            finally:
-                learn.episode, sys.argv = run, before
 
     def test_workers_find_what_is_found_here(self):
         try:

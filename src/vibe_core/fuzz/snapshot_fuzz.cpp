@@ -22,7 +22,7 @@ using namespace vibe;
 using vibe_firmware::require;
 
 constexpr int kParticles = 4;
-constexpr std::size_t kHeader = 24, kSum = 8;  // magic, version, two fingerprints; then the body; then the checksum
+constexpr std::size_t kHeader = 32, kSum = 8;  // magic, version, three fingerprints; then the body; then the checksum
 
 Model makeModel() {
   Model model;

@@ -47,28 +47,25 @@ def overhead():
     return 1e3 * (best["python"] - best["c++"])
 
 
-def reach(scale, breathing=None, step_period=None, episodes=4, actions=40, repeats=4):
-    """Random actions of some of the greatest speed: actions per second of CPU time after which the tool touches nothing,
-    and the same of those after which it touches the wall. Every episode is repeated, and of each action the least time
-    counts, because other work on the machine makes some longer."""
+def reach(scale, breathing=None, step_period=None, episodes=8, repeats=3):
+    """Whole episodes of random actions of some of the greatest speed: actions per second of CPU time of all threads, the
+    median of some repeats, and the share of actions after which the tool touches the wall."""
     environment = Environment("Reach", organs=ORGAN, breathing=breathing, step_period=step_period)
-    spent = {False: [], True: []}
-    for seed in range(episodes):
-        times, touches = np.full(actions, np.inf), np.zeros(actions, bool)
-        for _ in range(repeats):
+    speeds, touches = [], []
+    for _ in range(repeats):
+        spent = 0.0
+        for seed in range(episodes):
             environment.reset(seed=seed)
-            random = np.random.default_rng(seed)
-            for k in range(actions):
+            random, over = np.random.default_rng(seed), False
+            while not over:
                 action = scale * random.uniform(-1, 1, 4)
                 begin = time.process_time()
-                ended = environment.step(action)[2]
-                times[k] = min(times[k], time.process_time() - begin)
-                touches[k] = len(environment.simulation.contacts()["link"]) > 0
-                if ended:
-                    break
-        for touching, row in spent.items():
-            row += list(times[(touches == touching) & np.isfinite(times)])
-    return "; ".join(f"{1 / np.mean(row):.0f}" if row else "-" for row in spent.values())
+                _, _, terminated, truncated, _ = environment.step(action)
+                spent += time.process_time() - begin
+                over = terminated or truncated
+                touches.append(len(environment.simulation.contacts()["link"]) > 0)
+        speeds.append(len(touches) / (len(speeds) + 1) / spent)
+    return f"{np.median(speeds):.0f}; {100 * np.mean(touches):.0f} %"
 
 
 def forces(scale, step_period, episodes=4, actions=40):
@@ -98,30 +95,30 @@ def step_periods():
                   f"{1e3 * np.linalg.norm(moved - wall, axis=2).max():.2f} mm | {reach(scale, None, 1 / period)} |", flush=True)
 
 
-def side_by_side(threads, cores, slots=16, actions=25):
-    """Actions per second of wall time, and CPU time per action [ms], of episodes side by side in a process that has these
-    cores. The factors are made in threads of their own, beside those that step."""
+def side_by_side(threads, cores, slots=16, actions=200):
+    """Actions per second of wall time, and CPU time of all threads per action [ms], of whole episodes side by side at full
+    speed, in a process that has these cores. The factors are made in threads of their own, beside those that step."""
     os.sched_setaffinity(0, cores)
     environments = VectorEnvironment("Reach", slots, threads=threads, organs=ORGAN)
     environments.reset(seed=1)
     random = np.random.default_rng(1)
     begin, spent = time.monotonic(), time.process_time()
     for _ in range(actions):
-        environments.step(0.3 * random.uniform(-1, 1, (slots, 4)))
+        environments.step(random.uniform(-1, 1, (slots, 4)))
     wall, spent = time.monotonic() - begin, time.process_time() - spent
     return slots * actions / wall, 1e3 * spent / (slots * actions)
 
 
 def scaling(rounds=3):
-    """side_by_side() for one thread on one core, one on two, two on two: of each the fastest of some rounds in turn."""
+    """side_by_side() for one thread on one core, one on two, two on two: of each the median of some rounds in turn."""
     two = sorted(os.sched_getaffinity(0))[:2]
     asked = {"one thread, one core": (1, two[:1]), "one thread, two cores": (1, two), "two threads, two cores": (2, two)}
-    best = {}
+    found = {name: [] for name in asked}
     for _ in range(rounds):
         for name, (threads, cores) in asked.items():
             with concurrent.futures.ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as process:
-                best[name] = max(best.get(name, (0,)), process.submit(side_by_side, threads, cores).result())
-    return best
+                found[name].append(process.submit(side_by_side, threads, cores).result())
+    return {name: np.median(rows, axis=0) for name, rows in found.items()}
 
 
 def memory(particles, impedance):
@@ -199,9 +196,9 @@ def memories():
 
 
 def speeds():
-    print("| time per step | force differs: root mean square, greatest | wall, greatest | actions per second: free; in contact |")
+    print("| time per step | force differs: root mean square, greatest | wall, greatest | actions per CPU second; in contact |")
     step_periods()
-    print(f"With moderate breathing, slow motions, free; in contact: {reach(0.2, 'moderate')}")
+    print(f"With moderate breathing, slow motions: {reach(0.2, 'moderate')}")
 
 
 PARTS = {"first": first, "pictures": pictures, "threads": threads, "memories": memories, "speeds": speeds,

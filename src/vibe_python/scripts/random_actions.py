@@ -95,7 +95,9 @@ def one_round(number, particles, actions):
     for k, (task, breathing) in enumerate(asked):
         settings = {"particles": particles, "organs": ORGANS, "breathing": breathing,
                     "action": "tip" if TASKS[task].moves_tip_only() and number % 2 else "joints",
-                    "camera": (16, 12, 1.7) if (number + k) % 3 == 0 else None, "pictures": ["depth", "normal", "colour"]}
+                    "camera": (16, 12, 1.7) if (number + k) % 3 == 0 else None}
+        if settings["camera"]:
+            settings["pictures"] = ["depth", "normal", "colour"]
         if (number + k) % 2:
             count, wrong = alone(task, random, actions, **settings)
         else:

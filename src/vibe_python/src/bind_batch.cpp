@@ -12,6 +12,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "tool.hpp"
+#include "unlocked.hpp"
 
 namespace vibe::python {
 
@@ -55,11 +56,32 @@ StepInput inputAt(const StepInput& from, const StepInput& to, double part) {
   return input;
 }
 
-void stepOne(Session& session, const StepInput& to, int steps) {
-  StepInput from = to;
-  from.joints = session.simulation.state().joints;
-  session.events.clear();
-  for (int k = 1; k <= steps; ++k) session.step(k == steps ? to : inputAt(from, to, static_cast<double>(k) / steps));
+/// The way of one simulation, of which some steps at a time are taken.
+struct Way {
+  Session* session;
+  StepInput from, to;
+
+  void take(int first, int last, int steps) const {
+    for (int k = first; k <= last; ++k)
+      session->step(k == steps ? to : inputAt(from, to, static_cast<double>(k) / steps));
+  }
+};
+
+std::vector<Way> waysOf(const std::vector<std::unique_ptr<Use>>& uses, const py::array_t<double>& joints,
+                        const py::array_t<double>& pressed) {
+  std::vector<Way> ways;
+  for (const auto& use : uses) {
+    const auto row = static_cast<py::ssize_t>(ways.size());
+    StepInput to;
+    std::copy_n(joints.data() + row * kJointCount, kJointCount, to.joints.begin());
+    for (int k = 0; k < kButtonCount; ++k)
+      to.buttons[static_cast<std::size_t>(k)] = pressed.data()[row * kButtonCount + k] != 0 ? 1 : 0;
+    StepInput from = to;
+    from.joints = use->state().joints;
+    (*use)->events.clear();
+    ways.push_back({&**use, from, to});
+  }
+  return ways;
 }
 
 std::vector<std::vector<Event>> stepAll(const Handles& handles, const py::handle& joints, const py::handle& buttons,
@@ -70,15 +92,16 @@ std::vector<std::vector<Event>> stepAll(const Handles& handles, const py::handle
   const auto wanted = numbers(joints, "joints", {count, kJointCount});
   const auto pressed = numbers(buttons, "buttons", {count, kButtonCount});
   const auto uses = useAll(handles);
-  {
-    const py::gil_scoped_release released;
-    inThreads(static_cast<int>(count), threads, [&](int i) {
-      StepInput to;
-      for (int k = 0; k < kJointCount; ++k) to.joints[static_cast<std::size_t>(k)] = wanted.data()[i * kJointCount + k];
-      for (int k = 0; k < kButtonCount; ++k)
-        to.buttons[static_cast<std::size_t>(k)] = pressed.data()[i * kButtonCount + k] != 0 ? 1 : 0;
-      stepOne(**uses[static_cast<std::size_t>(i)], to, steps);
-    });
+  const std::vector<Way> ways = waysOf(uses, wanted, pressed);
+  for (int done = 0; done < steps;) {
+    const int last = std::min(steps, done + kStepsBetweenLooks);
+    {
+      const Unlocked others;
+      inThreads(static_cast<int>(count), threads,
+                [&](int i) { ways[static_cast<std::size_t>(i)].take(done + 1, last, steps); });
+    }
+    checkSignals();
+    done = last;
   }
   std::vector<std::vector<Event>> events;
   for (const auto& use : uses) events.push_back((*use)->events);
@@ -145,7 +168,7 @@ void bindBatch(py::module_& module) {
              py::arg("threads"),
              "Some steps of many simulations, each in one of the threads: joints (n, 7) are reached evenly over the "
              "steps, buttons (n, 6) are pressed. Returns a list of events per simulation. The results are those of one "
-             "after the other.");
+             "after the other. Ctrl+C ends it within some steps.");
   module.def("observe_all", &observeAll, py::arg("simulations"),
              "A dictionary of new arrays: joints (n, 7), tip_pose (n, 4, 4), wrench (n, 6), time (n,), contacts (n,) "
              "int32, grips (n,) bool; as the attributes of Simulation.");

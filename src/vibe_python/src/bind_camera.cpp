@@ -5,6 +5,7 @@
 #include "ray_caster.hpp"
 #include "shading.hpp"
 #include "tool.hpp"
+#include "unlocked.hpp"
 
 namespace vibe::python {
 
@@ -56,7 +57,7 @@ py::dict camera(SimulationHandle& handle, int width, int height, double field_of
   std::uint8_t* const labels = label.mutable_data();
   std::uint8_t* const colours = colour ? shaded.mutable_data() : nullptr;
   {
-    const py::gil_scoped_release released;
+    const Unlocked others;
     look(use, field_of_view, image, labels, colours);
   }
   py::dict found;

@@ -9,6 +9,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "model_handle.hpp"
+#include "unlocked.hpp"
 #include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
@@ -17,18 +18,25 @@ namespace vibe::python {
 
 namespace {
 
-// The overrides as a scene that begins with another one; JSON is YAML, with numbers in SI.
+// The overrides as a scene that begins with another one; JSON is YAML, with numbers in SI. Their place is the working
+// directory, so that relative paths lead from there, but sentences name the function.
 Scene sceneWith(const std::string& address, const std::string& overrides) {
   const std::string file = resolveAddress(address);
   if (overrides.empty()) return loadScene(file);
   loadScene(file);  // what is wrong in the file itself has its own place
   const std::string base = std::filesystem::absolute(file).string();
   const auto escaped = py::cast<std::string>(py::module_::import("json").attr("dumps")(base));
-  return parseScene("{\"base\": " + escaped + ", " + overrides.substr(1), "overrides of " + file);
+  const std::string place = (std::filesystem::current_path() / "load()").string();
+  try {
+    return parseScene("{\"base\": " + escaped + ", " + overrides.substr(1), place);
+  } catch (const Error& error) {
+    const std::string text = error.what(), before = place + ":1: ";
+    throw Error(text.rfind(before, 0) == 0 ? "load(): " + text.substr(before.size()) : text);
+  }
 }
 
 ModelHandle build(const std::string& address, const std::string& overrides, const std::string& mesh) {
-  const py::gil_scoped_release released;
+  const Unlocked others;
   Scene scene = [&] {
     const py::gil_scoped_acquire acquired;
     return sceneWith(address, overrides);
@@ -36,7 +44,10 @@ ModelHandle build(const std::string& address, const std::string& overrides, cons
   ModelHandle handle;
   if (!mesh.empty()) handle.mesh_report = useMesh(scene, std::filesystem::absolute(resolveAddress(mesh)));
   const std::string urdf = scene.scope ? readTextFile(resolveAddress(scene.scope->urdf), "URDF") : "";
-  handle.model = buildModel(scene, urdf);
+  handle.model = buildModel(scene, urdf, [](const std::string&, double) {
+    const py::gil_scoped_acquire acquired;
+    checkSignals();
+  });
   return handle;
 }
 

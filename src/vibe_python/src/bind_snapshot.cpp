@@ -12,9 +12,10 @@ std::string SnapshotHandle::encoded() const {
   return model ? encodeSnapshot(*model, *state) : bytes;
 }
 
-std::shared_ptr<const State> SnapshotHandle::stateFor(const std::shared_ptr<const Model>& wanted) const {
+std::shared_ptr<const State> SnapshotHandle::stateFor(const std::shared_ptr<const Model>& wanted,
+                                                      OtherScene other) const {
   if (model == wanted) return state;
-  return std::make_shared<const State>(decodeSnapshot(*wanted, encoded(), "in memory"));
+  return std::make_shared<const State>(decodeSnapshot(*wanted, encoded(), "in memory", other));
 }
 
 void bindSnapshot(py::module_& module) {
@@ -27,6 +28,7 @@ void bindSnapshot(py::module_& module) {
       .def(
           "to_bytes", [](const SnapshotHandle& s) { return py::bytes(s.encoded()); },
           "The bytes, as Simulation.save() writes them to a file.")
+      .def("__deepcopy__", [](const py::object& self, const py::dict&) { return self; })
       .def(py::pickle([](const SnapshotHandle& s) { return py::bytes(s.encoded()); }, fromBytes));
 }
 

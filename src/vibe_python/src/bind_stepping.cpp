@@ -11,13 +11,12 @@
 #include "model_handle.hpp"
 #include "snapshot_handle.hpp"
 #include "trainee_handle.hpp"
+#include "unlocked.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 
 namespace vibe::python {
 
 namespace {
-
-constexpr std::int64_t kChunk = 32;  // steps between two looks whether the user interrupts
 
 std::shared_ptr<SimulationHandle> make(const ModelHandle& model, std::optional<std::uint64_t> seed, int threads,
                                        bool metrics, bool impedance) {
@@ -27,7 +26,7 @@ std::shared_ptr<SimulationHandle> make(const ModelHandle& model, std::optional<s
   settings.threads = threads;
   settings.metrics = metrics;
   settings.impedance = impedance;
-  const py::gil_scoped_release released;
+  const Unlocked others;
   return std::make_shared<SimulationHandle>(model.model, settings);
 }
 
@@ -36,10 +35,10 @@ template <class Step>
 void repeat(const Step& step) {
   for (bool goes_on = true; goes_on;) {
     {
-      const py::gil_scoped_release released;
-      for (std::int64_t k = 0; k < kChunk && goes_on; ++k) goes_on = step();
+      const Unlocked others;
+      for (std::int64_t k = 0; k < kStepsBetweenLooks && goes_on; ++k) goes_on = step();
     }
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    checkSignals();
   }
 }
 
@@ -48,7 +47,7 @@ std::vector<Event> step(SimulationHandle& handle, const py::kwargs& keywords) {
   const StepInput input = changedInput(use->simulation.input(), keywords, use.model().particle_count);
   use->events.clear();
   {
-    const py::gil_scoped_release released;
+    const Unlocked others;
     use->step(input);
   }
   return use->events;
@@ -86,15 +85,19 @@ std::vector<Event> follow(SimulationHandle& handle, TraineeHandle& trainee, std:
 
 SnapshotHandle snapshot(SimulationHandle& handle, bool prepared) {
   const Use use(handle);
-  const py::gil_scoped_release released;
+  const Unlocked others;
   return {use->simulation.sharedModel(), std::make_shared<const State>(use.state()), "",
           prepared ? use->simulation.prepare() : nullptr};
 }
 
-void restore(SimulationHandle& handle, const SnapshotHandle& snapshot) {
+OtherScene takenIf(bool other_model) {
+  return other_model ? OtherScene::Taken : OtherScene::Refused;
+}
+
+void restore(SimulationHandle& handle, const SnapshotHandle& snapshot, bool other_model) {
   const Use use(handle);
-  const py::gil_scoped_release released;
-  use->replaceState(*snapshot.stateFor(use->simulation.sharedModel()));
+  const Unlocked others;
+  use->replaceState(*snapshot.stateFor(use->simulation.sharedModel(), takenIf(other_model)));
 }
 
 void reset(SimulationHandle& handle, std::optional<std::uint64_t> seed) {
@@ -126,8 +129,7 @@ void bindLife(SimulationClass& simulation) {
             const Use use(s);
             use->simulation.warmUp();
           },
-          py::call_guard<py::gil_scoped_release>(),
-          "Takes the time that the first step needs besides; changes no result.");
+          py::call_guard<Unlocked>(), "Takes the time that the first step needs besides; changes no result.");
 }
 
 void bindSteps(SimulationClass& simulation) {
@@ -162,26 +164,29 @@ void bindSnapshots(SimulationClass& simulation) {
           "Its model.")
       .def(
           "hash", [](SimulationHandle& s) { return Use(s)->simulation.hash(); },
-          "64 bits of all of the state: equal hashes mean equal states, and equal futures.")
+          "64 bits of all of the state: equal hashes mean equal states, and, with one model, equal futures.")
       .def("snapshot", &snapshot, py::arg("prepared") = false,
            "The present state, in memory. prepared=True, for states that many simulations go back to: keeps what the "
            "first step after restore() takes long to make, too (a megabyte with 1,000 particles), with the same "
            "results.")
-      .def("restore", &restore, py::arg("snapshot"),
-           "Back to a state; views show it. The input then holds the joints where they are, and no button but "
-           "helix_grab and "
-           "cinch, if they were pressed. Raises vibe.Error if it is of another model.")
+      .def(
+          "restore", &restore, py::arg("snapshot"), py::arg("other_model") = false,
+          "Back to a state; views show it. The input then holds the joints where they are, and no button but "
+          "helix_grab and "
+          "cinch, if they were pressed. Raises vibe.Error if it is of another model; other_model=True takes one of the "
+          "same organ, step and parts whose scene has other values, such as of the tissue.")
       .def("reset", &reset, py::arg("seed") = py::none(), "Back to the initial state.")
       .def(
           "save", [](SimulationHandle& s, const std::string& file) { Use(s)->simulation.saveSnapshot(file); },
           py::arg("file"), "Writes a snapshot.")
       .def(
           "load",
-          [](SimulationHandle& s, const std::string& file) {
+          [](SimulationHandle& s, const std::string& file, bool other_model) {
             const Use use(s);
-            use->replaceState(loadSnapshot(use.model(), file));
+            use->replaceState(loadSnapshot(use.model(), file, takenIf(other_model)));
           },
-          py::arg("file"), "Back to the state of a snapshot that save() or a node has written.");
+          py::arg("file"), py::arg("other_model") = false,
+          "Back to the state of a snapshot that save() or a node has written; see restore().");
 }
 
 }  // namespace

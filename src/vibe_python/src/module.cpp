@@ -3,6 +3,7 @@
 #include <string>
 
 #include "bindings.hpp"
+#include "unlocked.hpp"
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_core/program/error.hpp"
 
@@ -49,6 +50,7 @@ PYBIND11_MODULE(_core, module) {
   bindAnatomy(module);
   bindTechnique(module);
   bindBatch(module);
+  stopThreadsAtExit();
   explainRefusals(module);
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "vibe_core/model/model.hpp"
+#include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe::python {
@@ -17,7 +18,7 @@ struct SnapshotHandle {
   std::string encoded() const;
   /// The state for a model.
   /// @throws Error if it is of another one
-  std::shared_ptr<const State> stateFor(const std::shared_ptr<const Model>& wanted) const;
+  std::shared_ptr<const State> stateFor(const std::shared_ptr<const Model>& wanted, OtherScene other) const;
 };
 
 }  // namespace vibe::python

@@ -12,6 +12,7 @@ import numpy as np
 import vibe
 import vibe.env
 from vibe.env import BREATHING, TASKS, Environment, Expert, Reach, VectorEnvironment, api, contract, demonstrations
+from vibe.env.episodes import tip_motion
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../scripts"))
 import random_actions  # noqa: E402
@@ -43,6 +44,41 @@ processes = gymnasium.vector.AsyncVectorEnv([lambda: Environment(**small)] * 2, 
 (seen, _), (expected, _) = processes.reset(seed=1), VectorEnvironment("Reach", 2, threads=1, **small).reset(seed=1)
 print("processes" if all(np.array_equal(seen[name], expected[name]) for name in expected) else "differ")
 processes.close()
+
+if api.AutoresetMode is None:  # before 1.1
+    modes = {"next_step": {}}
+else:
+    modes = {name: {"autoreset_mode": api.AutoresetMode[name.upper()]} for name in ("next_step", "same_step", "disabled")}
+
+class Short(Reach):
+    seconds = 0.15
+    def measures(self, slot):
+        return {**super().measures(slot), "place": np.array(self.place[slot])}
+
+def alike(a, b):
+    if isinstance(a, dict):
+        return set(a) == set(b) and all(alike(a[name], b[name]) for name in a)
+    if isinstance(a, tuple) or getattr(a, "dtype", None) == object:
+        return type(a) is type(b) and all(alike(x, y) for x, y in zip(a, b))
+    return np.array_equal(a, b) and getattr(a, "dtype", None) == getattr(b, "dtype", None)
+
+for mode, setting in modes.items():  # as Gymnasium has several environments side by side
+    theirs = gymnasium.vector.SyncVectorEnv([lambda: Environment(Short, **small)] * 2, **setting)
+    ours = VectorEnvironment(Short, num_envs=2, threads=1, autoreset=mode, **small)
+    first = theirs.reset(seed=3)
+    same = alike(first, ours.reset(seed=3))
+    for k in range(7):
+        actions = np.random.default_rng(k).uniform(-1, 1, (2, 4)).astype(np.float32)
+        one, other = theirs.step(actions), ours.step(actions)
+        same = same and alike(one, other)
+        if mode == "disabled" and (other[2] | other[3]).any():
+            options = {"reset_mask": other[2] | other[3]}
+            same = same and alike(theirs.reset(options=dict(options)), ours.reset(options=options))
+    if not same or alike(one[0], first[0]):
+        print("unlike in", mode)
+    ours.close()
+made = gymnasium.make_vec("vibe/Reach-v0", num_envs=2, threads=1, **small)
+print(type(made).__name__, made.closed, gymnasium.spec("vibe/Bite-v0").max_episode_steps)
 """
 SMALL = contract.SETTINGS
 PAGE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../docs/python.md")
@@ -187,6 +223,44 @@ class EnvironmentTest(unittest.TestCase):
             self.assertEqual(use(environment.simulation, random), [], use.__name__)
         self.assertEqual(rough_use.snapshots(Forgetful(), random), ["snapshots have different futures"])
 
+    def test_what_a_reset_chooses_is_not_drawn(self):
+        environment = Environment("Reach", breathing="slight", render_mode="rgb_array", max_episode_steps=3, **SMALL)
+        first = environment.reset(seed=3)[0]
+        options = {"organ": ("j", 1.0), "start": 2, "goal": (0.5, 0.1), "phase": 3}
+        seen, info = environment.reset(seed=3, options=options)
+        self.assertEqual((info["organ"], environment.task.place[0]), ("j 1, slight breathing", (0.5, 0.1)))
+        self.assertFalse(equal(seen, first))
+        self.assertTrue(equal(seen, environment.reset(seed=4, options=options)[0]))
+        self.assertTrue(equal(first, environment.reset(seed=3)[0]))
+        self.assertEqual([environment.step(np.zeros(4))[3] for _ in range(3)], [False, False, True])
+        self.assertEqual(environment.render().shape, (480, 480, 3))
+        together = VectorEnvironment("Reach", 2, threads=1, breathing="slight", **SMALL)
+        found = together.reset(seed=5, options={**options, "reset_mask": np.array([True, True])})[0]
+        self.assertTrue(equal(row(found, 0), seen) and equal(row(found, 1), seen))
+        with self.assertRaisesRegex(vibe.Error, "'reset_mask' is .*at least one of them True"):
+            together.reset(options={"reset_mask": np.zeros(2, bool)})
+
+    def test_a_child_makes_its_own(self):
+        environment = Environment("Reach", **SMALL)
+        environment.reset(seed=1)
+        environment.close()
+        child = os.fork()
+        if child == 0:
+            own = Environment("Reach", **SMALL)
+            own.reset(seed=1)
+            own.step(np.zeros(4))
+            os._exit(0)
+        self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 0)
+
+    def test_the_tip_moves_as_damped_least_squares(self):
+        random = np.random.default_rng(3)
+        for _ in range(20):
+            jacobian, turn, speed, limits = random.normal(size=(6, 4)), np.eye(4), random.normal(size=3), random.uniform(0.1, 1, 4)
+            turn[:3, :3] = np.linalg.qr(random.normal(size=(3, 3)))[0]
+            scaled = jacobian[:3] * limits
+            wanted = scaled.T @ np.linalg.solve(scaled @ scaled.T + 4e-6 * np.eye(3), turn[:3, :3] @ speed)
+            np.testing.assert_allclose(tip_motion(jacobian, turn, speed, limits), wanted / max(1, abs(wanted).max()), rtol=1e-6, atol=1e-9)
+
     def test_experts_reach(self):
         for mode in ("joints", "tip"):
             environment = Environment("Reach", action=mode, **SMALL)
@@ -227,7 +301,8 @@ class EnvironmentTest(unittest.TestCase):
                 self.assertEqual(found["data"].attrs["total"], sum(d.attrs["num_samples"] for d in found["data"].values()))
 
     def test_refusals(self):
-        environment = Environment("Reach", **SMALL)
+        environment, other = Environment("Reach", **SMALL), Environment("Reach", breathing="slight", **SMALL)
+        other.reset(seed=1)
         still = np.zeros(4)
         for sentence, call in (("call reset", lambda: environment.step(still)),
                                ("no task 'Fly'", lambda: Environment("Fly")),
@@ -235,11 +310,26 @@ class EnvironmentTest(unittest.TestCase):
                                ("'nowhere:Fly' cannot be had", lambda: Environment("nowhere:Fly")),
                                ("vibe.env.tasks has a task 'Reach'", lambda: type("Mine", (Reach,), {"name": "Reach"})),
                                ("'action' is 'force'", lambda: Environment("Reach", action="force")),
-                               ("'organs' is empty", lambda: Environment("Reach", organs=[]))):
+                               ("'organs' is empty", lambda: Environment("Reach", organs=[])),
+                               ("did you mean 'particles'", lambda: Environment("Reach", particle=300)),
+                               ("without a camera", lambda: Environment("Reach", pictures=["colour"])),
+                               ("No episode has begun", lambda: environment.simulation),
+                               ("'options' has no 'gaol'; it may choose", lambda: environment.reset(options={"gaol": 1})),
+                               ("'options' is 7", lambda: environment.reset(options=7)),
+                               ("'start' is 4", lambda: environment.reset(options={"start": 4})),
+                               ("'goal' is", lambda: environment.reset(options={"goal": 0.5})),
+                               ("does not breathe", lambda: environment.reset(options={"phase": 0})),
+                               ("with the settings", lambda: environment.restore(other.snapshot())),
+                               ("give one of snapshot", lambda: environment.restore(7)),
+                               ("without render_mode", other.render),
+                               ("acts in an Environment", lambda: Expert(VectorEnvironment("Reach", 2, **SMALL))),
+                               ("expert has not begun", lambda: Expert(environment).action({})),
+                               ("'rate' of the task", lambda: Environment(type("Mine", (Reach,), {"rate": 0}))),
+                               ("'along' is", lambda: Environment(type("Mine", (Reach,), {"along": (0.6, 0.4)})))):
             with self.assertRaisesRegex(vibe.Error, sentence):
                 call()
         environment.reset(seed=1)
-        for sentence, action in ((r"shape \(1, 3\)", np.zeros(3)), ("not finite", still + np.nan),
+        for sentence, action in ((r"shape \(3,\); give one of the shape \(4,\)", np.zeros(3)), ("not finite", still + np.nan),
                                  ("The action is .*numbers from -1 to 1", still + 1j), ("The action is", ["0"] * 4)):
             with self.assertRaisesRegex(vibe.Error, sentence):
                 environment.step(action)
@@ -263,7 +353,8 @@ class EnvironmentTest(unittest.TestCase):
             checked = subprocess.run([sys.executable, "-B", "-c", CHECK], env={**os.environ, "PYTHONPATH": path},
                                      stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
         self.assertEqual(checked.returncode, 0, checked.stdout)
-        self.assertEqual(checked.stdout.split(), [*TASKS, "refused", "wrapped", "processes"], checked.stdout)
+        self.assertEqual(checked.stdout.split(), [*TASKS, "refused", "wrapped", "processes", "VectorEnvironment", "False", "5400"],
+                         checked.stdout)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ import copy
 import gc
 import os
 import pickle
+import signal
 import subprocess
 import sys
 import tempfile
@@ -158,6 +159,21 @@ class SnapshotTest(Worlds):
                 other.restore(wrong)
         self.assertEqual(other.hash(), hashed)
 
+    def test_of_a_scene_with_other_values_is_taken_on_request(self):
+        simulation = self.pressed()
+        snapshot = simulation.snapshot()
+        for section, values in (("tissue", {"young_modulus": 5e4}), ("gas", {"regulated_pressure": "8 mmHg"}), ("gravity", None),
+                                ("breathing", {}), ("scope", {"friction": 0.2})):
+            other = vibe.Simulation(vibe.load(geometry={"particles": 300}, **{section: values}))
+            for wrong in (snapshot, pickle.loads(pickle.dumps(snapshot))):
+                with self.assertRaisesRegex(vibe.Error, "same organ but of a scene with other values"):
+                    other.restore(wrong)
+                other.restore(wrong, other_model=True)
+                self.assertEqual(other.hash(), simulation.hash())
+            other.step()
+        same = vibe.Simulation(vibe.load(geometry={"particles": 300}, seed=7, name="renamed", render_surface=True))
+        same.restore(snapshot)  # control
+
 
 class ToolTest(Worlds):
     def test_contacts_make_up_the_wrench(self):
@@ -257,6 +273,14 @@ class RefusalTest(Worlds):
         self.refused("not finite", vibe.load, tissue={"density": float("nan")})
         self.refused("cannot be opened", vibe.load, "/nowhere.yaml")
         self.refused("give numbers, texts", vibe.load, geometry={"particles": object()})
+        self.refused(r"^load\(\): tissue: is in every scene", vibe.load, tissue=None)
+        self.refused(r"^load\(\): scope: is what 'helix' needs", vibe.load, scope=None)
+        self.refused(os.path.join(os.getcwd(), "m.obj") + " does not exist", vibe.load,
+                     geometry={"kind": "mesh", "file": "m.obj", "unit": "1 mm", "landmarks": {
+                         name: [0, 0, k] for k, name in enumerate(("oesophagus", "fundus", "incisura", "pylorus"))}})
+        for section in ("breathing", "gravity", "gas"):
+            self.assertNotIn(f"\n{section}:", vibe.load(geometry={"particles": 300}, **{section: None}).scene)
+        self.assertIn("\ngravity:", self.model.scene)  # control
 
     def test_a_surface_file_becomes_the_organ(self):
         model, places = self.model, 1e3 * self.model.rest_positions  # written in mm
@@ -329,6 +353,29 @@ class RefusalTest(Worlds):
             gc.collect()
             os._exit(status)
         self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 0)
+        simulation.step()
+
+
+    def test_threads_that_step_while_the_program_ends(self):
+        program = ("import threading, time, numpy as np, vibe; model = vibe.load(geometry={'particles': 300})\n"
+                   "def step(s):\n  while True: s.step(); vibe.step_all([s], np.zeros((1, 7)), np.zeros((1, 6)), 40, 2); s.run(40)\n"
+                   "for k in range(3): threading.Thread(target=step, args=(vibe.Simulation(model),), daemon=True).start()\n"
+                   "time.sleep(0.2)")
+        for _ in range(4):
+            ended = subprocess.run([sys.executable, "-c", program], stderr=subprocess.PIPE, text=True, check=False, timeout=300)
+            self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+
+    def test_an_interrupt_is_heard_within_some_steps(self):
+        simulation = self.simulation()
+        for call in (lambda: vibe.step_all([simulation], np.zeros((1, 7)), np.zeros((1, 6)), 10**9, 1),
+                     lambda: simulation.run(10**9), lambda: [vibe.load(geometry={"particles": 1000}, seed=k) for k in range(10**6)]):
+            signal.setitimer(signal.ITIMER_REAL, 0.2)
+            before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+            try:
+                with self.assertRaises(KeyboardInterrupt):
+                    call()
+            finally:
+                signal.signal(signal.SIGALRM, before)
         simulation.step()
 
 

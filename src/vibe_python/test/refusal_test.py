@@ -42,7 +42,7 @@ class SweepTest(unittest.TestCase):
             "weights": [[place[1]]], "bites": np.eye(3), "printed": False, "position": np.zeros(3), "direction": np.ones(3),
             "start": np.zeros(7), "width": 8, "height": 8, "field_of_view": 1.0, "normals": True, "prepared": True,
             "seed": 1, "metrics": True, "impedance": True, "protocol": "name: short\ngoals:\n  - insufflate\n",
-            "novice": 0.5, "bytes": b"x", "scene": vibe.DEFAULT_SCENE, "overrides": "", "mesh": "",
+            "novice": 0.5, "other_model": True, "bytes": b"x", "scene": vibe.DEFAULT_SCENE, "overrides": "", "mesh": "",
         }
         cls.script = "name: s\nsteps:\n  - {at: 0 s, insertion: 0}\n"
 

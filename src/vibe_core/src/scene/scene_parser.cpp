@@ -17,8 +17,9 @@ namespace vibe {
 
 namespace {
 
-constexpr const char* kBase = "base";  // the key of the scene file that another one starts from
-constexpr int kMaxBases = 8;           // design choice: a chain of more is a circle
+constexpr const char* kBase = "base";     // the key of the scene file that another one starts from
+constexpr const char* kWithout = "none";  // instead of a section: the scene lacks it, whatever its base has
+constexpr int kMaxBases = 8;              // design choice: a chain of more is a circle
 
 /// Keys and sections directly inside a section.
 std::vector<std::string> keysIn(const std::string& section) {
@@ -74,6 +75,7 @@ class SceneReader {
   Scene scene_;
   bool has_base_ = false;
   std::map<std::string, YamlField> seen_;
+  std::map<std::string, YamlField> left_out_;  // sections that are taken away
 
   /// Starts from the scene that the file names, which is valid on its own.
   void readBase() {
@@ -103,7 +105,10 @@ class SceneReader {
       if (field.path == kBase) continue;
       checkDots(field);
       if (findSection(field.path) != nullptr && !field.path.empty()) {
-        readSection(field);
+        if (field.value.IsScalar() && field.value.Scalar() == kWithout)
+          leaveOut(field);
+        else
+          readSection(field);
       } else if (const SchemaRow* row = findRow(field.path)) {
         readValue(source_, field, *row, scene_);
         seen_.emplace(field.path, field);
@@ -111,6 +116,13 @@ class SceneReader {
         failUnknown(section.path, field);
       }
     }
+  }
+
+  void leaveOut(const YamlField& field) {
+    const SchemaSection& known = *findSection(field.path);
+    if (known.leave == nullptr) source_.fail(field, "is in every scene; write its keys, or leave it out");
+    if (known.isPresent(scene_)) known.leave(scene_);
+    left_out_.emplace(field.path, field);
   }
 
   /// `scope.friction: 0.1` would set a value in a section that is not there.
@@ -161,10 +173,14 @@ class SceneReader {
 
   void checkNeeds() const {
     for (const SchemaSection& section : sceneSections()) {
-      const auto field = seen_.find(section.name);
-      if (section.needs == nullptr || field == seen_.end() || findSection(section.needs)->isPresent(scene_)) continue;
+      if (section.needs == nullptr || !section.isPresent(scene_)) continue;
       const std::string needed = section.needs;
-      source_.fail(field->second,
+      if (findSection(needed)->isPresent(scene_)) continue;
+      const auto without = left_out_.find(needed);
+      if (without != left_out_.end())
+        source_.fail(without->second, std::string("is what '") + section.name + "' needs, " + section.needs_why +
+                                          "; add '" + section.name + ": none'");
+      source_.fail(seen_.at(section.name),
                    "needs the section '" + needed + "', " + section.needs_why + "; add '" + needed + ": {}'");
     }
   }

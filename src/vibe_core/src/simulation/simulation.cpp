@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "vibe_core/files/files.hpp"
+#include "vibe_core/program/floating_point.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 
@@ -48,6 +49,7 @@ const std::vector<Event>& Simulation::step(const StepInput& input) {
 }
 
 const std::vector<Event>& Simulation::step() {
+  checkFloatingPoint();
   events_.clear();
   timer_.start();
   vibe::step(*model_, state_, input_, *workspace_, events_);

@@ -9,6 +9,7 @@
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/files/fnv1a.hpp"
 #include "vibe_core/program/error.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/state/state_fields.hpp"
 
 namespace vibe {
@@ -97,14 +98,16 @@ void add(const std::vector<T>& values, Fnv1a& hash) {
 
 void writeHeader(const Model& model, Writer& writer) {
   const char version = static_cast<char>('0' + kStateVersion);
-  const std::uint64_t fields = fieldFingerprint<State>(), scene = modelFingerprint(model);
+  const std::uint64_t fields = fieldFingerprint<State>();
+  const std::uint64_t shape = modelFingerprint(model), scene = sceneFingerprint(model);
   writer.block(kMagic, sizeof kMagic);
   writer.block(&version, 1);
   writer.block(&fields, 1);
+  writer.block(&shape, 1);
   writer.block(&scene, 1);
 }
 
-void readHeader(const Model& model, const std::string& file, Reader& reader) {
+void readHeader(const Model& model, const std::string& file, OtherScene other, Reader& reader) {
   char magic[sizeof kMagic] = {}, version = 0;
   reader.block(magic, sizeof magic);
   reader.block(&version, 1);
@@ -113,19 +116,23 @@ void readHeader(const Model& model, const std::string& file, Reader& reader) {
   if (version != static_cast<char>('0' + kStateVersion))
     throw Error("Snapshot '" + file + "' is of version " + version + ", but this build reads version " +
                 std::to_string(kStateVersion) + "; save it again with this build.");
-  std::uint64_t fields = 0, scene = 0;
+  std::uint64_t fields = 0, shape = 0, scene = 0;
   reader.block(&fields, 1);
   if (fields != fieldFingerprint<State>())
     throw Error("Snapshot '" + file + "' is of version " + version +
                 " but has other fields than this build; save it again with this build.");
+  reader.block(&shape, 1);
   reader.block(&scene, 1);
-  if (scene != modelFingerprint(model))
+  if (shape != modelFingerprint(model))
     throw Error("Snapshot '" + file + "' belongs to another scene; load the scene it was saved with first.");
+  if (other == OtherScene::Refused && scene != sceneFingerprint(model))
+    throw Error("Snapshot '" + file +
+                "' is of the same organ but of a scene with other values; load the scene it was saved with first.");
 }
 
-State readSnapshot(const Model& model, std::istream& in, const std::string& file) {
+State readSnapshot(const Model& model, std::istream& in, const std::string& file, OtherScene other) {
   Reader reader(in, file);
-  readHeader(model, file, reader);
+  readHeader(model, file, other, reader);
   State state;
   transfer(reader, state);
   const std::string damage = findDamage(state, model);
@@ -152,6 +159,21 @@ std::uint64_t modelFingerprint(const Model& model) {
   return hash.result();
 }
 
+std::uint64_t sceneFingerprint(const Model& model) {
+  Scene scene = model.scene;
+  scene.name = Scene().name;
+  scene.seed = Scene().seed;  // the state holds the generator
+  scene.render_surface = false;
+  scene.geometry = GeometryScene();  // modelFingerprint() has what was made of it, wherever the files are
+  if (scene.scope) scene.scope->urdf = "";
+  Fnv1a hash;
+  const std::string text = toYaml(scene);
+  hash.add(text.data(), text.size());
+  if (model.tool) hash.add(model.tool->limits().data(), sizeof model.tool->limits());
+  hash.add(model.tool_base.data(), sizeof(double) * 16);
+  return hash.result();
+}
+
 std::string encodeSnapshot(const Model& model, const State& state) {
   std::ostringstream out;
   Writer writer(out);
@@ -165,15 +187,15 @@ void saveSnapshot(const Model& model, const State& state, const std::string& fil
   writeFile(file, encodeSnapshot(model, state), "Snapshot");
 }
 
-State decodeSnapshot(const Model& model, const std::string& bytes, const std::string& place) {
+State decodeSnapshot(const Model& model, const std::string& bytes, const std::string& place, OtherScene other) {
   std::istringstream in(bytes);
-  return readSnapshot(model, in, place);
+  return readSnapshot(model, in, place, other);
 }
 
-State loadSnapshot(const Model& model, const std::string& file) {
+State loadSnapshot(const Model& model, const std::string& file, OtherScene other) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw Error("Snapshot '" + file + "' cannot be opened; check the path.");
-  return readSnapshot(model, in, file);
+  return readSnapshot(model, in, file, other);
 }
 
 }  // namespace vibe

@@ -81,6 +81,13 @@ TEST(SceneBase, OverridesWhatItNamesAndKeepsTheRest) {
   EXPECT_ERROR(with("marking: {power: 20}\nbase: sphere.yaml\n"), "needs the section 'scope'");
   EXPECT_ERROR(with("base: stomach.yaml\nsuture: {loose_tension: 4}\n"), "suture.loose_tension: is 4 N");
   EXPECT_ERROR(with("base: none.yaml\n"), "base: there is no file");
+  // a section that is 'none' is not there
+  scene = with("base: stomach.yaml\ngas: none\nbleeding: none\nscope: {compliance: none, base: none}\n");
+  EXPECT_FALSE(scene.gas || scene.bleeding || scene.scope->compliance);
+  EXPECT_TRUE(scene.gravity && scene.suture && scene.scope->base_from_anatomy);
+  EXPECT_ERROR(with("base: stomach.yaml\nhelix: none\n"), "s.yaml:2: helix: is what 'suture' needs, which brings");
+  EXPECT_FALSE(with("base: stomach.yaml\nhelix: none\nsuture: none\nbleeding: none\n").helix);
+  EXPECT_ERROR(with("base: stomach.yaml\ntissue: none\n"), "tissue: is in every scene");
   EXPECT_ERROR(with("name: x\nbase: package://vibe_cor/s.yaml\n"), "s.yaml:2: base: There is no package 'vibe_cor'");
   EXPECT_ERROR(with("basee: stomach.yaml\n"), "did you mean 'base'");
   EXPECT_ERROR(with("gas: {base: stomach.yaml}\n"), "gas.base: is not");

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cfenv>
 #include <cstdio>
 
 #include "vibe_core/program/error.hpp"
@@ -214,6 +215,17 @@ TEST(Simulation, LoadsAShippedScene) {
   const auto model = loadModel(std::string(VIBE_CORE_DIR) + "/scenes/sphere.yaml");
   EXPECT_EQ(model->scene.name, "sphere");
   EXPECT_THROW(loadModel("package://vibe_core/scenes/no_such_scene.yaml"), Error);
+}
+
+TEST(Simulation, OfAThreadThatRoundsOtherwiseIsRefused) {
+  Simulation simulation(ball());
+  for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+    std::fesetround(mode);
+    EXPECT_THROW(simulation.step(), Error) << mode;
+    std::fesetround(FE_TONEAREST);
+  }
+  EXPECT_EQ(simulation.stepCount(), 0);
+  EXPECT_NO_THROW(simulation.step());
 }
 
 }  // namespace

@@ -125,6 +125,32 @@ TEST_F(SnapshotFile, RefusesWhatDoesNotFit) {
   EXPECT_THROW(loadSnapshot(*world.model, file), Error);
 }
 
+/// Whatever changes the future is looked at; what does not is not.
+TEST_F(SnapshotFile, OfASceneWithOtherValuesIsTakenOnRequestOnly) {
+  World world = livelyWorld();
+  saveSnapshot(*world.model, world.state, file);
+  const auto with = [](void (*change)(Scene&)) {
+    Scene scene = livelyScene();
+    scene.gas->regulated_pressure = 1333;
+    change(scene);
+    return World(scene, plainOrgan(icosphere(0.05, 3), 2e-3));
+  };
+  for (const auto change :
+       {+[](Scene& s) { s.tissue.young_modulus *= 1.001; }, +[](Scene& s) { s.gas.reset(); },
+        +[](Scene& s) { s.tissue.mass_damping += 1; }, +[](Scene& s) { s.foundation->stiffness += 1; },
+        +[](Scene& s) {
+          s.gravity = GravityScene{{0, 0, -1}};
+        }}) {
+    const World other = with(change);
+    EXPECT_THROW(loadSnapshot(*other.model, file), Error);
+    EXPECT_EQ(hash(loadSnapshot(*other.model, file, OtherScene::Taken)), hash(world.state));
+  }
+  const World same = with([](Scene& s) { s.name = "renamed", s.seed += 1, s.render_surface = true; });
+  EXPECT_EQ(hash(loadSnapshot(*same.model, file)), hash(world.state));
+  const World organ(livelyScene(), plainOrgan(icosphere(0.051, 3), 2e-3));
+  EXPECT_THROW(loadSnapshot(*organ.model, file, OtherScene::Taken), Error);
+}
+
 /// Any byte that has changed is found: most by what they mean, the rest by the checksum.
 TEST_F(SnapshotFile, AFlippedByteIsFound) {
   World world = livelyWorld();

@@ -66,7 +66,15 @@ def _plain(value):
     raise Error(f"An override is a {type(value).__name__}; give numbers, texts, lists and dictionaries.")
 
 
+def _without(value):
+    """None as the word that takes a section away."""
+    if isinstance(value, dict):
+        return {name: _without(part) for name, part in value.items()}
+    return "none" if value is None else value
+
+
 def _overrides(sections):
+    sections = _without(sections)
     try:
         return _json.dumps(sections, default=_plain, allow_nan=False) if sections else ""
     except ValueError:
@@ -89,8 +97,9 @@ def load(scene=DEFAULT_SCENE, *, mesh=None, **sections):
     mesh      a surface file (OBJ, STL, PLY, glTF) as the organ instead of the scene's; Model.mesh_report says what was
               guessed of it
     sections  keys of the scene by section, in SI units or with a unit:
-              load(geometry={"particles": 1000}, gas={"regulated_pressure": "8 mmHg"}, seed=2)
+              load(geometry={"particles": 1000}, gas={"regulated_pressure": "8 mmHg"}, seed=2); None takes a section away:
+              load(gravity=None)
 
-    Takes 0.2 to 1 s, tens of seconds for a mesh. Raises Error for an unknown key or a value outside of its range.
+    Takes 0.2 to 1 s, tens of seconds for a mesh; Ctrl+C ends it. Raises Error for an unknown key or a value outside of its range.
     """
     return _build_model(_file("scene", scene), _overrides(sections), "" if mesh is None else _file("mesh", mesh))

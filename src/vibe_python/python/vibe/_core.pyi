@@ -159,7 +159,7 @@ class Simulation:
     def follow(self, trainee: InputSource, seconds: Optional[float] = None) -> list[Event]:
         """Lets a Trainee or a Script give the input, until it has ended, or for simulated seconds. Returns what happened."""
     def hash(self) -> int:
-        """64 bits of all of the state: equal hashes mean equal states, and equal futures."""
+        """64 bits of all of the state: equal hashes mean equal states, and, with one model, equal futures."""
     @property
     def heat(self) -> ndarray:
         """View (particles,) float32: heat of the argon beam; (0,) without marking."""
@@ -176,8 +176,8 @@ class Simulation:
         """New array (7,): where the hand has the joints, in the order of vibe.JOINTS [m], [rad]."""
     def link_pose(self, name: str) -> ndarray:
         """New array (4, 4): pose of a link of the URDF in world [m]."""
-    def load(self, file: str) -> None:
-        """Back to the state of a snapshot that save() or a node has written."""
+    def load(self, file: str, other_model: bool = False) -> None:
+        """Back to the state of a snapshot that save() or a node has written; see restore()."""
     def look_ahead(self) -> Any:
         """Where the tip looks: None, or triangle, point (3,) [m], normal (3,), distance [m]."""
     def measures(self) -> dict:
@@ -198,8 +198,8 @@ class Simulation:
         """A dictionary: phase, grips, turns, arm_closed, needle_on_arm, needle_loaded, blood_lost [m^3], thread_used [m]."""
     def reset(self, seed: Optional[int] = None) -> None:
         """Back to the initial state."""
-    def restore(self, snapshot: Snapshot) -> None:
-        """Back to a state; views show it. The input then holds the joints where they are, and no button but helix_grab and cinch, if they were pressed. Raises vibe.Error if it is of another model."""
+    def restore(self, snapshot: Snapshot, other_model: bool = False) -> None:
+        """Back to a state; views show it. The input then holds the joints where they are, and no button but helix_grab and cinch, if they were pressed. Raises vibe.Error if it is of another model; other_model=True takes one of the same organ, step and parts whose scene has other values, such as of the tissue."""
     def run(self, steps: int, **kwargs: Any) -> list[Event]:
         """Some steps with one input.
 
@@ -324,7 +324,7 @@ def recognise_technique(bites: Any, printed: bool = False) -> dict:
 
 
 def step_all(simulations: list[Simulation], joints: Any, buttons: Any, steps: int, threads: int) -> list[list[Event]]:
-    """Some steps of many simulations, each in one of the threads: joints (n, 7) are reached evenly over the steps, buttons (n, 6) are pressed. Returns a list of events per simulation. The results are those of one after the other."""
+    """Some steps of many simulations, each in one of the threads: joints (n, 7) are reached evenly over the steps, buttons (n, 6) are pressed. Returns a list of events per simulation. The results are those of one after the other. Ctrl+C ends it within some steps."""
 
 
 def wall_points(simulations: list[Simulation], triangles: Any, weights: Any) -> ndarray:

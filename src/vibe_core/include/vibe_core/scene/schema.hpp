@@ -45,6 +45,7 @@ struct SchemaSection {
   const char* help;                 ///< one sentence
   void (*enter)(Scene&);            ///< makes the part present, with its defaults
   bool (*isPresent)(const Scene&);  ///< whether the scene has it
+  void (*leave)(Scene&) = nullptr;  ///< takes the part away; null: every scene has it
   /// The section without which this one is an error, with why; null: none.
   const char* needs = nullptr;
   /// Why, as a relative clause about that section: "whose tool carries the helix"; null without `needs`.

@@ -30,8 +30,18 @@ except ImportError:
         def unwrapped(self):
             return self
 
+        def reset(self, *, seed=None, options=None):
+            if seed is not None or self.np_random is None:
+                self.np_random, self.np_random_seed = np.random.default_rng(seed), seed
+
         def close(self):
             pass
+
+        def has_wrapper_attr(self, name):
+            return hasattr(self, name)
+
+        def get_wrapper_attr(self, name):
+            return getattr(self, name)
 
         def __enter__(self):
             return self
@@ -41,6 +51,24 @@ except ImportError:
 
     class VectorEnv(Env):
         """gymnasium.vector.VectorEnv."""
+
+        closed = False
+
+        def close(self, **keywords):
+            if not self.closed:
+                self.close_extras(**keywords)
+                self.closed = True
+
+        def _add_info(self, infos, info, slot):
+            for name, value in info.items():
+                if isinstance(value, dict) and name != "final_obs":
+                    infos[name] = self._add_info(infos.get(name, {}), value, slot)
+                else:
+                    kind = type(value) if isinstance(value, (bool, int, float, np.number)) else object
+                    infos.setdefault(name, np.full(self.num_envs, None, object) if kind is object else np.zeros(self.num_envs, kind))
+                    infos[name][slot] = value
+                infos.setdefault(f"_{name}", np.zeros(self.num_envs, bool))[slot] = True
+            return infos
 
     class _Space:
         def __init__(self, shape, dtype, seed=None):
@@ -65,6 +93,10 @@ except ImportError:
             if self.dtype.kind in "iu":
                 return self._random.integers(self.low, self.high, endpoint=True).astype(self.dtype)
             return self._random.uniform(low, high).astype(self.dtype)
+
+        def __eq__(self, other):
+            return isinstance(other, _Box) and (self.shape, self.dtype) == (other.shape, other.dtype) and \
+                np.array_equal(self.low, other.low) and np.array_equal(self.high, other.high)
 
         def contains(self, x):
             x = np.asarray(x)
@@ -94,6 +126,24 @@ except ImportError:
 
         def __getitem__(self, name):
             return self.spaces[name]
+
+        def __iter__(self):
+            return iter(self.spaces)
+
+        def __len__(self):
+            return len(self.spaces)
+
+        def __eq__(self, other):
+            return isinstance(other, _Dict) and self.spaces == other.spaces
+
+        def keys(self):
+            return self.spaces.keys()
+
+        def values(self):
+            return self.spaces.values()
+
+        def items(self):
+            return self.spaces.items()
 
     class spaces:  # noqa: N801 - the name of the module that it stands for
         Box, Dict = _Box, _Dict

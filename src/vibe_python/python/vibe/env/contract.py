@@ -5,6 +5,8 @@
     assert contract.broken("my_tasks:Hover") == []
 """
 
+import copy
+import pickle
 import warnings
 
 import numpy as np
@@ -21,18 +23,24 @@ def broken(task, actions=8, **settings):
     """One sentence for each thing that a task does not keep; random actions, with SETTINGS but for those given."""
     settings = {**SETTINGS, **settings}
     environment = Environment(task, **settings)
-    found = _refusals(environment, "before reset()")
-    episode, wrong = _episode(environment, 5, actions)
-    found += wrong
-    if _differ(episode, _episode(environment, 5, actions)[0]):
-        found.append("the same seed gives another episode")
-    environment.task.organ[0].goals.clear()  # as in another process
-    if _differ(episode, _beside_others(task, 5, actions, **settings)):
-        found.append("an episode beside others is another one than alone")
-    found += _end(environment)
+    try:
+        found = _refusals(environment, "before reset()") + _kept(environment, actions, settings)
+    except vibe.Error as error:
+        return [str(error)]
     environment.close()
     found += _refusals(environment, "after close()") + _gymnasium(task, **settings)
     return [f"{environment.task.name or type(environment.task).__name__}: {sentence}" for sentence in dict.fromkeys(found)]
+
+
+def _kept(environment, actions, settings):
+    """What an environment that works does not keep."""
+    episode, found = _episode(environment, 5, actions)
+    if _differ(episode, _episode(environment, 5, actions)[0]):
+        found.append("the same seed gives another episode")
+    environment.task.organ[0].goals.clear()  # as in another process
+    if _differ(episode, _beside_others(type(environment.task), 5, actions, **settings)):
+        found.append("an episode beside others is another one than alone")
+    return found + _again(environment, actions) + _end(environment)
 
 
 def _actions(space, seed, count):
@@ -55,6 +63,30 @@ def _episode(environment, seed, count):
         if terminated or truncated:
             break
     return rows, found
+
+
+def _again(environment, count):
+    """What a planner does: the future from a snapshot, again after others, and in copies."""
+    def future(one):
+        return [one.step(action)[:2] for action in _actions(one.action_space, 9, count)]
+
+    environment.reset(seed=8)
+    future(environment)
+    if environment._ended:
+        return []
+    snapshot = environment.snapshot()
+    first = future(environment)
+    others = {"restored": environment, "copied": copy.deepcopy(environment)}
+    try:
+        others["pickled"] = pickle.loads(pickle.dumps(environment))
+    except (pickle.PicklingError, AttributeError):  # a task that is defined within a function
+        pass
+    found = []
+    for name, other in others.items():
+        other.restore(snapshot)
+        if _differ(first, future(other)):
+            found.append(f"a {name} environment has another future")
+    return found
 
 
 def _unlike(environment, seen):
@@ -90,7 +122,7 @@ def _end(environment):
     """The last action of an episode ends it."""
     environment.reset(seed=6)
     task = environment.task
-    task.time[:] = task.seconds - 1 / task.rate
+    task.taken[:] = task.length - 1
     *_, terminated, truncated, _ = environment.step(np.zeros(environment.action_space.shape, np.float32))
     return _refusals(environment, "after the end") if terminated or truncated else ["an episode does not end in time"]
 
@@ -111,7 +143,6 @@ def _gymnasium(task, **settings):
 
     with warnings.catch_warnings():
         warnings.simplefilter("error", UserWarning)
-        warnings.filterwarnings("ignore", message=".*infinity.*")  # what is measured in metres and newtons has no bound
         try:
             check_env(Environment(task, **settings), skip_render_check=True)
         except (AssertionError, UserWarning) as error:

@@ -1,5 +1,6 @@
 """The environments: one episode at a time, and many at once."""
 
+import copy
 import os
 
 import numpy as np
@@ -7,7 +8,9 @@ import numpy as np
 import vibe
 
 from . import api
-from .episodes import numbers, task_of, whole
+from .episodes import chosen, numbers, task_of, whole
+
+PICTURE = (480, 480, 1.7)  # of render(): width, height, field of view [rad]
 
 
 def _generator(seed):
@@ -16,7 +19,66 @@ def _generator(seed):
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed)))
 
 
-class Environment(api.Env):
+def _made(cls, task, settings, state):
+    """An environment from what it was made of and what it is in the midst of, for pickle."""
+    environment = cls(task, **settings)
+    if state is not None:
+        environment.restore(state)
+    return environment
+
+
+class _Episodes:
+    """What the single and the vector environment share: their task, and their state."""
+
+    metadata = {"render_modes": ["rgb_array"]}
+
+    def _prepare(self, task, settings, render_mode, **further):
+        if render_mode is not None and (not isinstance(render_mode, str) or render_mode != "rgb_array"):
+            raise vibe.Error(f"'render_mode' is {vibe._shown(render_mode)}; use 'rgb_array', or None.")
+        kind = task_of(task)
+        kind.check_settings(settings)
+        self.task, self.render_mode = kind(**further, **settings), render_mode
+        self.metadata = {**self.metadata, "render_fps": kind.rate}
+
+    def snapshot(self):
+        """Everything that decides the future: episodes, clocks, goals, what was seen of the wall, random generators. It can be
+        pickled, and restored any number of times; the futures are equal to the bit."""
+        kind = type(self.task)
+        return {"task": f"{kind.__module__}.{kind.__qualname__}", "settings": repr(self._settings), "episodes": self.task.state(),
+                **copy.deepcopy({name: getattr(self, name) for name in ("_random", "_ended")})}
+
+    def restore(self, snapshot):
+        """Back to a snapshot() of an environment of the same task and settings. Returns the observation and info, as reset()
+        does, without events."""
+        kind = type(self.task)
+        if not isinstance(snapshot, dict) or "episodes" not in snapshot:
+            raise vibe.Error(f"The snapshot is {vibe._shown(snapshot)}; give one of snapshot() of an environment.")
+        same = {"task": f"{kind.__module__}.{kind.__qualname__}", "settings": repr(self._settings)}
+        for name, here in same.items():
+            if snapshot[name] != here:
+                raise vibe.Error(f"The snapshot is of an environment with the {name} {snapshot[name]}, and this one has {here}; "
+                                 "make one like that.")
+        self.task.set_state(snapshot["episodes"])
+        self._random, self._ended = copy.deepcopy((snapshot["_random"], snapshot["_ended"]))
+        return self._seen()
+
+    def __deepcopy__(self, _):
+        made = _made(*self.__reduce__()[1])
+        made.spec = getattr(self, "spec", None)
+        return made
+
+    def _has_begun(self):
+        return not self.task.closed and any(simulation is not None for simulation in self.task.simulation)
+
+    def _pictures(self):
+        if self.render_mode is None:
+            raise vibe.Error("The environment was made without render_mode='rgb_array'; give that.")
+        if not self._has_begun():
+            raise vibe.Error("No episode has begun; call reset() first.")
+        return tuple(simulation.camera(*PICTURE, colour=True)["colour"] for simulation in self.task.simulation)
+
+
+class Environment(_Episodes, api.Env):
     """One episode at a time, with the interface of gymnasium.Env.
 
     task       a name in vibe.env.TASKS, MODULE:NAME of one that a module of yours defines, or a class
@@ -32,73 +94,85 @@ class Environment(api.Env):
                simulated time per step [s], a whole part of that of an action; None: one step per action. Shorter steps
                are slower and more accurate (docs/python.md)
     breathing  None (still), 'slight', 'moderate' or 'strong': the diaphragm moves the stomach (vibe.env.BREATHING)
+    max_episode_steps
+               actions until an episode is truncated, instead of the task's
+    render_mode
+               None, or 'rgb_array': render() gives a picture of the wall, without tool and thread
 
-    reset(seed) draws stomach, start and goal; the same seed gives the same episode, to the bit. Steps after an episode
-    has ended raise vibe.Error.
+    reset(seed) draws stomach, start and goal; the same seed gives the same episode, to the bit. reset(options=...) chooses
+    instead: {'organ': (shape, scale), 'start': 0 to 3, 'goal': (along, around [rad]), 'phase': 0 to 7}. Steps after an
+    episode has ended raise vibe.Error. snapshot(), restore(), copy.deepcopy() and pickle take a begun episode with them.
     """
 
-    metadata = {"render_modes": []}
-
     def __init__(self, task="Reach", *, render_mode=None, **settings):
-        if render_mode is not None:
-            raise vibe.Error("The environment draws no pictures; leave render_mode out, or observe "
-                             "camera=(64, 64, 1.7), pictures=['colour'].")
-        self.render_mode = None
-        self.task = task_of(task)(1, **settings)
+        self._prepare(task, settings, render_mode)
+        self._made_of, self._settings = task, settings
         self.observation_space, self.action_space = self.task.observation_space, self.task.action_space
         self._random = None
         self._ended = True
 
+    def __reduce__(self):
+        settings = {**self._settings, "render_mode": self.render_mode}
+        return _made, (type(self), self._made_of, settings, self.snapshot() if self._has_begun() else None)
+
+    def __repr__(self):
+        return f"<vibe.env.Environment of {self.task.name or type(self.task).__name__}, {self.task.particles} particles>"
+
     @property
     def simulation(self):
         """The vibe.Simulation of the episode."""
+        if not self._has_begun():
+            raise vibe.Error("No episode has begun; call reset() first.")
         return self.task.simulation[0]
 
-    def _row(self, parts):
-        return {name: value[0] for name, value in parts.items()}
+    def _seen(self):
+        return {name: value[0] for name, value in self.task.observe().items()}, self.task.measures(0)
 
     def reset(self, *, seed=None, options=None):
+        choices = chosen(options)
         if seed is not None or self._random is None:
             self._random = _generator(seed)
-        if api.REAL:
-            super().reset(seed=seed)
-        self.task.begin(0, self._random)
+        super().reset(seed=None if seed is None else int(seed))
+        self.task.begin(0, self._random, choices)
         self._ended = False
-        return self._row(self.task.observe()), self.task.measures(0)
+        return self._seen()
+
+    def render(self):
+        """The wall as the endoscope sees it (480, 480, 3) uint8, without tool and thread."""
+        return self._pictures()[0]
 
     def step(self, action):
         if self.task.closed:
             raise vibe.Error("The environment is closed; make another one.")
         if self._ended:
             raise vibe.Error("The episode has ended, or none has begun; call reset().")
-        reward, success, truncated = self.task.advance(numbers(action)[None])
+        reward, success, truncated = self.task.advance(numbers(action, self.action_space.shape)[None])
         self._ended = bool(success[0] or truncated[0])
-        info = {**self.task.measures(0), "is_success": bool(success[0])}
-        return self._row(self.task.observe()), float(reward[0]), bool(success[0]), bool(truncated[0]), info
+        seen, info = self._seen()
+        return seen, float(reward[0]), bool(success[0]), bool(truncated[0]), {**info, "is_success": bool(success[0])}
 
     def close(self):
         self.task.close()
 
 
-class VectorEnvironment(api.VectorEnv):
+class VectorEnvironment(_Episodes, api.VectorEnv):
     """Many episodes at once, with the interface of gymnasium.vector.VectorEnv: one call steps all of them, in threads of
     C++, and the models are shared. An episode has the bits that it has alone. Arguments: as Environment, and
 
-    count      of episodes side by side
+    count      of episodes side by side; gymnasium.make_vec() calls it num_envs
     threads    that step them; default: the cores that the process may use
     autoreset  'next_step' (default): the call after the end of an episode ignores its action and resets it;
                'same_step': it is reset at once, and its last observation is in info['final_obs'];
                'disabled': reset(options={'reset_mask': ...}) resets it
     """
 
-    metadata = {"render_modes": []}
-
-    def __init__(self, task="Reach", count=8, *, threads=None, autoreset="next_step", **settings):
+    def __init__(self, task="Reach", count=8, *, num_envs=None, threads=None, autoreset="next_step", render_mode=None, **settings):
         if not isinstance(autoreset, str) or autoreset not in ("next_step", "same_step", "disabled"):
             raise vibe.Error(f"'autoreset' is {vibe._shown(autoreset)}; use 'next_step', 'same_step' or 'disabled'.")
-        threads = len(os.sched_getaffinity(0)) if threads is None else threads
-        self.task = task_of(task)(count, threads=threads, **settings)
-        self.num_envs, self.autoreset, self.render_mode = count, autoreset, None
+        count = count if num_envs is None else num_envs
+        self._prepare(task, settings, render_mode, count=count, threads=len(os.sched_getaffinity(0)) if threads is None else threads)
+        self._made_of, self._settings, self._threads = task, settings, threads
+        self.num_envs, self.autoreset = count, autoreset
         self.single_observation_space, self.single_action_space = self.task.observation_space, self.task.action_space
         self.observation_space = api.batched(self.single_observation_space, count)
         self.action_space = api.batched(self.single_action_space, count)
@@ -107,56 +181,69 @@ class VectorEnvironment(api.VectorEnv):
         self._random = [None] * count
         self._ended = np.ones(count, bool)
 
+    def __reduce__(self):
+        settings = {**self._settings, "count": self.num_envs, "threads": self._threads, "autoreset": self.autoreset,
+                    "render_mode": self.render_mode}
+        return _made, (type(self), self._made_of, settings, self.snapshot() if self._has_begun() else None)
+
     def reset(self, *, seed=None, options=None):
-        """seed: one number, from which slot k gets seed + k; a list of one per slot; None."""
+        """seed: one number, from which slot k gets seed + k; a list of one per slot; None. options: as those of Environment,
+        for every slot, and 'reset_mask': which slots (count,) bool."""
         seeds = [None] * self.num_envs if seed is None else \
             list(seed) if isinstance(seed, (list, tuple, np.ndarray)) and np.ndim(seed) == 1 else \
             [whole("seed", seed, 0, 2**63) + k for k in range(self.num_envs)]
         if len(seeds) != self.num_envs:
             raise vibe.Error(f"There are {len(seeds)} seeds for {self.num_envs} episodes; give one each.")
-        if options is not None and not isinstance(options, dict):
-            raise vibe.Error(f"'options' is {vibe._shown(options)}; give a dictionary, or None.")
+        choices = chosen(options, ["reset_mask"])
         mask = np.asarray((options or {}).get("reset_mask", True))
-        if mask.dtype != bool or mask.shape not in ((), (self.num_envs,)):
-            raise vibe.Error(f"'reset_mask' has the shape {mask.shape}; give {self.num_envs} times True or False.")
+        if mask.dtype != bool or mask.shape not in ((), (self.num_envs,)) or not mask.any():
+            raise vibe.Error(f"'reset_mask' is {vibe._shown(mask)}; give {self.num_envs} times True or False, at least one of them True.")
+        super().reset(seed=int(seed) if isinstance(seed, (int, np.integer)) else None)
         for slot in np.flatnonzero(np.broadcast_to(mask, self.num_envs)):
             if seeds[slot] is not None or self._random[slot] is None:
                 self._random[slot] = _generator(seeds[slot])
-            self._begin(slot)
-        return self.task.observe(), self._info(np.zeros(self.num_envs, bool))
+            self._begin(slot, choices)
+        return self._seen()
 
-    def _begin(self, slot):
-        self.task.begin(slot, self._random[slot])
+    def _begin(self, slot, choices=None):
+        self.task.begin(slot, self._random[slot], choices)
         self._ended[slot] = False
 
-    def _info(self, success):
-        rows = [self.task.measures(slot) for slot in range(self.num_envs)]
-        info = {name: np.array([row[name] for row in rows], float) for name in ("time", "max_force")}
-        return {**info, "is_success": success, "organ": [row["organ"] for row in rows],
-                "events": [row["events"] for row in rows]}
+    def _seen(self):
+        return self.task.observe(), self._info([self.task.measures(slot) for slot in range(self.num_envs)])
+
+    def _info(self, rows):
+        """As Gymnasium has it: an array per name, and a mask of the slots that say it."""
+        info = {}
+        for slot, row in enumerate(rows):
+            info = self._add_info(info, row, slot)
+        return info
+
+    def render(self):
+        """A picture per slot, as Environment.render()."""
+        return self._pictures()
 
     def step(self, actions):
         ended = self._ended.copy()
         if ended.any() and self.autoreset != "next_step":
             raise vibe.Error("An episode has ended, or none has begun; call reset() first.")
-        actions = numbers(actions).copy()
-        if ended.any() and actions.shape == (self.num_envs,) + self.single_action_space.shape:
-            actions[ended] = 0
+        actions = numbers(actions, (self.num_envs,) + self.single_action_space.shape)
+        actions[ended] = 0
         reward, success, truncated = self.task.advance(actions)
         for slot in np.flatnonzero(ended):  # their step did not count
             self._begin(slot)
             reward[slot], success[slot], truncated[slot] = 0, False, False
         self._ended = success | truncated
-        info = self._info(success)
+        rows = [self.task.measures(slot) if ended[slot] else {**self.task.measures(slot), "is_success": bool(success[slot])}
+                for slot in range(self.num_envs)]
         seen = self.task.observe()
         if self.autoreset == "same_step" and self._ended.any():
-            over = np.flatnonzero(self._ended)
-            info.update(final_obs=np.full(self.num_envs, None, object), _final_obs=self._ended.copy())
-            for slot in over:
-                info["final_obs"][slot] = {name: value[slot].copy() for name, value in seen.items()}
+            for slot in np.flatnonzero(self._ended):
+                final = {name: value[slot].copy() for name, value in seen.items()}
                 self._begin(slot)
+                rows[slot] = {"final_obs": final, "final_info": rows[slot], **self.task.measures(slot)}
             seen = self.task.observe()
-        return seen, reward, success, truncated, info
+        return seen, reward, success, truncated, self._info(rows)
 
-    def close(self, **_):
+    def close_extras(self, **_):
         self.task.close()

@@ -1,7 +1,10 @@
 """Episodes side by side: what the single and the vector environment share, so that both have the same bits."""
 
+import copy
+import difflib
 import functools
 import importlib
+import inspect
 import math
 
 import numpy as np
@@ -16,8 +19,10 @@ SUCCESS = 10.0  # reward of an episode that succeeds
 FORCE_FREE = 2.0  # force on the tool that costs nothing [N]; twice the mean of the first session of the README
 GOALS = 64  # per start, drawn once
 WALL_POINTS = 48  # places of the wall that an observation holds
+#: greatest numbers of observations, far beyond what occurs: [m], [rad]; [N], [N m]; of depths [m]
+FAR, STRONG, DEEP = 10.0, 1000.0, 10.0
 #: pictures that an observation may hold: channels, type, least and greatest value
-PICTURES = {"depth": ((), np.float32, 0, np.inf), "label": ((), np.uint8, 0, 5), "normal": ((3,), np.float32, -1, 1),
+PICTURES = {"depth": ((), np.float32, 0, DEEP), "label": ((), np.uint8, 0, 5), "normal": ((3,), np.float32, -1, 1),
             "colour": ((3,), np.uint8, 0, 255)}
 
 
@@ -28,15 +33,20 @@ def whole(name, value, least, most):
     return int(value)
 
 
-def numbers(action):
-    """An action as an array of float, or vibe.Error."""
+def numbers(action, shape):
+    """An action of this shape as a new array of float from -1 to 1, or vibe.Error."""
     try:
         given = np.asarray(action)
-        if given.dtype.kind in "biuf":
-            return given.astype(float)
+        kind = given.dtype.kind
     except (TypeError, ValueError, OverflowError):
-        pass
-    raise vibe.Error(f"The action is {vibe._shown(action)}; give an array of numbers from -1 to 1.")
+        kind = ""
+    if kind not in ("b", "i", "u", "f"):
+        raise vibe.Error(f"The action is {vibe._shown(action)}; give an array of numbers from -1 to 1.")
+    if given.shape != shape:
+        raise vibe.Error(f"The action has the shape {given.shape}; give one of the shape {shape}.")
+    if not np.isfinite(given).all():
+        raise vibe.Error("The action holds a value that is not finite; give numbers from -1 to 1.")
+    return np.minimum(np.maximum(given.astype(float), -1), 1)
 
 
 def _number(value):
@@ -62,12 +72,48 @@ def _camera(camera):
     return whole("camera[0]", camera[0], 1, 4096), whole("camera[1]", camera[1], 1, 4096), float(camera[2])
 
 
-def _pictures(pictures):
+def _pictures(pictures, camera):
     """Which pictures the camera gives, as a tuple of names."""
+    if pictures is None:
+        return ("depth", "label")
+    if camera is None:
+        raise vibe.Error("'pictures' is given without a camera; add camera=(width, height, field of view).")
     names = tuple(pictures) if isinstance(pictures, (list, tuple)) else ()
     if not names or not all(isinstance(name, str) and name in PICTURES for name in names) or len(set(names)) < len(names):
         raise vibe.Error(f"'pictures' is {vibe._shown(pictures)}; give a list of some of {', '.join(PICTURES)}, each once.")
     return names
+
+
+def _range(name, pair, least, most):
+    if not isinstance(pair, (list, tuple)) or len(pair) != 2 or not all(map(_number, pair)) or not least <= pair[0] <= pair[1] <= most:
+        raise vibe.Error(f"'{name}' is {vibe._shown(pair)}; give (least, greatest), from {least:.4g} to {most:.4g}.")
+    return tuple(pair)
+
+
+#: what reset(options=...) may choose instead of drawing it
+CHOICES = {"organ": "a pair (shape, scale)", "start": f"a whole number below {_organs.STARTS}", "goal": "(along, around [rad])",
+           "phase": f"a whole number below {_organs.PHASES}, of a stomach that breathes"}
+
+
+def chosen(options, further=()):
+    """What of the next episode is not drawn: options of reset() without those that `further` names; or vibe.Error."""
+    if options is None:
+        return {}
+    if not isinstance(options, dict):
+        raise vibe.Error(f"'options' is {vibe._shown(options)}; give a dictionary, or None.")
+    wrong = [name for name in options if name not in CHOICES and name not in further]
+    if wrong:
+        raise vibe.Error(f"'options' has no {vibe._shown(wrong[0])}; it may choose {', '.join([*CHOICES, *further])}.")
+    found = {name: value for name, value in options.items() if name in CHOICES}
+    if "organ" in found:
+        found["organ"], = _pairs([found["organ"]])
+    for name, count in (("start", _organs.STARTS), ("phase", _organs.PHASES)):
+        if name in found:
+            whole(name, found[name], 0, count - 1)
+    goal = found.get("goal", (0, 0))
+    if not isinstance(goal, (list, tuple)) or len(goal) != 2 or not all(map(_number, goal)) or not 0 <= goal[0] <= 1:
+        raise vibe.Error(f"'goal' is {vibe._shown(goal)}; give (share of the axis from 0 to 1, angle around it [rad]).")
+    return found
 
 
 #: name to class, of every task that has been defined
@@ -97,27 +143,37 @@ class Task:
             _register(cls)
 
     def __init__(self, count=1, *, particles=1000, organs=_organs.TRAINING, action="joints", threads=1, camera=None,
-                 pictures=("depth", "label"), breathing=None, step_period=None):
+                 pictures=None, breathing=None, step_period=None, max_episode_steps=None):
         if not isinstance(action, str) or action not in ("joints", "tip"):
             raise vibe.Error(f"'action' is {vibe._shown(action)}; use 'joints' or 'tip'.")
         if breathing is not None and (not isinstance(breathing, str) or breathing not in _organs.BREATHING):
             raise vibe.Error(f"'breathing' is {vibe._shown(breathing)}; use {', '.join(_organs.BREATHING)}, or None.")
         if action == "tip" and not self.moves_tip_only():
             raise vibe.Error(f"The task {self.name} moves more than the tip; use action='joints'.")
+        if not _number(self.rate) or not self.rate > 0:
+            raise vibe.Error(f"'rate' of the task {self.name} is {vibe._shown(self.rate)}; give the actions per second.")
+        _range("along", self.along, 0, 1), _range("around", self.around, -2 * math.pi, 2 * math.pi)
         self.count, self.particles = whole("count", count, 1, 65536), whole("particles", particles, 100, 1000000)
         self.organs, self.breathing = _pairs(organs), breathing
         self.mode, self.threads, self.camera = action, whole("threads", threads, 1, 1024), _camera(camera)
-        self.pictures, self.step_period = _pictures(pictures), self._period(step_period)
+        self.pictures, self.step_period = _pictures(pictures, self.camera), self._period(step_period)
+        self.length = self.steps_of_episode() if max_episode_steps is None else whole("max_episode_steps", max_episode_steps, 1, 10**9)
         self.simulation = [None] * count
         self.organ = [None] * count
         self.random = [np.random.default_rng(k) for k in range(count)]
         self.triangle = np.zeros((count, 1 + WALL_POINTS))  # of the goal, then of other places of the wall
         self.weight = np.full((count, 1 + WALL_POINTS, 3), 1 / 3)
+        self.place = [None] * count  # of the goal: (along, around)
         self.seen = None
-        self.time = np.zeros(count)
+        self.taken = np.zeros(count, int)  # actions of the episode
         self.events = [[] for _ in range(count)]
         self.best_force = np.zeros(count)
         self.closed = False
+
+    @property
+    def time(self):
+        """Simulated time since the beginning of the episode (count,) [s]."""
+        return self.taken / self.rate
 
     def _period(self, period):
         """Simulated time per step [s], of which a whole number makes up an action; None: an action, at most 1/20 s."""
@@ -135,6 +191,23 @@ class Task:
         return len(cls.joints) <= 4 and not cls.buttons
 
     @classmethod
+    def steps_of_episode(cls):
+        """Actions until an episode is truncated."""
+        return max(1, round(cls.seconds * cls.rate))
+
+    @classmethod
+    def check_settings(cls, settings):
+        """Raises vibe.Error for a keyword that no constructor of the class takes."""
+        known = {name for base in cls.__mro__ if "__init__" in vars(base) and base is not object
+                 for name, parameter in inspect.signature(base.__init__).parameters.items()
+                 if parameter.kind is parameter.KEYWORD_ONLY} - {"threads"}
+        for name in settings:
+            if name not in known:
+                near = difflib.get_close_matches(name, known, 1)
+                raise vibe.Error(f"An environment has no '{name}'; " + (f"did you mean '{near[0]}'?" if near else
+                                                                       f"it has {', '.join(sorted(known))}."))
+
+    @classmethod
     def summary(cls):
         """The goal: the docstring in one line."""
         return " ".join((cls.__doc__ or "").split())
@@ -148,52 +221,68 @@ class Task:
 
     @functools.cached_property
     def observation_space(self):
-        def box(*shape, low=-np.inf, high=np.inf, dtype=np.float32):
+        def box(*shape, low=-FAR, high=FAR, dtype=np.float32):
             return spaces.Box(low, high, shape, dtype)
 
         parts = {
-            "joints": box(len(vibe.JOINTS)), "tip": box(3), "direction": box(3), "wrench": box(6), "goal": box(3),
+            "joints": box(len(vibe.JOINTS)), "tip": box(3), "direction": box(3, low=-1.001, high=1.001),
+            "wrench": box(6, low=-STRONG, high=STRONG), "goal": box(3),
             "to_goal": box(3), "wall": box(WALL_POINTS, 3),
         }
         if self.camera:
             for name in self.pictures:
                 channels, dtype, low, high = PICTURES[name]
                 parts[name] = box(self.camera[1], self.camera[0], *channels, low=low, high=high, dtype=dtype)
-        parts.update({name: box(*shape) for name, (shape, _) in self.further.items()})
+        for name, declared in self.further.items():
+            if not isinstance(declared, tuple) or len(declared) != 2 or not isinstance(declared[0], tuple):
+                raise vibe.Error(f"'further' of the task {self.name} has {vibe._shown(declared)} for '{name}'; give (shape, meaning).")
+            parts[name] = box(*declared[0], low=-STRONG, high=STRONG)
         return spaces.Dict(parts)
 
     # --- episodes
 
-    def begin(self, slot, random):
-        """A new episode in one slot: draws stomach, start and goal."""
+    def begin(self, slot, random, choices=None):
+        """A new episode in one slot: draws stomach, start and goal, but for what chosen() has found."""
         self._check_open()
+        choices = choices or {}
+        if "phase" in choices and not self.breathing:
+            raise vibe.Error("'phase' is chosen for a stomach that does not breathe; leave it out, or name a 'breathing'.")
         self.random[slot] = random
         drawn = self.organs[random.integers(len(self.organs))]
-        organ = _organs.organ(*drawn, self.particles, self.breathing, self.step_period)
-        if self.organ[slot] is not organ:
-            if self.simulation[slot] is not None:
-                self.organ[slot].give(self.simulation[slot])
-            self.organ[slot], self.simulation[slot] = organ, organ.take()
-        start = int(random.integers(len(organ.starts)))
+        organ = _organs.organ(*choices.get("organ", drawn), self.particles, self.breathing, self.step_period)
+        self._use(slot, organ)
+        start = choices.get("start", int(random.integers(len(organ.starts))))
         phases = organ.starts[start]
-        self.simulation[slot].restore(phases[random.integers(len(phases)) if self.breathing else 0])
-        self._set_goal(slot, organ, start, int(random.integers(GOALS)))
+        phase = random.integers(len(phases)) if self.breathing else 0
+        self.simulation[slot].restore(phases[choices.get("phase", phase)])
+        self._set_goal(slot, organ, start, int(random.integers(GOALS)), choices.get("goal"))
         triangles = len(organ.model.triangles)
         self.triangle[slot, 1:] = (np.arange(WALL_POINTS) * triangles) // WALL_POINTS
-        self.time[slot] = 0
+        self.taken[slot] = 0
         self.best_force[slot] = 0
         self.events[slot] = []
         self.seen = None
         self.begun(slot)
 
-    def _set_goal(self, slot, organ, start, number):
-        """One of the goals of a start, which are found when first asked for: that takes ten times as long as a step."""
+    def _use(self, slot, organ):
+        """A simulation of this organ in a slot."""
+        if self.organ[slot] is organ:
+            return
+        if self.simulation[slot] is not None:
+            self.organ[slot].give(self.simulation[slot])
+        self.organ[slot], self.simulation[slot] = organ, organ.take()
+
+    def _set_goal(self, slot, organ, start, number, place):
+        """A place, or one of the goals of a start, which are found when first asked for: that takes ten times as long as a
+        step."""
+        if place is not None:
+            self.triangle[slot, 0], self.weight[slot, 0], _ = organ.target(*place)
+            self.place[slot] = tuple(place)
+            return
         key = (type(self), self.along, self.around, start, number)
         if key not in organ.goals:
             organ.goals[key] = self._draw_goal(organ, self.simulation[slot].joints, [21, start, number])
-        place, self.triangle[slot, 0], self.weight[slot, 0] = organ.goals[key]
-        self.place = getattr(self, "place", [None] * self.count)
-        self.place[slot] = place
+        self.place[slot], self.triangle[slot, 0], self.weight[slot, 0] = organ.goals[key]
 
     def _draw_goal(self, organ, joints, seed):
         random = np.random.default_rng(seed)
@@ -212,20 +301,37 @@ class Task:
     def begun(self, slot):
         """For subclasses: what begins with an episode."""
 
+    #: what no episode changes; everything else that an instance holds is the state of its episodes
+    _constant = {"count", "particles", "organs", "breathing", "mode", "threads", "camera", "pictures", "step_period", "length",
+                 "closed", "action_space", "observation_space", "seen", "events"}
+
+    def state(self):
+        """Everything that the episodes are in the midst of, as a dictionary that can be pickled; but the events of the last action."""
+        self._check_open()
+        found = {name: value for name, value in vars(self).items() if name not in self._constant}
+        found["simulation"] = [simulation and simulation.snapshot() for simulation in self.simulation]
+        return copy.deepcopy(found)
+
+    def set_state(self, state):
+        """Back to what state() gave, of a task with the same settings."""
+        self._check_open()
+        state = copy.deepcopy(state)
+        snapshots, organs = state.pop("simulation"), state.pop("organ")
+        for slot, organ in enumerate(organs):
+            if organ is not None:
+                self._use(slot, organ)
+                self.simulation[slot].restore(snapshots[slot])
+        vars(self).update(state)
+        self.seen, self.events = None, [[] for _ in range(self.count)]
+
     # --- steps
 
     def advance(self, actions):
-        """One action in every slot. Returns rewards, terminated and truncated (count,)."""
+        """One action (count, numbers) in every slot, of numbers(). Returns rewards, terminated and truncated (count,)."""
         self._check_open()
-        actions = np.asarray(actions, float)
-        expected = (self.count,) + self.action_space.shape
-        if actions.shape != expected:
-            raise vibe.Error(f"The action has the shape {actions.shape}; give one of the shape {expected}.")
-        if not np.isfinite(actions).all():
-            raise vibe.Error("The action holds a value that is not finite; give numbers from -1 to 1.")
         if any(simulation is None for simulation in self.simulation):
             raise vibe.Error("The environment has not begun; call reset() first.")
-        actions = np.minimum(np.maximum(actions, -1), 1)
+        self.seen = None  # whoever has the simulation may have restored it
         before = self.current()
         joints = before["joints"].copy()
         joints[:, : len(self.joints)] += self._speed(actions) * (self.speeds / self.rate)
@@ -234,13 +340,26 @@ class Task:
             buttons[:] = actions[:, len(self.joints):] > 0
         buttons[:, INSUFFLATE] = 1
         self.events = vibe.step_all(self.simulation, joints, buttons, self._steps(), self.threads)
-        self.time += 1 / self.rate
+        self.taken += 1
         self.seen = self.look()
         force = np.linalg.norm(self.seen["wrench"][:, :3], axis=1)
         self.best_force = np.maximum(self.best_force, force)
-        reward, success = self.judge(before, self.seen)
+        reward, success = self._judged(before)
         reward = reward - 0.01 - 0.02 * np.maximum(force - FORCE_FREE, 0) + SUCCESS * success
-        return reward, success, ~success & (self.time >= self.seconds - 1e-9)
+        return reward, success, ~success & (self.taken >= self.length)
+
+    def _judged(self, before):
+        """What judge() says, or vibe.Error if it cannot be meant."""
+        said = self.judge(before, self.seen)
+        pair = isinstance(said, tuple) and len(said) == 2
+        reward, success = map(np.asarray, said) if pair else (None, None)
+        if not pair or reward.shape != (self.count,) or reward.dtype.kind not in "biuf" or \
+                success.shape != (self.count,) or success.dtype != bool:
+            raise vibe.Error(f"judge() of the task {self.name} gives {vibe._shown(said)}; give rewards and successes, arrays of "
+                             f"{self.count} numbers and {self.count} times True or False.")
+        if not np.isfinite(reward).all():
+            raise vibe.Error(f"judge() of the task {self.name}: the reward is {reward[~np.isfinite(reward)][0]}; give finite numbers.")
+        return reward.astype(float), success
 
     def _steps(self):
         return max(1, round(1 / (self.rate * self.organ[0].model.step_period)))
@@ -251,8 +370,7 @@ class Task:
             return actions[:, : len(self.joints)]
         shares = np.zeros((self.count, len(self.joints)))
         for slot, simulation in enumerate(self.simulation):
-            speed = simulation.tip_pose[:3, :3] @ (TIP_SPEED * actions[slot])
-            shares[slot] = tip_motion(simulation.jacobian, speed, self.speeds)
+            shares[slot] = tip_motion(simulation.jacobian, simulation.tip_pose, TIP_SPEED * actions[slot], self.speeds)
         return shares
 
     def judge(self, before, after):
@@ -280,13 +398,25 @@ class Task:
         seen = self.current()
         parts = {name: seen[name] for name in ("joints", "tip", "direction", "wrench", "goal", "wall")}
         parts["to_goal"] = np.einsum("nij,ni->nj", seen["turn"], seen["goal"] - seen["tip"])
-        parts.update(self.observe_further(seen))
+        parts.update(self._further(seen))
         parts = {name: np.asarray(value, np.float32) for name, value in parts.items()}
         if self.camera:
             seen = [simulation.camera(*self.camera, normals="normal" in self.pictures, colour="colour" in self.pictures)
                     for simulation in self.simulation]
             parts.update({name: np.nan_to_num(np.stack([one[name] for one in seen]), nan=0.0) for name in self.pictures})
         return parts
+
+    def _further(self, seen):
+        """What observe_further() says, or vibe.Error if it is not what `further` declares."""
+        found = self.observe_further(seen)
+        for name in {**self.further, **found}:
+            if name not in self.further:
+                raise vibe.Error(f"The task {self.name}: the observation '{name}' is not in the space; add it to 'further'.")
+            shape = (self.count, *self.further[name][0])
+            if np.shape(found.get(name)) != shape:
+                raise vibe.Error(f"The task {self.name}: the observation '{name}' is not of its space, which has the shape {shape}; "
+                                 "give that by observe_further().")
+        return found
 
     def observe_further(self, seen):
         """For subclasses: the arrays of `further`."""
@@ -321,7 +451,8 @@ def _register(task):
     TASKS[task.name] = task
     identifier = f"vibe/{task.name}-v0"
     if REAL and identifier not in gymnasium.registry:
-        gymnasium.register(identifier, entry_point="vibe.env:Environment", kwargs={"task": task.name})
+        gymnasium.register(identifier, entry_point="vibe.env:Environment", vector_entry_point="vibe.env:VectorEnvironment",
+                           max_episode_steps=task.steps_of_episode(), kwargs={"task": task.name})
 
 
 def task_of(task):
@@ -343,9 +474,29 @@ def task_of(task):
 TIP_SPEED = 0.04  # of the tip at action 1 [m/s]
 
 
-def tip_motion(jacobian, speed, limits, damping=2e-3):
-    """Shares (4,) of the joint speeds that move the tip with a speed (3,) [m/s]: damped least squares in units of the
-    limits, scaled down together where one would exceed its limit (Wampler 1986)."""
-    scaled = jacobian[:3] * limits
-    shares = scaled.T @ np.linalg.solve(scaled @ scaled.T + damping**2 * np.eye(3), speed)
-    return shares / max(1.0, np.abs(shares).max())
+def _dot(a, b):
+    """In one order: numpy and sum() have others, by processor and version."""
+    total = 0.0
+    for x, y in zip(a, b):
+        total += x * y
+    return total
+
+
+def _cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def tip_motion(jacobian, pose, speed, limits, damping=2e-3):
+    """Shares (4,) of the joint speeds that move the tip with a speed (3,) in its own axes [m/s]: damped least squares in
+    units of the limits, scaled down together where one would exceed its limit (Wampler 1986). The same numbers give the
+    same bits with every library of linear algebra."""
+    turn, speed, limits = pose[:3, :3].tolist(), list(map(float, speed)), list(map(float, limits))
+    wanted = [_dot(row, speed) for row in turn]
+    rows = [[x * limit for x, limit in zip(row, limits)] for row in jacobian[:3].tolist()]
+    square = [[_dot(a, b) + (damping**2 if a is b else 0.0) for b in rows] for a in rows]  # symmetric, positive
+    minors = [_cross(square[1], square[2]), _cross(square[2], square[0]), _cross(square[0], square[1])]
+    size = _dot(square[0], minors[0])
+    solved = [_dot(column, wanted) / size for column in zip(*minors)]
+    shares = [_dot(column, solved) for column in zip(*rows)]
+    most = max(1.0, *map(abs, shares))
+    return np.array([share / most for share in shares])

@@ -12,7 +12,11 @@ class Expert:
     of the environment."""
 
     def __init__(self, environment, seed=1):
-        task = environment.task
+        environment = getattr(environment, "unwrapped", environment)
+        task = getattr(environment, "task", None)
+        if getattr(task, "count", None) != 1:
+            raise vibe.Error(f"An expert acts in an Environment, and this is {vibe._shown(environment)}; give a single one.")
+        self._begun = False
         self._policy = task.expert(seed)
         if self._policy is None:
             raise vibe.Error(f"There is no expert for the task {task.name} with action={task.mode!r}.")
@@ -20,15 +24,18 @@ class Expert:
 
     def reset(self):
         self._policy.reset(self.environment.task)
+        self._begun = True
 
     def action(self, observation):
+        if not self._begun:
+            raise vibe.Error("The expert has not begun; call its reset() after that of the environment.")
         return self._policy.action(self.environment.task, observation).astype(np.float32)
 
 
 def _shares(task, speed):
     """Shares of the joint speeds that move the tip with a speed in its own axes [m/s]."""
     simulation = task.simulation[0]
-    return tip_motion(simulation.jacobian, simulation.tip_pose[:3, :3] @ speed, task.speeds)
+    return tip_motion(simulation.jacobian, simulation.tip_pose, speed, task.speeds)
 
 
 class Reaching:

@@ -2,6 +2,7 @@
 then kept for the process; all environments share them."""
 
 import functools
+import os
 import threading
 
 import numpy as np
@@ -40,8 +41,8 @@ class Organ:
         self.model = vibe.load(geometry=geometry, render_surface=False, **sections)
         self.joint_speeds = np.array([speed for _, _, speed in self.model.joint_limits.values()])  # greatest [m/s], [rad/s]
         self.goals = {}  # of tasks, by what they are drawn from; see Task
-        self._free = []
-        self._lock = threading.Lock()
+        self._key = shape, scale, particles, breathing, step_period
+        self._begin_pool()
         simulation = self.take()
         self._insufflate(simulation)
         self.starts = [self._place(simulation, k) for k in range(STARTS)]
@@ -49,8 +50,19 @@ class Organ:
         self.anatomy = vibe.Anatomy(simulation)
         self.give(simulation)
 
+    def _begin_pool(self):
+        self._free, self._lock, self._process = [], threading.Lock(), os.getpid()
+
+    def __deepcopy__(self, _):
+        return self
+
+    def __reduce__(self):
+        return organ, self._key
+
     def take(self):
         """A simulation of this model, for one user."""
+        if self._process != os.getpid():  # after a fork; those of the parent cannot be used here
+            self._begin_pool()
         with self._lock:
             if self._free:
                 return self._free.pop()
@@ -58,7 +70,8 @@ class Organ:
 
     def give(self, simulation):
         with self._lock:
-            self._free.append(simulation)
+            if self._process == os.getpid():
+                self._free.append(simulation)
 
     def _insufflate(self, simulation):
         for _ in range(int(_INSUFFLATION / 0.5)):
