@@ -10,7 +10,9 @@ import tempfile
 
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
+from wheel.bdist_wheel import bdist_wheel
 
+HEADERS = os.environ.get("VIBE_PYTHON_HEADERS", "")  # of Pythons beside this one, folders that end in python3.N; see CMakeLists.txt
 HERE = os.path.dirname(os.path.abspath(__file__))
 SCRATCH = tempfile.mkdtemp(prefix="vibe_python_")  # nothing is left beside the sources
 atexit.register(shutil.rmtree, SCRATCH, ignore_errors=True)
@@ -31,7 +33,7 @@ class BuildWithCMake(build_ext):
         os.makedirs(build, exist_ok=True)
         self.cmake("-S", HERE, "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DBUILD_TESTING=OFF",
                    "-DVIBE_CORE_PREFIX=" + core, "-DCMAKE_INSTALL_PREFIX=" + prefix, "-DCMAKE_INSTALL_LIBDIR=lib",
-                   "-DPython_EXECUTABLE=" + sys.executable, "-DPYTHON_EXECUTABLE=" + sys.executable)
+                   "-DVIBE_PYTHON_HEADERS=" + HEADERS, "-DPython_EXECUTABLE=" + sys.executable, "-DPYTHON_EXECUTABLE=" + sys.executable)
         self.cmake("--build", build, "-j", os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count() or 1)))
         self.cmake("--install", build)
         package = os.path.join(self.build_lib, "vibe") if not self.inplace else os.path.join(HERE, "python", "vibe")
@@ -53,6 +55,17 @@ class BuildWithCMake(build_ext):
         shutil.copytree(prefix, package, dirs_exist_ok=True)
 
 
+class WheelOfSeveralPythons(bdist_wheel):
+    """Its name says each Python that it has a module for."""
+
+    def get_tag(self):
+        python, abi, platform = super().get_tag()
+        if not HEADERS:
+            return python, abi, platform
+        further = sorted(int(folder.rsplit(".", 1)[1]) for folder in HEADERS.split(";"))
+        return ".".join([python, *(f"cp3{number}" for number in further)]), "none", platform
+
+
 setup(
     name="vibe-esg",
     version="1.0.0",
@@ -66,6 +79,6 @@ setup(
     package_data={"vibe": ["py.typed", "*.pyi"]},
     ext_modules=[Extension("vibe._core", sources=[])],
     options={"build": {"build_base": SCRATCH}, "egg_info": {"egg_base": SCRATCH}},
-    cmdclass={"build_ext": BuildWithCMake},
+    cmdclass={"build_ext": BuildWithCMake, "bdist_wheel": WheelOfSeveralPythons},
     zip_safe=False,
 )

@@ -20,9 +20,20 @@ py::tuple tupleOf(const Names& names) {
   return tuple;
 }
 
+// The layout of its arrays changed with numpy 2, which pybind11 knows from 2.12 on: before, strides would be wrong.
+void checkNumpy() {
+#if PYBIND11_VERSION_HEX < 0x020C0000
+  const std::string version = py::cast<std::string>(py::module_::import("numpy").attr("__version__"));
+  if (version.rfind("1.", 0) != 0)
+    throw py::import_error("it was built for numpy 1, and numpy " + version +
+                           " is found; use Debian's python3-numpy, 'pip install \"numpy<2\"', or the wheel of vibe");
+#endif
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_core, module) {
+  checkNumpy();
   module.doc() = "The simulator library, as C++ has it; use it through the package vibe.";
   py::register_exception<Error>(module, "Error", PyExc_RuntimeError);
   module.attr("Error").attr("__doc__") =

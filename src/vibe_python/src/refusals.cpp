@@ -135,6 +135,7 @@ void watch(PyObject* function, const std::string& name, PyObject* type) {
   if (PyInstanceMethod_Check(function)) function = PyInstanceMethod_GET_FUNCTION(function);
   if (!PyCFunction_Check(function)) return;
   PyMethodDef* const definition = reinterpret_cast<PyCFunctionObject*>(function)->m_ml;
+  if (definition->ml_flags != (METH_VARARGS | METH_KEYWORDS)) return;  // pybind11 from 3.1 on calls otherwise
   const auto current = reinterpret_cast<PyCFunctionWithKeywords>(reinterpret_cast<void (*)()>(definition->ml_meth));
   if (pybind_dispatcher == nullptr) pybind_dispatcher = current;
   if (current != pybind_dispatcher) return;

@@ -77,6 +77,10 @@ for mode, setting in modes.items():  # as Gymnasium has several environments sid
     if not same or alike(one[0], first[0]):
         print("unlike in", mode)
     ours.close()
+listed = gymnasium.wrappers.vector.DictInfoToList(VectorEnvironment(Short, 2, threads=1, autoreset="same_step", **small))
+listed.reset(seed=1)
+infos = [listed.step(np.zeros((2, 4), np.float32))[4] for _ in range(4)]
+print(len(infos[0]), infos[0][1]["organ"] == "sthenic 1", any("final_info" in info for pair in infos for info in pair))
 made = gymnasium.make_vec("vibe/Reach-v0", num_envs=2, threads=1, **small)
 print(type(made).__name__, made.closed, gymnasium.spec("vibe/Bite-v0").max_episode_steps)
 """
@@ -353,7 +357,7 @@ class EnvironmentTest(unittest.TestCase):
             checked = subprocess.run([sys.executable, "-B", "-c", CHECK], env={**os.environ, "PYTHONPATH": path},
                                      stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
         self.assertEqual(checked.returncode, 0, checked.stdout)
-        self.assertEqual(checked.stdout.split(), [*TASKS, "refused", "wrapped", "processes", "VectorEnvironment", "False", "5400"],
+        self.assertEqual(checked.stdout.split(), [*TASKS, "refused", "wrapped", "processes", "2", "True", "True", "VectorEnvironment", "False", "5400"],
                          checked.stdout)
 
 

@@ -4,6 +4,7 @@ import copy
 import gc
 import os
 import pickle
+import shutil
 import signal
 import subprocess
 import sys
@@ -364,6 +365,20 @@ class RefusalTest(Worlds):
         for _ in range(4):
             ended = subprocess.run([sys.executable, "-c", program], stderr=subprocess.PIPE, text=True, check=False, timeout=300)
             self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+
+    def test_what_the_loader_says_is_a_sentence(self):
+        folder = os.path.dirname(vibe.__file__)
+        with tempfile.TemporaryDirectory() as place:
+            shutil.copytree(folder, os.path.join(place, "second"))
+            shutil.copytree(folder, os.path.join(place, "bare"), ignore=shutil.ignore_patterns("_core*"))
+            interpreter = ("import _xxsubinterpreters as i, sys\n"
+                           "i.run_string(i.create(), f'import sys; sys.path[:0] = {sys.path!r}; import vibe')")
+            for program, sentence in (("import vibe, second", "Another copy of vibe is loaded"), ("import bare", "no module vibe._core for this"),
+                                      (interpreter, "in the main interpreter of a process only")):
+                made = subprocess.run([sys.executable, "-c", program], env={**os.environ, "PYTHONPATH": os.pathsep.join([place, *sys.path])},
+                                      stderr=subprocess.PIPE, text=True, check=False, timeout=100)
+                self.assertIn(sentence, made.stderr)
+        self.assertIn("take its folder off LD_LIBRARY_PATH", vibe._unloadable(ImportError("version `GLIBCXX_3.4.30' not found")))
 
     def test_an_interrupt_is_heard_within_some_steps(self):
         simulation = self.simulation()

@@ -19,28 +19,60 @@ and the same inputs give the same bits. What is wrong raises vibe.Error: one sen
 docs/python.md of the repository is a tutorial.
 """
 
+import importlib as _importlib
 import json as _json
 import os as _os
+import sys as _sys
 
-from ._core import (
-    BUTTONS,
-    JOINTS,
-    Anatomy,
-    Error,
-    Event,
-    InputSource,
-    Model,
-    Script,
-    Simulation,
-    Snapshot,
-    Trainee,
-    build_model as _build_model,
-    measure_units,
-    observe_all,
-    recognise_technique,
-    step_all,
-    wall_points,
-)
+
+def _unloadable(error):
+    """What a loader says, as a sentence with a remedy."""
+    said, here = str(error), _os.path.dirname(__file__)
+    if "already registered" in said:
+        return f"Another copy of vibe is loaded in this process, beside that of {here}; import one of them."
+    if "GLIBC" in said:
+        return (f"The module vibe needs a newer library than the one that is found first ({said}); take its folder off LD_LIBRARY_PATH, or "
+                "update it, such as by 'conda install libstdcxx-ng'.")
+    if "No module named" in said and "_core" in said:
+        return f"There is no module vibe._core for this Python, {_sys.version.split()[0]}, in {here}; install the wheel for it, or build it."
+    return f"The module vibe cannot be loaded: {said}."
+
+
+def _is_main_interpreter():
+    """pybind11 waits for ever in another one."""
+    for name in ("_interpreters", "_xxsubinterpreters"):  # the first from Python 3.13 on
+        try:
+            interpreters = _importlib.import_module(name)
+        except ImportError:
+            continue
+        return interpreters.get_current() == interpreters.get_main()
+    return True
+
+
+if not _is_main_interpreter():
+    raise ImportError("The module vibe works in the main interpreter of a process only; use threads or processes instead.")
+try:
+    from ._core import (
+        BUTTONS,
+        JOINTS,
+        Anatomy,
+        Error,
+        Event,
+        InputSource,
+        Model,
+        Script,
+        Simulation,
+        Snapshot,
+        Trainee,
+        build_model as _build_model,
+        measure_units,
+        observe_all,
+        recognise_technique,
+        step_all,
+        wall_points,
+    )
+except ImportError as error:
+    raise ImportError(_unloadable(error)) from None
 
 __version__ = "1.0.0"
 __all__ = [
