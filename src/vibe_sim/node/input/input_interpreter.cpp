@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "input/tip_velocity.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double kPeakSpeed = 1.875;  // of the path of least jerk, over its mean speed
 constexpr double kLongestStep = 0.1;  // of a velocity, such as the first step of all [s]
+constexpr double kFadesOver = 3;      // a velocity fades over the life divided by that
 constexpr double kReached = 5e-3;     // of the tip from its target: close enough to say nothing [m]
 
 /// Share of the way at a share of the time.
@@ -128,29 +130,25 @@ void JointMove::apply(std::int64_t stamp, JointArray& joints) const {
 std::vector<std::string> InputInterpreter::interpret(const DueInput& due, const Model& model, StepInput& input,
                                                      const std::optional<JointArray>& hand) {
   if (due.stamp < due.since) endMoves();
-  const double dt = 1e-9 * static_cast<double>(due.stamp - due.since);
   const JointArray start = hand.value_or(input.joints);
   std::vector<std::string> sentences;
   const auto say = [&sentences](std::string sentence) {
     if (!sentence.empty()) sentences.push_back(std::move(sentence));
   };
-  for (const InputSample& sample : due.samples) say(applySample(sample, due.stamp, model, start, input));
+  for (const InputSample& sample : due.samples) say(applySample(sample, due, model, start, input));
   applyMoves(due.stamp, input.joints);
-  if (twist_ && model.tool) {
-    const JointArray joints = afterTwist(model, start, *twist_, std::clamp(dt, 0.0, kLongestStep));
-    std::copy_n(joints.begin(), kScopeJointCount, input.joints.begin());
-  }
+  if (twist_ && model.tool) say(applyTwist(due, model, start, input.joints));
   if (due.isSilent(InputChannel::Pull, kPullTimeout)) say(letGo(input));
   return sentences;
 }
 
-std::string InputInterpreter::applySample(const InputSample& sample, std::int64_t stamp, const Model& model,
+std::string InputInterpreter::applySample(const InputSample& sample, const DueInput& due, const Model& model,
                                           const JointArray& hand, StepInput& input) {
   moves_[static_cast<std::size_t>(sample.channel)].reset();
   if (sample.channel == InputChannel::Scope) twist_.reset();
   if (sample.target == ScopeTarget::VelocityInWorld || sample.target == ScopeTarget::VelocityInBase)
-    return beginTwist(sample, model);
-  return sample.move ? beginMove(sample, stamp, model, hand) : applyValues(sample, model, input);
+    return beginTwist(sample, due, model);
+  return sample.move ? beginMove(sample, due.stamp, model, hand) : applyValues(sample, model, input);
 }
 
 std::string InputInterpreter::beginMove(const InputSample& sample, std::int64_t stamp, const Model& model,
@@ -166,13 +164,33 @@ std::string InputInterpreter::beginMove(const InputSample& sample, std::int64_t 
   return sentence;
 }
 
-std::string InputInterpreter::beginTwist(const InputSample& sample, const Model& model) {
+// A stamp that is not after the last step is none, or late: the velocity counts as of now.
+std::string InputInterpreter::beginTwist(const InputSample& sample, const DueInput& due, const Model& model) {
   if (!model.tool) return noScope(sample, model);
-  twist_ = sample.tip_twist;
+  twist_ = {sample.tip_twist, sample.stamp > due.since ? sample.stamp : due.stamp};
   if (sample.target == ScopeTarget::VelocityInWorld) return "";
-  twist_->head<3>() = model.tool_base.linear() * sample.tip_twist.head<3>();
-  twist_->tail<3>() = model.tool_base.linear() * sample.tip_twist.tail<3>();
+  twist_->velocity.head<3>() = model.tool_base.linear() * sample.tip_twist.head<3>();
+  twist_->velocity.tail<3>() = model.tool_base.linear() * sample.tip_twist.tail<3>();
   return "";
+}
+
+std::string InputInterpreter::applyTwist(const DueInput& due, const Model& model, const JointArray& hand,
+                                         JointArray& joints) {
+  const Twist twist = *twist_;
+  const double age = static_cast<double>(due.stamp - twist.begin), life = static_cast<double>(velocity_life_);
+  const double share = std::clamp(kFadesOver * (1 - age / life), 0.0, 1.0);
+  const double dt = std::clamp(1e-9 * static_cast<double>(due.stamp - due.since), 0.0, kLongestStep);
+  const JointArray after = afterTwist(model, hand, share * twist.velocity, dt);
+  std::copy_n(after.begin(), kScopeJointCount, joints.begin());
+  if (share > 0) return "";
+  twist_.reset();
+  if (twist.velocity.isZero()) return "";
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "scope/servo_cv has been silent for %.2g s, so the scope has stopped; its sender may hang or be slow: "
+                "send a velocity at 10 Hz while it is to last.",
+                1e-9 * age);
+  return text;
 }
 
 void InputInterpreter::applyMoves(std::int64_t stamp, JointArray& joints) {

@@ -41,6 +41,10 @@ constexpr std::int64_t kPullTimeout = 2'000'000'000;
 /// the simulator's time].
 constexpr std::int64_t kButtonTimeout = 1'000'000'000;
 
+/// A velocity that is not sent again ends after this long: its sender may hang or be gone [ns of the simulator's time].
+/// CRTK keeps the last setpoint of a velocity instead.
+constexpr std::int64_t kVelocityLife = 300'000'000;
+
 /// Releases all buttons if none has had a message for kButtonTimeout, where time passes as it does for who presses
 /// them.
 /// @return one sentence that names those that were pressed; empty: none
@@ -50,11 +54,15 @@ std::string releaseSilentButtons(const DueInput& due, StepInput& input);
 /// way. Belongs to the thread that steps.
 class InputInterpreter {
  public:
+  /// @param velocity_life  kVelocityLife, or what the user has chosen [ns]
+  explicit InputInterpreter(std::int64_t velocity_life = kVelocityLife) : velocity_life_(velocity_life) {}
+
   /// Applies to `input` what is due; the last valid values stay in force. Targets of the tip become joints by the
   /// tool's inverse kinematics; a pull without a message for kPullTimeout ends. A move ends at its goal, when another
-  /// sample for its joints is applied, or when the clock is set back; a velocity of the tip ends in the last two ways.
+  /// sample for its joints is applied, or when the clock is set back; a velocity of the tip ends in the last two ways,
+  /// and of itself: it fades in the last third of its life, which begins at the stamp of its sample.
   /// @param hand  where the hand is, from where a move begins; empty: where `input` says
-  /// @return one sentence per sample that the model cannot use, and one if a pull has fallen silent
+  /// @return one sentence per sample that the model cannot use, and one if a pull or a velocity has fallen silent
   std::vector<std::string> interpret(const DueInput& due, const Model& model, StepInput& input,
                                      const std::optional<JointArray>& hand = {});
 
@@ -64,13 +72,20 @@ class InputInterpreter {
   void endMoves() { moves_ = {}, twist_.reset(); }
 
  private:
-  std::array<std::optional<JointMove>, kInputChannelCount> moves_;
-  std::optional<Eigen::Matrix<double, 6, 1>> twist_;  // of scope_tip in world; empty: it has no velocity of its own
+  struct Twist {
+    Eigen::Matrix<double, 6, 1> velocity;  // of scope_tip in world
+    std::int64_t begin;                    // of its life [ns]
+  };
 
-  std::string applySample(const InputSample& sample, std::int64_t stamp, const Model& model, const JointArray& hand,
+  std::int64_t velocity_life_;
+  std::array<std::optional<JointMove>, kInputChannelCount> moves_;
+  std::optional<Twist> twist_;  // empty: scope_tip has no velocity of its own
+
+  std::string applySample(const InputSample& sample, const DueInput& due, const Model& model, const JointArray& hand,
                           StepInput& input);
   std::string beginMove(const InputSample& sample, std::int64_t stamp, const Model& model, const JointArray& hand);
-  std::string beginTwist(const InputSample& sample, const Model& model);
+  std::string beginTwist(const InputSample& sample, const DueInput& due, const Model& model);
+  std::string applyTwist(const DueInput& due, const Model& model, const JointArray& hand, JointArray& joints);
   void applyMoves(std::int64_t stamp, JointArray& joints);
 };
 

@@ -8,9 +8,7 @@ namespace vibe::sim {
 
 namespace {
 
-constexpr double kOwnerPatience = 2;   // a source that is silent for longer has given the topic up [s]
-constexpr double kOrphanPeriod = 0.1;  // between looks whether the source of a velocity is still there [s]
-const char* const kVelocity = "scope/servo_cv";
+constexpr double kOwnerPatience = 2;  // a source that is silent for longer has given the topic up [s]
 constexpr std::uint32_t kInputQueue = 10000;  // none may be lost in lock-step; the queue bounds what really waits
 
 }  // namespace
@@ -32,7 +30,7 @@ Inputs::Inputs(const ros::NodeHandle& handle, InputQueue& queue, Publishers& pub
     return readJoints(message, InputChannel::Scope, JointSource::Commanded);
   });
   subscribe<geometry_msgs::PoseStamped>("scope/servo_cp", readTipTarget);
-  subscribe<geometry_msgs::TwistStamped>(kVelocity, readTipVelocity);
+  subscribe<geometry_msgs::TwistStamped>("scope/servo_cv", readTipVelocity);
   subscribe<JointState>("suturing_device/input/joint_states", [](const JointState& message) {
     return readJoints(message, InputChannel::SuturingDevice, JointSource::Measured);
   });
@@ -46,7 +44,6 @@ Inputs::Inputs(const ros::NodeHandle& handle, InputQueue& queue, Publishers& pub
                         [](const JointState& message) { return readMove(message, InputChannel::SuturingDevice); });
   subscribe<sensor_msgs::Joy>("scope/buttons", readButtons);
   subscribe<vibe_msgs::TissuePull>("tissue/pull", readPull);
-  orphan_timer_ = handle_.createWallTimer(ros::WallDuration(kOrphanPeriod), &Inputs::stopOrphan, this);
   spinner_ = std::make_unique<ros::AsyncSpinner>(1, &callbacks_);
   spinner_->start();
 }
@@ -100,15 +97,6 @@ bool Inputs::obeys(const std::string& name, Topic& topic, const std::string& pub
     return false;
   }
   return true;
-}
-
-void Inputs::stopOrphan(const ros::WallTimerEvent&) {
-  Topic& topic = topics_.at(kVelocity);
-  if (topic.owner.empty() || topic.subscriber.getNumPublishers() > 0) return;
-  topic.owner.clear();
-  InputSample stop;
-  stop.target = ScopeTarget::VelocityInWorld;
-  if (queue_.push(stop)) arrived_(stop.channel);
 }
 
 void Inputs::warnThrottled(Topic& topic, const std::string& sentence) {

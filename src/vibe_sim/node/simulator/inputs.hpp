@@ -12,7 +12,6 @@
 #include <ros/node_handle.h>
 #include <ros/spinner.h>
 #include <ros/subscriber.h>
-#include <ros/wall_timer.h>
 
 #include "input/input_queue.hpp"
 #include "input/input_sample.hpp"
@@ -48,7 +47,6 @@ class Inputs {
   std::function<std::int64_t()> now_;
   std::function<void(InputChannel)> arrived_;
   std::map<std::string, Topic> topics_;  // touched by the one thread of the spinner only, once it runs
-  ros::WallTimer orphan_timer_;
   std::unique_ptr<ros::AsyncSpinner> spinner_;
 
   template <typename Message>
@@ -56,8 +54,6 @@ class Inputs {
   void receive(const std::string& name, const std::string& publisher, const std::function<InputSample()>& read);
   bool obeys(const std::string& name, Topic& topic, const std::string& publisher);
   void take(const std::string& name, Topic& topic, const std::string& publisher, const InputSample& sample);
-  /// A velocity lasts until the next message for the joints; whoever sent it may be gone.
-  void stopOrphan(const ros::WallTimerEvent& event);
   void warnThrottled(Topic& topic, const std::string& sentence);
 };
 

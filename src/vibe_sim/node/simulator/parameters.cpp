@@ -1,5 +1,7 @@
 #include "simulator/parameters.hpp"
 
+#include <cmath>
+
 #include <ros/param.h>
 
 #include "vibe_core/program/error.hpp"
@@ -84,6 +86,9 @@ Parameters readParameters(const ros::NodeHandle& private_handle) {
   reader.read("lockstep", parameters.lockstep);
   reader.read("lockstep_timeout", parameters.lockstep_timeout, 0.1, 86400, "s");
   parameters.input_window = readInputWindow(reader, parameters.time_source);
+  double velocity_life = 1e-9 * kVelocityLife;
+  reader.read("velocity_life", velocity_life, 0.05, 60, "s");
+  parameters.velocity_life = std::llround(1e9 * velocity_life);
   reader.read("start_paused", parameters.start_paused);
   reader.read("await_recorder", parameters.await_recorder);
   reader.read("threads", parameters.threads, 1, 256);

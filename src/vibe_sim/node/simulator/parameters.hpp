@@ -6,7 +6,7 @@
 
 #include <ros/node_handle.h>
 
-#include "input/input_sample.hpp"
+#include "input/input_interpreter.hpp"
 
 namespace vibe::sim {
 
@@ -30,6 +30,7 @@ struct Parameters {
   int threads = 1;              ///< inside a step
   int realtime_priority = 0;    ///< of the stepping thread, SCHED_FIFO; 0: an ordinary thread
   InputWindow input_window = InputWindow::ofWallClock();
+  std::int64_t velocity_life = kVelocityLife;  ///< [ns]
   double duration = 0;         ///< simulated time after which the node ends; 0: never [s]
   std::string summary_file;    ///< empty: none
   double master_timeout = 30;  ///< [s] of wall time without a master and without any listener

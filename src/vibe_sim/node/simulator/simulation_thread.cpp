@@ -46,6 +46,7 @@ SimulationThread::SimulationThread(const Parameters& parameters, const SceneMode
     : parameters_(parameters),
       queue_(queue),
       publishers_(publishers),
+      interpreter_(parameters.velocity_life),
       simulation_(made, parameters.seed.value_or(made.model->scene.seed), startOrigin(parameters), parameters.threads),
       pace_(simulation_, parameters.time_source),
       last_step_(stepsIn(parameters.duration, made.model->scene.step_period)) {

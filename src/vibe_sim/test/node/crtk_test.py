@@ -167,23 +167,27 @@ class CrtkTest(unittest.TestCase):
         self.assertTrue(wait_until(lambda: not self.state.messages[-1].is_busy))
         numpy.testing.assert_allclose(place(self.setpoint.messages[-1]), place(goal), atol=1e-3)
 
-    def test_a_velocity_moves_the_tip_until_its_publisher_leaves(self):
+    def test_a_velocity_moves_the_tip_while_it_is_sent(self):
         self.send("scope/servo_jp", [0.03, 0, 0.2, 0])
         self.step(60)
         velocity = rospy.Publisher("scope/servo_cv", TwistStamped, queue_size=10)
         self.assertTrue(wait_until(lambda: velocity.get_num_connections() > 0, 20))
         message = TwistStamped()  # CRTK clients give no frame
         message.twist.linear.x, message.twist.linear.z = 2e-3, -1e-3
-        velocity.publish(message)
-        rospy.rostime.wallsleep(0.15)
-        self.step(61)
-        first, last = self.setpoint.messages[-61], self.setpoint.messages[-1]
-        numpy.testing.assert_allclose(place(last) - place(first), numpy.array([2e-3, 0, -1e-3]) * 60 * PERIOD, atol=3e-5)
-        velocity.unregister()
-        rospy.rostime.wallsleep(1)
-        self.step(2)
+        passed = []
+        for _ in range(6):
+            velocity.publish(message)
+            rospy.rostime.wallsleep(0.15)
+            self.step(10)
+            passed += self.setpoint.messages
+        moved = place(passed[-1]) - place(passed[0])
+        numpy.testing.assert_allclose(moved, numpy.array([2e-3, 0, -1e-3]) * 59 * PERIOD, atol=3e-5)
+        self.step(20)  # a third of a second after the last message
+        further = numpy.linalg.norm(place(self.setpoint.messages[-1]) - place(passed[-1]))
+        self.assertTrue(0 < further < 0.3 * numpy.linalg.norm([2e-3, 0, -1e-3]), further)
         self.step(10)
         numpy.testing.assert_allclose(place(self.setpoint.messages[-1]), place(self.setpoint.messages[0]), atol=1e-9)
+        velocity.unregister()
 
     def test_the_state_is_commanded(self):
         command = self.to["suturing_device/state_command"]

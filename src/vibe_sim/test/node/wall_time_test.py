@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 """With the wall clock as the source of time: pace, stamps, pause, no /clock; and a trainee that runs freely."""
 
+import os
+import signal
+import subprocess
 import sys
 import time
 import unittest
@@ -113,6 +116,23 @@ class WallTimeTest(unittest.TestCase):
         self.assertIn("are released: apc_pedal, cinch;", warning.text)
         self.assertTrue(wait_until(lambda: not any(self.applied.messages[-1].buttons), 2))
         press.unregister()
+
+    def test_a_velocity_of_a_node_that_hangs_ends(self):
+        twist = ["scope/servo_cv", "geometry_msgs/TwistStamped", "{twist: {linear: {z: -0.01}}}"]
+        publisher = subprocess.Popen(["rostopic", "pub", "-r", "20"] + twist, stdout=subprocess.DEVNULL)
+        try:
+            begin = self.applied.waits_for(lambda m: True, 5).joints[0]
+            self.assertTrue(wait_until(lambda: abs(self.applied.messages[-1].joints[0] - begin) > 2e-3, 20))
+            self.events.clear()
+            os.kill(publisher.pid, signal.SIGSTOP)
+            self.assertIsNotNone(self.events.waits_for(lambda m: "scope/servo_cv has been silent for 0.3" in m.text, 5))
+            self.applied.clear()
+            self.assertTrue(wait_until(lambda: len(self.applied.messages) > 30))
+            self.assertEqual(len({m.joints for m in self.applied.messages[2:]}), 1)
+            self.assertEqual(len(self.events.messages), 1, self.events.messages)
+        finally:
+            publisher.kill()
+            publisher.wait()
 
     def test_a_free_trainee_moves_the_scope(self):
         trainee = Program("vibe_sim", "vibe_trainee", name="trainee", script=scene("poke.trainee.yaml"))
