@@ -59,6 +59,7 @@ void moveJoint(const JointMapping& mapping, const JointLimits& limits, const Pad
     state.targets[i] = target;
     motion = state.engaged[i] ? target - joint : 0;
   }
+  state.resting[i] = motion == 0;
   const double most = limits.velocity * dt;
   joint = std::clamp(joint + std::clamp(motion, -most, most), limits.lower, limits.upper);
 }
@@ -120,14 +121,16 @@ DriveState advance(const PadMapping& mapping, const ToolLimits& limits, const Pa
 }
 
 DriveState releaseDrive(DriveState state) {
-  return startDrive(state.joints, {}, {});
+  state = startDrive(state.joints, {}, {});
+  state.resting.fill(true);
+  return state;
 }
 
 DriveState followJoints(const std::array<double, kJointCount>& measured, const ToolLimits& limits, DriveState state) {
   for (std::size_t i = 0; i < kJointCount; ++i) {
     const double lead = kLead * limits[i].velocity;
     const double ahead = state.joints[i] - measured[i];
-    if (std::abs(ahead) > 2 * lead) {
+    if (std::abs(ahead) > (state.resting[i] ? 1 : 2) * lead) {
       state.joints[i] = measured[i];
       state.engaged[i] = false;
       state.targets[i] = std::numeric_limits<double>::quiet_NaN();

@@ -280,6 +280,18 @@ TEST(PadDrive, JointThatTheSimulatorHasPutElsewhereIsTakenOver) {
   EXPECT_EQ(drive(mapping, pad, state, 100).joints[Insertion], 0);  // until the throttle comes to zero
 }
 
+TEST(PadDrive, AJointThatRestsGoesWithWhoElseMovesItAndDoesNotPull) {
+  const PadMapping mapping = mappingOf(kRate);
+  const double lead = 0.25 * toolLimits()[Insertion].velocity;
+  DriveState state = drive(mapping, twoStickPad(), begin({0.05}), 1);
+  state = followJoints({0.05 + 0.9 * lead}, toolLimits(), state);
+  EXPECT_EQ(state.joints[Insertion], 0.05) << "the tissue may hold the tool back";
+  state = followJoints({0.05 + 1.1 * lead}, toolLimits(), state);
+  EXPECT_EQ(state.joints[Insertion], 0.05 + 1.1 * lead);
+  state = releaseDrive(state);
+  EXPECT_EQ(followJoints({0.05}, toolLimits(), state).joints[Insertion], 0.05) << "also without a pad";
+}
+
 TEST(PadDrive, AxesThatThePadLacksMoveNothing) {
   const DriveState start = begin(middle());
   EXPECT_EQ(drive(shippedMapping("two_stick"), PadState{}, start, 10).joints, start.joints);

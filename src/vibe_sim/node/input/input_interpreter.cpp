@@ -144,7 +144,10 @@ std::vector<std::string> InputInterpreter::interpret(const DueInput& due, const 
 
 std::string InputInterpreter::applySample(const InputSample& sample, const DueInput& due, const Model& model,
                                           const JointArray& hand, StepInput& input) {
-  moves_[static_cast<std::size_t>(sample.channel)].reset();
+  const auto channel = static_cast<std::size_t>(sample.channel);
+  std::string ignored;
+  if (channel < drivers_.size() && !drivers_[channel].obeys(sample, hand, ignored)) return ignored;
+  moves_[channel].reset();
   if (sample.channel == InputChannel::Scope) twist_.reset();
   if (sample.target == ScopeTarget::VelocityInWorld || sample.target == ScopeTarget::VelocityInBase)
     return beginTwist(sample, due, model);

@@ -7,6 +7,7 @@
 
 #include "input/input_queue.hpp"
 #include "input/input_sample.hpp"
+#include "input/joint_drivers.hpp"
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/tool/tool_model.hpp"
@@ -57,10 +58,11 @@ class InputInterpreter {
   /// @param velocity_life  kVelocityLife, or what the user has chosen [ns]
   explicit InputInterpreter(std::int64_t velocity_life = kVelocityLife) : velocity_life_(velocity_life) {}
 
-  /// Applies to `input` what is due; the last valid values stay in force. Targets of the tip become joints by the
-  /// tool's inverse kinematics; a pull without a message for kPullTimeout ends. A move ends at its goal, when another
-  /// sample for its joints is applied, or when the clock is set back; a velocity of the tip ends in the last two ways,
-  /// and of itself: it fades in the last third of its life, which begins at the stamp of its sample.
+  /// Applies to `input` what is due and comes from who drives (JointDrivers); the last valid values stay in force.
+  /// Targets of the tip become joints by the tool's inverse kinematics; a pull without a message for kPullTimeout ends.
+  /// A move ends at its goal, when another sample for its joints is applied, or when the clock is set back; a velocity
+  /// of the tip ends in the last two ways, and of itself: it fades in the last third of its life, which begins at the
+  /// stamp of its sample.
   /// @param hand  where the hand is, from where a move begins; empty: where `input` says
   /// @return one sentence per sample that the model cannot use, and one if a pull or a velocity has fallen silent
   std::vector<std::string> interpret(const DueInput& due, const Model& model, StepInput& input,
@@ -69,7 +71,7 @@ class InputInterpreter {
   /// Whether a move of the scope or of the suturing device is under way.
   bool moves(InputChannel channel) const { return moves_[static_cast<std::size_t>(channel)].has_value(); }
   /// Ends all moves where they are, because another state has taken over.
-  void endMoves() { moves_ = {}, twist_.reset(); }
+  void endMoves() { moves_ = {}, twist_.reset(), drivers_ = {}; }
 
  private:
   struct Twist {
@@ -79,7 +81,8 @@ class InputInterpreter {
 
   std::int64_t velocity_life_;
   std::array<std::optional<JointMove>, kInputChannelCount> moves_;
-  std::optional<Twist> twist_;  // empty: scope_tip has no velocity of its own
+  std::array<JointDrivers, 2> drivers_;  // of the scope and of the suturing device
+  std::optional<Twist> twist_;           // empty: scope_tip has no velocity of its own
 
   std::string applySample(const InputSample& sample, const DueInput& due, const Model& model, const JointArray& hand,
                           StepInput& input);

@@ -18,14 +18,15 @@ InputQueue::InputQueue() {
 bool InputQueue::push(const InputSample& sample) {
   const auto channel = static_cast<std::size_t>(sample.channel);
   const std::int64_t stamp = std::max(sample.stamp, applied_until_.load());
-  const bool replaces = taken_[channel] > 0 && stamp == last_pushed_[channel];
+  const bool replaces = taken_[channel] > 0 && stamp == last_pushed_[channel].stamp &&
+                        isOfOneNode(sample.sender, last_pushed_[channel].sender);
   if (!replaces && taken_[channel] >= kCapacity) return false;
   ++taken_[channel];
   if (!inbox_.push(sample)) {
     --taken_[channel];
     return false;
   }
-  last_pushed_[channel] = stamp;
+  last_pushed_[channel] = {stamp, sample.sender};
   return true;
 }
 
@@ -40,9 +41,14 @@ void InputQueue::insert(const InputSample& sample) {
   item.stamp = std::max(sample.stamp, applied_until_.load());
   const auto later = std::upper_bound(queue.waiting.begin(), queue.waiting.end(), item.stamp,
                                       [](std::int64_t stamp, const InputSample& other) { return stamp < other.stamp; });
-  const bool replaces = later != queue.waiting.begin() && std::prev(later)->stamp == item.stamp;
+  auto own = later;  // behind the one to replace
+  while (own != queue.waiting.begin() && std::prev(own)->stamp == item.stamp &&
+         !isOfOneNode(std::prev(own)->sender, item.sender))
+    --own;
+  const bool replaces = own != queue.waiting.begin() && std::prev(own)->stamp == item.stamp;
   if (replaces || queue.waiting.full()) {
-    *(later == queue.waiting.begin() ? later : std::prev(later)) = item;
+    const auto place = replaces ? own : later;
+    *(place == queue.waiting.begin() ? place : std::prev(place)) = item;
     --taken_[channel];
   } else {
     queue.waiting.insert(later, item);

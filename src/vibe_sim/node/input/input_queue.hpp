@@ -36,7 +36,7 @@ class InputQueue {
 
   InputQueue();
 
-  /// A sample with the stamp of one that still waits replaces it.
+  /// A sample with the stamp of one of the same node that still waits replaces it.
   /// @return false if the channel is full and the sample was not taken
   bool push(const InputSample& sample);
 
@@ -68,7 +68,11 @@ class InputQueue {
     std::int64_t last_due = 0;                               // time at which a sample was taken out last
   };
   // of the thread that pushes
-  std::array<std::int64_t, kInputChannelCount> last_pushed_{};  // stamp [ns]
+  struct Pushed {
+    std::int64_t stamp = 0;  // [ns]
+    const SampleSender* sender = nullptr;
+  };
+  std::array<Pushed, kInputChannelCount> last_pushed_;
 
   // between the two
   boost::lockfree::spsc_queue<InputSample> inbox_{kInbox};

@@ -18,6 +18,10 @@ const char* toString(InputChannel channel) {
   return "";
 }
 
+bool isOfOneNode(const SampleSender* a, const SampleSender* b) {
+  return a == b || (a != nullptr && b != nullptr && a->node == b->node);
+}
+
 std::string faultOf(std::int64_t stamp, std::int64_t now, const InputWindow& window) {
   if (stamp == 0) return "";
   const bool early = stamp - now > window.look_ahead;

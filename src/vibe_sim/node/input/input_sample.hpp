@@ -20,10 +20,16 @@ const char* toString(InputChannel channel);
 /// What a sample of the channel Scope says: joint positions, the pose that scope_tip is to reach, or its velocity.
 enum class ScopeTarget { Joints, TipInWorld, TipInBase, VelocityInWorld, VelocityInBase };
 
+/// Who has sent a sample, for sentences, and on which topic.
+struct SampleSender {
+  std::string topic, node;
+};
+
 /// One valid message, free of ROS. Only the values of its channel count.
 struct InputSample {
   InputChannel channel = InputChannel::Scope;
-  std::int64_t stamp = 0;  ///< time of the sample [ns]; 0: as soon as possible
+  const SampleSender* sender = nullptr;  ///< outlives the sample; null: nobody in particular
+  std::int64_t stamp = 0;                ///< time of the sample [ns]; 0: as soon as possible
   JointArray joints{};
   bool move = false;  ///< joints or pose are the goal of a JointMove from where the hand is; else where it is to be now
   std::array<std::uint8_t, kButtonCount> buttons{};
@@ -33,6 +39,9 @@ struct InputSample {
   int pull_particle = -1;
   Eigen::Vector3d pull_target = Eigen::Vector3d::Zero();  ///< in world [m]
 };
+
+/// Whether both are of one node; nobody in particular is one, too.
+bool isOfOneNode(const SampleSender* a, const SampleSender* b);
 
 /// Which stamps a message of an input may have, compared with the simulator's time at its arrival. A node whose clock
 /// is wrong is told so; its messages neither wait nor count.

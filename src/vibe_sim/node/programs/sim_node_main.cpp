@@ -30,7 +30,8 @@ constexpr char kHelp[] =
     "Usage: rosrun vibe_sim sim_node _scene:=FILE [_PARAMETER:=VALUE]...\n"
     "Parameters: scene, mesh, seed, time_source, fast, follow, lockstep, lockstep_timeout, input_look_ahead, "
     "input_staleness,\n"
-    "velocity_life, start_paused, await_recorder, threads, realtime_priority, duration, summary_file, master_timeout; see "
+    "velocity_life, start_paused, await_recorder, threads, realtime_priority, duration, summary_file, master_timeout; "
+    "see "
     "docs/interfaces.md.\n";
 
 void waitForEnd(const sim::SimulationThread& thread, const sim::MasterWatch& watch) {

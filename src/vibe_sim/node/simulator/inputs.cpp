@@ -1,5 +1,7 @@
 #include "simulator/inputs.hpp"
 
+#include <algorithm>
+
 #include "conversions/input_message.hpp"
 #include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/program/error.hpp"
@@ -8,7 +10,7 @@ namespace vibe::sim {
 
 namespace {
 
-constexpr double kOwnerPatience = 2;  // a source that is silent for longer has given the topic up [s]
+constexpr double kOwnerPatience = 2;          // a source that is silent for longer has given the topic up [s]
 constexpr std::uint32_t kInputQueue = 10000;  // none may be lost in lock-step; the queue bounds what really waits
 
 }  // namespace
@@ -73,7 +75,8 @@ void Inputs::receive(const std::string& name, const std::string& publisher, cons
   }
 }
 
-void Inputs::take(const std::string& name, Topic& topic, const std::string& publisher, const InputSample& sample) {
+void Inputs::take(const std::string& name, Topic& topic, const std::string& publisher, InputSample sample) {
+  sample.sender = senderOf(name, topic, publisher);
   const std::string fault = faultOf(sample.stamp, now_(), window_);
   if (!fault.empty())
     return warnThrottled(topic, "A message on " + name + " from " + publisher + " is ignored: " + fault +
@@ -82,17 +85,25 @@ void Inputs::take(const std::string& name, Topic& topic, const std::string& publ
     return warnThrottled(topic, "A message on " + name + " from " + publisher +
                                     " is ignored: " + std::to_string(InputQueue::kCapacity) +
                                     " messages with later stamps wait already; send less ahead.");
-  topic.owner = publisher;
+  topic.owner = sample.sender;
   topic.last_message = steadyTime();
   arrived_(sample.channel);
 }
 
+const SampleSender* Inputs::senderOf(const std::string& name, const Topic& topic, const std::string& publisher) {
+  if (topic.owner != nullptr && topic.owner->node == publisher) return topic.owner;
+  const auto known = std::find_if(senders_.begin(), senders_.end(), [&](const SampleSender& sender) {
+    return sender.topic == name && sender.node == publisher;
+  });
+  return &(known != senders_.end() ? *known : senders_.emplace_back(SampleSender{name, publisher}));
+}
+
 bool Inputs::obeys(const std::string& name, Topic& topic, const std::string& publisher) {
   const double now = steadyTime();
-  const bool owned = !topic.owner.empty() && topic.owner != publisher && topic.subscriber.getNumPublishers() > 1 &&
-                     now - topic.last_message < kOwnerPatience;
+  const bool owned = topic.owner != nullptr && topic.owner->node != publisher &&
+                     topic.subscriber.getNumPublishers() > 1 && now - topic.last_message < kOwnerPatience;
   if (owned) {
-    warnThrottled(topic, "Two nodes publish " + name + ": " + topic.owner + " is obeyed and " + publisher +
+    warnThrottled(topic, "Two nodes publish " + name + ": " + topic.owner->node + " is obeyed and " + publisher +
                              " ignored; stop one of them.");
     return false;
   }

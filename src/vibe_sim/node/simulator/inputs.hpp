@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -34,9 +35,9 @@ class Inputs {
   /// A topic has one source at a time: two that disagree would make the scope jump between two positions.
   struct Topic {
     ros::Subscriber subscriber;
-    std::string owner;           // name of the node that is obeyed: the last one of which a message was taken
-    double last_message = 0;     // of the owner, steady time [s]
-    double last_warning = -1e9;  // steady time [s]
+    const SampleSender* owner = nullptr;  // that is obeyed: the last one of which a message was taken
+    double last_message = 0;              // of the owner, steady time [s]
+    double last_warning = -1e9;           // steady time [s]
   };
 
   ros::NodeHandle handle_;
@@ -46,6 +47,7 @@ class Inputs {
   const InputWindow window_;
   std::function<std::int64_t()> now_;
   std::function<void(InputChannel)> arrived_;
+  std::list<SampleSender> senders_;      // so far
   std::map<std::string, Topic> topics_;  // touched by the one thread of the spinner only, once it runs
   std::unique_ptr<ros::AsyncSpinner> spinner_;
 
@@ -53,7 +55,8 @@ class Inputs {
   void subscribe(const std::string& name, std::function<InputSample(const Message&)> read);
   void receive(const std::string& name, const std::string& publisher, const std::function<InputSample()>& read);
   bool obeys(const std::string& name, Topic& topic, const std::string& publisher);
-  void take(const std::string& name, Topic& topic, const std::string& publisher, const InputSample& sample);
+  void take(const std::string& name, Topic& topic, const std::string& publisher, InputSample sample);
+  const SampleSender* senderOf(const std::string& name, const Topic& topic, const std::string& publisher);
   void warnThrottled(Topic& topic, const std::string& sentence);
 };
 

@@ -31,9 +31,9 @@ struct Parameters {
   int realtime_priority = 0;    ///< of the stepping thread, SCHED_FIFO; 0: an ordinary thread
   InputWindow input_window = InputWindow::ofWallClock();
   std::int64_t velocity_life = kVelocityLife;  ///< [ns]
-  double duration = 0;         ///< simulated time after which the node ends; 0: never [s]
-  std::string summary_file;    ///< empty: none
-  double master_timeout = 30;  ///< [s] of wall time without a master and without any listener
+  double duration = 0;                         ///< simulated time after which the node ends; 0: never [s]
+  std::string summary_file;                    ///< empty: none
+  double master_timeout = 30;                  ///< [s] of wall time without a master and without any listener
 };
 
 /// @throws Error for an unknown parameter, one of a wrong type or out of range, and settings that exclude each other

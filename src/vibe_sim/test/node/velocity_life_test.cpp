@@ -87,7 +87,8 @@ TEST_F(VelocityLifeTest, MotionEndsWithinItsLifeAndAStepHoweverTheSenderFails) {
     ASSERT_GE(run.last_motion, run.last_effective) << seed;
     ASSERT_LE(run.last_motion, run.last_effective + kVelocityLife + run.step) << seed;
     ASSERT_FALSE(run.sentences.empty()) << seed;
-    for (const std::string& sentence : run.sentences) ASSERT_EQ(sentence.rfind("scope/servo_cv has been silent", 0), 0u);
+    for (const std::string& sentence : run.sentences)
+      ASSERT_EQ(sentence.rfind("scope/servo_cv has been silent", 0), 0u);
   }
   EXPECT_GT(heard, 80);
 }

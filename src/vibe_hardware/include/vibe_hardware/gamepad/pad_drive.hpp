@@ -13,6 +13,7 @@ namespace vibe::hardware {
 struct DriveState {
   std::array<double, kJointCount> joints{};           ///< commanded [m], [rad]
   std::array<std::uint8_t, kButtonCount> buttons{};   ///< 1 while pressed
+  std::array<bool, kJointCount> resting{};            ///< the pad does not move the joint at present
   std::array<bool, kJointCount> engaged{};            ///< position mode: the control has picked the joint up
   std::array<double, kJointCount> targets{};          ///< position mode: where the control was; NaN: unknown [m], [rad]
   std::array<std::uint32_t, kButtonCount> presses{};  ///< of the pad's buttons, already used
@@ -39,7 +40,8 @@ DriveState advance(const PadMapping& mapping, const ToolLimits& limits, const Pa
 DriveState releaseDrive(DriveState state);
 
 /// Keeps the command near where the simulator has the joints: at most a quarter of a second of greatest speed ahead. A
-/// joint that is further away than twice that (after a reset or a load) is taken over from the simulator.
+/// joint that is further away than twice that (after a reset or a load), or that rests there because another node moves
+/// it, is taken over from the simulator.
 DriveState followJoints(const std::array<double, kJointCount>& measured, const ToolLimits& limits, DriveState state);
 
 /// One sentence that names the position controls that have not picked their joints up and what to do; empty if none.
