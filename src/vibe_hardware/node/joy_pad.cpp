@@ -1,6 +1,7 @@
 #include "joy_pad.hpp"
 
 #include <functional>
+#include <set>
 #include <utility>
 
 #include <ros/ros.h>
@@ -11,6 +12,7 @@ namespace vibe::hardware {
 namespace {
 
 constexpr std::uint32_t kJoyQueue = 1000;
+constexpr double kJoyLife = 0.5;  // of a message: whoever sent it may hang [s]
 
 /// What has come on the topic; outlives the pads that are made of it.
 class JoyTopic {
@@ -22,6 +24,12 @@ class JoyTopic {
 
   bool isThere() const { return subscriber_.getNumPublishers() > 0 && messages_ > 0; }
   void forget() { state_ = PadState(), messages_ = 0; }
+  /// Until the next message, as if nobody held the pad.
+  void letGo() {
+    for (auto& [code, axis] : state_.axes) axis.is_known = false;
+    for (auto& [code, button] : state_.buttons)
+      if (std::exchange(button.down, false)) let_go_.insert(code);
+  }
 
   std::string topic() const { return subscriber_.getTopic(); }
   const PadState& state() const { return state_; }
@@ -35,12 +43,15 @@ class JoyTopic {
   ros::Publisher feedback_;
   JoyNames names_;
   PadState state_;
+  std::set<int> let_go_;  // buttons that are down as far as the topic knows
   std::uint64_t messages_ = 0;
   std::size_t axis_count_ = 0, button_count_ = 0;
   std::function<void(const PadEvent&)> listener_;
   ros::Subscriber subscriber_;
 
   void onJoy(const sensor_msgs::Joy& message) {
+    for (const int code : let_go_) state_.buttons[code].down = true;  // as it was: no new press
+    let_go_.clear();
     axis_count_ = message.axes.size(), button_count_ = message.buttons.size();
     for (const PadEvent& event : joyEvents(message.axes, message.buttons, names_, state_)) {
       state_.apply(event);
@@ -63,7 +74,9 @@ class JoyPad : public PadSource, public PadMotors {
   JoyPad& operator=(const JoyPad&) = delete;
 
   const PadInfo& info() const override { return info_; }
-  bool update(double) override {
+  bool update(double now) override {
+    if (std::exchange(seen_, topic_->messages()) != topic_->messages()) last_ = now;
+    if (now - last_ > kJoyLife) letGo();
     if (topic_->isThere()) return true;
     topic_->forget();
     return false;
@@ -91,8 +104,20 @@ class JoyPad : public PadSource, public PadMotors {
   bool spring(const std::array<StickSpring, 2>&) override { return false; }
 
  private:
+  void letGo() {
+    topic_->letGo();
+    if (!std::exchange(told_, true))
+      ROS_WARN_STREAM("No message has come on " << topic_->topic() << " for " << kJoyLife
+                                                << " s, so sticks and buttons count as let go until the next one; its "
+                                                   "node may hang, or not repeat what stays: start joy_node with "
+                                                   "_autorepeat_rate:=20.");
+  }
+
   std::shared_ptr<JoyTopic> topic_;
   PadInfo info_;
+  bool told_ = false;
+  std::uint64_t seen_ = 0;  // messages
+  double last_ = 0;         // of them, steady time [s]
 };
 
 }  // namespace

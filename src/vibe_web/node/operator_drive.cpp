@@ -72,7 +72,8 @@ void OperatorDrive::tick(WebServer& server) {
   const double now = steadyNow();
   seat_.tick(now);
   viewer_.tick(now, server);
-  move(std::min(now - last_, kLongestStep));
+  passKeys();
+  moveAxes(std::min(now - last_, kLongestStep));
   last_ = now;
   if (now - ticked_ < kButtonPeriod) return;
   ticked_ = now;
@@ -89,10 +90,10 @@ void OperatorDrive::obey(ClientId client, const Command& command, WebServer& ser
       seat_.leave(client);
       return;
     case Command::Kind::Drive:
-      if (!seat_.receive(client, command, steadyNow()))
-        server.send(
-            client, Kind::Refusal,
-            textMessage(Kind::Refusal, "A drive message does not count: it is old, or this page does not drive."));
+      if (seat_.receive(client, command, steadyNow())) return passKeys();
+      server.send(
+          client, Kind::Refusal,
+          textMessage(Kind::Refusal, "A drive message does not count: it is old, or this page does not drive."));
       return;
     case Command::Kind::Replay:
       if (client == seat_.holder()) replay(command);
@@ -130,13 +131,16 @@ void OperatorDrive::replay(const Command& command) {
   replay_.publish(message);
 }
 
-/// Brings the keys and axes of the page to the scope.
-void OperatorDrive::move(double seconds) {
+/// With every message of the page: a key may go down and come up between two ticks.
+void OperatorDrive::passKeys() {
   const std::set<int>& wanted = seat_.keys();
   for (const int key : std::set<int>(down_))
     if (wanted.count(key) == 0) drive_.keyUp(key), down_.erase(key);
   for (const int key : wanted)
     if (down_.insert(key).second) drive_.keyDown(key);
+}
+
+void OperatorDrive::moveAxes(double seconds) {
   const operating::DriveSpeeds speeds;
   for (std::size_t joint = 0; joint < kAxes; ++joint)
     if (seat_.axes()[joint] != 0)

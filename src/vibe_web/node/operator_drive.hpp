@@ -32,7 +32,8 @@ class OperatorDrive {
   void obey(ClientId client, const Command& command, WebServer& server);
   void takeSeat(ClientId client, WebServer& server);
   void replay(const Command& command);
-  void move(double seconds);
+  void passKeys();
+  void moveAxes(double seconds);
   void publish(WebServer& server);
 
   std::mutex mutex_;  // of what was received and not taken up

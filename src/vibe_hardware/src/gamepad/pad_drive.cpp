@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace vibe::hardware {
 namespace {
@@ -29,6 +30,17 @@ double buttonOf(const PadState& pad, int code) {
   return button != pad.buttons.end() && button->second.isPressed() ? 1 : 0;
 }
 
+std::uint32_t pressesOf(const PadState& pad, int code) {
+  const auto button = pad.buttons.find(code);
+  return button == pad.buttons.end() ? 0 : button->second.presses;
+}
+
+/// 1 if a button was pressed since the last call and is up again. @param used  presses so far; brought up to date
+double tapOf(const PadState& pad, int code, std::uint32_t& used) {
+  const std::uint32_t before = std::exchange(used, pressesOf(pad, code));
+  return used != before ? 1 - buttonOf(pad, code) : 0;
+}
+
 double shaped(double deflection, double dead_zone, double exponent) {
   const double beyond = (std::abs(deflection) - dead_zone) / (1 - dead_zone);
   return beyond <= 0 ? 0 : std::copysign(std::pow(beyond, exponent), deflection);
@@ -50,7 +62,12 @@ void moveJoint(const JointMapping& mapping, const JointLimits& limits, const Pad
   const auto i = static_cast<std::size_t>(index);
   if (mapping.control == JointMapping::Control::None) return;
   double& joint = state.joints[i];
-  double motion = controlDeflection(mapping, pad) * mapping.rate * dt;
+  double deflection = controlDeflection(mapping, pad);
+  if (mapping.control == JointMapping::Control::Buttons) {
+    const double tap = tapOf(pad, mapping.forward, state.taps[i][0]) - tapOf(pad, mapping.backward, state.taps[i][1]);
+    deflection = std::clamp(deflection + (mapping.reversed ? -tap : tap), -1.0, 1.0);
+  }
+  double motion = deflection * mapping.rate * dt;
   if (mapping.mode == JointMapping::Mode::Position) {
     const auto axis = pad.axes.find(mapping.forward);
     if (axis == pad.axes.end() || !axis->second.is_known) return;
@@ -102,10 +119,9 @@ DriveState startDrive(const std::array<double, kJointCount>& joints, const PadMa
   DriveState state;
   state.joints = joints;
   state.targets.fill(std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < kButtonCount; ++i) {
-    const auto button = pad.buttons.find(mapping.buttons[i].code);
-    if (button != pad.buttons.end()) state.presses[i] = button->second.presses;
-  }
+  for (std::size_t i = 0; i < kButtonCount; ++i) state.presses[i] = pressesOf(pad, mapping.buttons[i].code);
+  for (std::size_t i = 0; i < kJointCount; ++i)
+    state.taps[i] = {pressesOf(pad, mapping.joints[i].forward), pressesOf(pad, mapping.joints[i].backward)};
   return state;
 }
 

@@ -280,6 +280,20 @@ TEST(PadDrive, JointThatTheSimulatorHasPutElsewhereIsTakenOver) {
   EXPECT_EQ(drive(mapping, pad, state, 100).joints[Insertion], 0);  // until the throttle comes to zero
 }
 
+TEST(PadDrive, NoTapOfAButtonThatMovesAJointIsLost) {
+  const PadMapping mapping =
+      mappingOf("joints:\n  needle_driver: {buttons: [BTN_TR, BTN_TL], mode: rate, rate: 3 cm/s}");
+  PadState pad = twoStickPad();
+  press(pad, BTN_TR), letGo(pad, BTN_TR);
+  DriveState state = drive(mapping, pad, startDrive(middle(), mapping, pad), 1);
+  EXPECT_EQ(state.joints, middle()) << "what was before does not count";
+  press(pad, BTN_TR), letGo(pad, BTN_TR);
+  state = drive(mapping, pad, state, 5);
+  EXPECT_NEAR(state.joints[NeedleDriver] - middle()[NeedleDriver], 0.03 * kPeriod, 1e-12) << "one period";
+  press(pad, BTN_TL), letGo(pad, BTN_TL);
+  EXPECT_NEAR(drive(mapping, pad, state, 5).joints[NeedleDriver], middle()[NeedleDriver], 1e-12);
+}
+
 TEST(PadDrive, AJointThatRestsGoesWithWhoElseMovesItAndDoesNotPull) {
   const PadMapping mapping = mappingOf(kRate);
   const double lead = 0.25 * toolLimits()[Insertion].velocity;

@@ -140,6 +140,25 @@ class GamepadTest(unittest.TestCase):
         self.assertTrue(wait_until(lambda: node.count("is gone") == 1, 20), node.lines)
         self.assertTrue(wait_until(lambda: self.simulator.buttons[-1].buttons[1] == 0, 20))
 
+    def test_a_joy_node_that_hangs_moves_nothing_on(self):
+        joy = rospy.Publisher("joy", Joy, queue_size=10)
+        node = self.start(joy="joy")
+        self.assertTrue(wait_until(lambda: joy.get_num_connections() > 0, 20), node.lines)
+        joy.publish(Joy(axes=[0] * 8, buttons=[0] * 11))
+        self.assertTrue(wait_until(lambda: self.simulator.scope, 20), node.lines)
+        pressed = Joy(axes=[0, 1] + [0] * 6, buttons=[1, 1] + [0] * 9)  # forwards; A switches, B is held
+        joy.publish(pressed)
+        self.assertTrue(wait_until(lambda: node.count("No message has come on /joy for 0.5 s") == 1, 20), node.lines)
+        self.assertTrue(wait_until(lambda: self.simulator.buttons[-1].buttons[:3] == (0, 1, 0), 20))
+        rest = list(self.simulator.scope[-1].position)
+        self.assertGreater(rest[0], START[0] + 0.01)
+        time.sleep(0.5)
+        self.assertEqual(list(self.simulator.scope[-1].position), rest)
+        joy.publish(pressed)  # it goes on: what was held is held again, and nothing is pressed anew
+        self.assertTrue(wait_until(lambda: self.simulator.buttons[-1].buttons[:3] == (0, 1, 1), 20))
+        self.assertTrue(wait_until(lambda: self.simulator.scope[-1].position[0] > rest[0] + 0.01, 20))
+        joy.unregister()
+
     def test_without_a_pad_it_says_so_once_and_publishes_nothing(self):
         reports = []
         listener = rospy.Subscriber("/diagnostics", DiagnosticArray, reports.append)

@@ -78,7 +78,7 @@ void ScopeDrive::begin(const JointLimits& limits, const Joints& present) {
     const JointLimit& limit = limits[i];
     axes_[i].rest({limit.lower, limit.upper, limit.velocity, limit.velocity / kRampTime}, present[i]);
     goals_[i] = axes_[i].position();
-    by_key_[i] = false;
+    pressed_[i] = goals_[i];
   }
 }
 
@@ -95,6 +95,17 @@ void ScopeDrive::keyUp(int key) {
 void ScopeDrive::change(const KeyBinding& binding, bool down) {
   if (binding.kind == KeyBinding::Kind::Button) button_changed_(binding.index, down);
   if (binding.kind == KeyBinding::Kind::Gear && down) chosen_ = static_cast<DriveGear>(binding.index);
+  if (binding.kind == KeyBinding::Kind::Joint) changeJoint(binding, down);
+}
+
+void ScopeDrive::changeJoint(const KeyBinding& binding, bool down) {
+  const auto i = static_cast<std::size_t>(binding.index);
+  if (down) pressed_[i] = axes_[i].position();
+  if (direction(binding.index) != 0) return;
+  goals_[i] = axes_[i].stoppingPoint();
+  if (down) return;
+  const double tap = pressed_[i] + binding.sign * factor() * speeds_.keys[i] * kTap;
+  goals_[i] = binding.sign > 0 ? std::max(goals_[i], tap) : std::min(goals_[i], tap);
 }
 
 void ScopeDrive::releaseAll() {
@@ -117,12 +128,7 @@ void ScopeDrive::advanceJoint(int joint, double seconds) {
   const auto i = static_cast<std::size_t>(joint);
   SmoothAxis& axis = axes_[i];
   const int way = direction(joint);
-  if (way == 0) {
-    if (by_key_[i]) goals_[i] = axis.stoppingPoint();
-    by_key_[i] = false;
-    return axis.advance(seconds, goals_[i], limits_[i].velocity);
-  }
-  by_key_[i] = true;
+  if (way == 0) return axis.advance(seconds, goals_[i], limits_[i].velocity);
   axis.advance(seconds, way > 0 ? limits_[i].upper : limits_[i].lower, factor() * speeds_.keys[i]);
 }
 

@@ -71,6 +71,35 @@ TEST_F(ScopeDriveTest, MovesAtTheSpeedOfTheKey) {
   EXPECT_TRUE(drive.atRest());
 }
 
+TEST_F(ScopeDriveTest, NoTapIsLostHoweverShort) {
+  for (const KeyBinding& binding : keyBindings()) {
+    if (binding.kind != KeyBinding::Kind::Joint) continue;
+    const auto i = static_cast<std::size_t>(binding.index);
+    for (const double seconds : {0.0, 1e-6, 0.003, 0.01}) {
+      drive.begin(urdfLimits(), kStart);
+      drive.keyDown(binding.key);
+      drive.advance(seconds);
+      drive.keyUp(binding.key);
+      drive.advance(0.5);
+      const double step = DriveSpeeds().keys[i] / 60;
+      EXPECT_GE(binding.sign * (drive.joints()[i] - kStart[i]), step - 1e-9) << binding.key << ", " << seconds << " s";
+      EXPECT_LE(binding.sign * (drive.joints()[i] - kStart[i]), 2 * step) << binding.key << ", " << seconds << " s";
+      EXPECT_TRUE(drive.atRest());
+    }
+  }
+}
+
+TEST_F(ScopeDriveTest, ATapCountsFromWhereTheJointIsPutMeanwhile) {
+  drive.keyDown('W');
+  drive.advance(0.5);
+  Joints elsewhere = kStart;
+  elsewhere[Insertion] = 0.01;
+  drive.begin(urdfLimits(), elsewhere);
+  drive.keyUp('W');
+  drive.advance(1);
+  EXPECT_NEAR(drive.joints()[Insertion], 0.01 + DriveSpeeds().keys[Insertion] / 60, 1e-9);
+}
+
 TEST_F(ScopeDriveTest, GearsAndShiftScaleTheSpeed) {
   const auto speed = [this] {
     drive.advance(0.3);

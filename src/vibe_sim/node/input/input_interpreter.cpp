@@ -72,11 +72,10 @@ std::string applyValues(const InputSample& sample, const Model& model, StepInput
     case InputChannel::SuturingDevice:
       std::copy(sample.joints.begin() + kScopeJointCount, sample.joints.end(), input.joints.begin() + kScopeJointCount);
       break;
-    case InputChannel::Buttons:
-      input.buttons = sample.buttons;
-      break;
     case InputChannel::Pull:
       return applyPull(sample, model, input);
+    case InputChannel::Buttons:
+      break;
   }
   return "";
 }
@@ -135,11 +134,24 @@ std::vector<std::string> InputInterpreter::interpret(const DueInput& due, const 
   const auto say = [&sentences](std::string sentence) {
     if (!sentence.empty()) sentences.push_back(std::move(sentence));
   };
-  for (const InputSample& sample : due.samples) say(applySample(sample, due, model, start, input));
+  const Buttons before = input.buttons;
+  if (owed_) press(Buttons(*owed_), before, input);
+  for (const InputSample& sample : due.samples)
+    if (sample.channel == InputChannel::Buttons)
+      press(sample.buttons, before, input);
+    else
+      say(applySample(sample, due, model, start, input));
   applyMoves(due.stamp, input.joints);
   if (twist_ && model.tool) say(applyTwist(due, model, start, input.joints));
   if (due.isSilent(InputChannel::Pull, kPullTimeout)) say(letGo(input));
   return sentences;
+}
+
+void InputInterpreter::press(const Buttons& buttons, const Buttons& before, StepInput& input) {
+  for (std::size_t b = 0; b < buttons.size(); ++b)
+    if (buttons[b] != before[b]) input.buttons[b] = buttons[b];
+  owed_.reset();
+  if (buttons != input.buttons) owed_ = buttons;
 }
 
 std::string InputInterpreter::applySample(const InputSample& sample, const DueInput& due, const Model& model,

@@ -153,6 +153,25 @@ TEST_F(InputQueueTest, buttonsThatNobodyPressesAnyMoreAreReleasedAndTheScopeStay
   EXPECT_EQ(input.buttons[HelixGrab], 1);
 }
 
+TEST_F(InputQueueTest, noPressIsLostBetweenTwoSteps) {
+  queue.push(buttonsAt(1, 11));
+  queue.push(buttonsAt(0, 15));
+  apply(20);
+  EXPECT_EQ(input.buttons[HelixGrab], 1);
+  apply(30);
+  EXPECT_EQ(input.buttons[HelixGrab], 0);
+  apply(40);
+  EXPECT_EQ(input.buttons[HelixGrab], 0);
+  queue.push(buttonsAt(1, 41));
+  apply(50);
+  queue.push(buttonsAt(0, 51));
+  queue.push(buttonsAt(1, 52));
+  apply(60);
+  EXPECT_EQ(input.buttons[HelixGrab], 0) << "let go and pressed again";
+  apply(70);
+  EXPECT_EQ(input.buttons[HelixGrab], 1);
+}
+
 TEST_F(InputQueueTest, buttonsStayPressedWhereTimeIsNotThatOfTheWall) {
   queue.push(buttonsAt(1, 1000));
   apply(1000, false);

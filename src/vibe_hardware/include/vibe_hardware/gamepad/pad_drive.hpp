@@ -17,6 +17,8 @@ struct DriveState {
   std::array<bool, kJointCount> engaged{};            ///< position mode: the control has picked the joint up
   std::array<double, kJointCount> targets{};          ///< position mode: where the control was; NaN: unknown [m], [rad]
   std::array<std::uint32_t, kButtonCount> presses{};  ///< of the pad's buttons, already used
+  /// The same of the buttons that move joints, forwards and backwards.
+  std::array<std::array<std::uint32_t, 2>, kJointCount> taps{};
 };
 
 /// Deflection of a joint's control after dead zone, exponent and direction, from -1 to 1; 0 if the pad lacks it.
@@ -31,6 +33,7 @@ DriveState startDrive(const std::array<double, kJointCount>& joints, const PadMa
 ///   position mode  the joint goes to low + (high - low) (deflection + 1) / 2 at its greatest speed. A control that is
 ///                  elsewhere than its joint picks it up when it comes within 2 % of its range to it, or passes it;
 ///                  until then the joint stays.
+/// A button that was pressed and let go since the last call counts as pressed for this one.
 /// Joints never leave their limits and never move faster than theirs.
 /// @param dt  time since the last call [s]; more than 0.1 s counts as 0.1 s, so that a pause causes no jump
 DriveState advance(const PadMapping& mapping, const ToolLimits& limits, const PadState& pad, DriveState state,

@@ -50,6 +50,9 @@ struct JointLimit {
 };
 using JointLimits = std::array<JointLimit, kJointCount>;  ///< by DriveJoint
 
+/// A key moves its joint by what it does in this time, at least [s].
+constexpr double kTap = 1.0 / 60;
+
 /// How fast keys and mouse move the joints. The limits of the joints apply on top.
 struct DriveSpeeds {
   /// While a key is held, at normal speed [1/s]. Design choice: about the pace of the scripted trainees.
@@ -72,6 +75,7 @@ class ScopeDrive {
 
   /// @param key  see drive_keys.hpp; one that is down already or does not drive changes nothing
   void keyDown(int key);
+  /// A joint brakes when its key comes up, but not before it has moved by kTap: no tap is lost, however short.
   /// @param key  see drive_keys.hpp; one that is up already or does not drive changes nothing
   void keyUp(int key);
   /// All keys come up; moving joints brake. Motion that the mouse has asked for ends too.
@@ -95,13 +99,14 @@ class ScopeDrive {
   JointLimits limits_{};
   std::array<SmoothAxis, kJointCount> axes_;
   Joints goals_{};
-  std::array<bool, kJointCount> by_key_{};
+  Joints pressed_{};  // where a joint was when its last key went down
   std::set<int> down_;
   DriveGear chosen_ = DriveGear::Normal;
 
   int direction(int joint) const;
   double factor() const;
   void change(const KeyBinding& binding, bool down);
+  void changeJoint(const KeyBinding& binding, bool down);
   void advanceJoint(int joint, double seconds);
 };
 
