@@ -46,4 +46,12 @@ geometry_msgs::TransformStamped makeTransform(const Eigen::Isometry3d& pose, con
   return message;
 }
 
+std::string quoted(const std::string& text) {
+  constexpr std::size_t kMost = 60;
+  std::string result = text.size() > kMost ? text.substr(0, kMost) + "..." : text;
+  std::replace_if(
+      result.begin(), result.end(), [](char c) { return c < ' ' || c > '~' || c == '\''; }, '?');
+  return "'" + result + "'";
+}
+
 }  // namespace vibe::sim

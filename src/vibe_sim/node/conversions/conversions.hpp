@@ -47,4 +47,7 @@ geometry_msgs::PoseStamped makePose(const Eigen::Isometry3d& pose, const std::st
 geometry_msgs::TransformStamped makeTransform(const Eigen::Isometry3d& pose, const std::string& parent,
                                               const std::string& child, std::int64_t stamp);
 
+/// What a message says, in quotation marks for a sentence: one line of printable ASCII, and no more than fits there.
+std::string quoted(const std::string& text);
+
 }  // namespace vibe::sim

@@ -26,7 +26,7 @@ int findJoint(const std::string& name, JointRange range) {
   for (int i = range.first; i < range.first + range.count; ++i) {
     if (name == kJointNames[i]) return i;
   }
-  throw Error("there is no joint '" + name + "'; name exactly " + listJoints(range) + ".");
+  throw Error("there is no joint " + quoted(name) + "; name exactly " + listJoints(range) + ".");
 }
 
 void checkLengths(const sensor_msgs::JointState& message, JointRange range, JointSource source) {
@@ -67,7 +67,7 @@ InputSample readJoints(const sensor_msgs::JointState& message, InputChannel chan
   std::array<bool, kJointCount> seen{};
   for (int i = 0; i < range.count; ++i) {
     const int joint = message.name.empty() ? range.first + i : findJoint(message.name[i], range);
-    if (seen[joint]) throw Error("joint '" + message.name[i] + "' is there twice; name each joint once.");
+    if (seen[joint]) throw Error("joint " + quoted(message.name[i]) + " is there twice; name each joint once.");
     if (!std::isfinite(message.position[i])) {
       throw Error(std::string("the position of joint '") + kJointNames[joint] +
                   "' is not a finite number; send the last valid position instead.");
@@ -106,8 +106,8 @@ namespace {
 
 void checkTipFrame(const std::string& frame, const std::string& what) {
   if (!frame.empty() && frame != kWorldFrame && frame != kScopeBaseFrame)
-    throw Error("its frame is '" + frame + "'; give the " + what + " of scope_tip in frame '" + kWorldFrame + "' or '" +
-                kScopeBaseFrame + "'.");
+    throw Error("its frame is " + quoted(frame) + "; give the " + what + " of scope_tip in frame '" + kWorldFrame +
+                "' or '" + kScopeBaseFrame + "'.");
 }
 
 }  // namespace
@@ -163,8 +163,8 @@ InputSample readPull(const vibe_msgs::TissuePull& message) {
     throw Error("its particle is " + std::to_string(message.particle) + "; give a number from 0 on, or -1 to let go.");
   const std::string& frame = message.header.frame_id;
   if (frame != kWorldFrame && frame != kTissueFrame)
-    throw Error("its frame is '" + frame + "'; give the target in frame '" + kWorldFrame + "' or '" + kTissueFrame +
-                "'.");
+    throw Error("its frame is " + quoted(frame) + "; give the target in frame '" + kWorldFrame + "' or '" +
+                kTissueFrame + "'.");
   sample.pull_particle = message.particle;
   sample.pull_target = {message.target.x, message.target.y, message.target.z};
   if (!sample.pull_target.allFinite())

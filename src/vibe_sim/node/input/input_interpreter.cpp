@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "input/target_checks.hpp"
 #include "input/tip_velocity.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
 #include "vibe_core/state/state.hpp"
@@ -21,15 +22,6 @@ double leastJerk(double s) {
   return s * s * s * (10 - 15 * s + 6 * s * s);
 }
 
-std::string nameOf(const InputSample& sample) {
-  const bool scope = sample.channel == InputChannel::Scope;
-  const bool twist = sample.target == ScopeTarget::VelocityInWorld || sample.target == ScopeTarget::VelocityInBase;
-  return std::string(scope ? "scope/" : "suturing_device/") + (sample.move ? "move_" : "servo_") +
-         (sample.target == ScopeTarget::Joints ? "jp"
-          : twist                              ? "cv"
-                                               : "cp");
-}
-
 std::string beyondReach(const std::string& topic, const Eigen::Vector3d& target, const Model& model,
                         const StepInput& input) {
   std::vector<Eigen::Isometry3d> poses;
@@ -41,7 +33,7 @@ std::string beyondReach(const std::string& topic, const Eigen::Vector3d& target,
 }
 
 std::string noScope(const InputSample& sample, const Model& model) {
-  return nameOf(sample) + " has no effect because the scene '" + model.scene.name +
+  return topicOf(sample) + " has no effect because the scene '" + model.scene.name +
          "' has no scope; load a scene with one.";
 }
 
@@ -50,7 +42,7 @@ std::string reachTip(const InputSample& sample, const Model& model, StepInput& i
   const bool in_world = sample.target == ScopeTarget::TipInWorld;
   const Eigen::Isometry3d pose = in_world ? model.tool_base.inverse() * sample.tip_pose : sample.tip_pose;
   input.joints = model.tool->inverseKinematics(pose, input.joints);
-  return beyondReach(nameOf(sample), pose.translation(), model, input);
+  return beyondReach(topicOf(sample), pose.translation(), model, input);
 }
 
 // A pull that the model rejects ends the pull in force: the user has asked for another one.
@@ -156,14 +148,18 @@ void InputInterpreter::press(const Buttons& buttons, const Buttons& before, Step
 
 std::string InputInterpreter::applySample(const InputSample& sample, const DueInput& due, const Model& model,
                                           const JointArray& hand, StepInput& input) {
+  const std::string refusal = refusalOf(sample, model);
+  if (!refusal.empty()) return refusal;
   const auto channel = static_cast<std::size_t>(sample.channel);
-  std::string ignored;
-  if (channel < drivers_.size() && !drivers_[channel].obeys(sample, hand, ignored)) return ignored;
+  std::string sentence;
+  if (channel < drivers_.size() && !drivers_[channel].obeys(sample, hand, sentence)) return sentence;
+  if (sentence.empty()) sentence = beyondLimits(sample, model);
   moves_[channel].reset();
   if (sample.channel == InputChannel::Scope) twist_.reset();
   if (sample.target == ScopeTarget::VelocityInWorld || sample.target == ScopeTarget::VelocityInBase)
-    return beginTwist(sample, due, model);
-  return sample.move ? beginMove(sample, due.stamp, model, hand) : applyValues(sample, model, input);
+    return sentence + beginTwist(sample, due, model);
+  const std::string miss = sample.move ? beginMove(sample, due.stamp, model, hand) : applyValues(sample, model, input);
+  return sentence.empty() ? miss : sentence;
 }
 
 std::string InputInterpreter::beginMove(const InputSample& sample, std::int64_t stamp, const Model& model,

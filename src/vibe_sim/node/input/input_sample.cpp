@@ -22,6 +22,16 @@ bool isOfOneNode(const SampleSender* a, const SampleSender* b) {
   return a == b || (a != nullptr && b != nullptr && a->node == b->node);
 }
 
+std::string topicOf(const InputSample& sample) {
+  if (sample.sender != nullptr) return sample.sender->topic;
+  const bool scope = sample.channel == InputChannel::Scope;
+  const bool twist = sample.target == ScopeTarget::VelocityInWorld || sample.target == ScopeTarget::VelocityInBase;
+  return std::string(scope ? "scope/" : "suturing_device/") + (sample.move ? "move_" : "servo_") +
+         (sample.target == ScopeTarget::Joints ? "jp"
+          : twist                              ? "cv"
+                                               : "cp");
+}
+
 std::string faultOf(std::int64_t stamp, std::int64_t now, const InputWindow& window) {
   if (stamp == 0) return "";
   const bool early = stamp - now > window.look_ahead;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace vibe::sim {
 namespace {
@@ -12,9 +13,8 @@ constexpr double kThere = 5;  // times that: a follower of the joints lags behin
 bool areNear(const JointArray& a, const JointArray& b, const InputSample& sample, double times) {
   const bool scope = sample.channel == InputChannel::Scope;
   for (int j = scope ? 0 : kScopeJointCount; j < (scope ? kScopeJointCount : kJointCount); ++j) {
-    const bool slides = j == Insertion || j == HelixAdvance || j == NeedleDriver;
     const auto i = static_cast<std::size_t>(j);
-    if (std::abs(a[i] - b[i]) > times * (slides ? kStill : kStillTurn)) return false;
+    if (std::abs(a[i] - b[i]) > times * (isPrismatic(j) ? kStill : kStillTurn)) return false;
   }
   return true;
 }
@@ -35,6 +35,22 @@ bool repeats(const InputSample& sample, const InputSample& anchor) {
   return false;
 }
 
+/// A word for the frame of a pose or of a velocity; others have none to change.
+const char* frameOf(ScopeTarget target, ScopeTarget in_world, ScopeTarget in_base) {
+  return target == in_world ? "world" : target == in_base ? "scope_base" : "";
+}
+
+std::string frameChange(const InputSample& sample, const InputSample& anchor) {
+  for (const auto& [world, base] : {std::pair(ScopeTarget::TipInWorld, ScopeTarget::TipInBase),
+                                    std::pair(ScopeTarget::VelocityInWorld, ScopeTarget::VelocityInBase)}) {
+    const std::string before = frameOf(anchor.target, world, base), now = frameOf(sample.target, world, base);
+    if (before != now && !before.empty() && !now.empty())
+      return topicOf(sample) + " has changed its frame from '" + before + "' to '" + now +
+             "' between two messages and is used as it says; send all in one frame if that was not meant.";
+  }
+  return "";
+}
+
 bool isThere(const InputSample& sample, const JointArray& hand) {
   return sample.target == ScopeTarget::Joints && areNear(sample.joints, hand, sample, kThere);
 }
@@ -50,6 +66,7 @@ bool JointDrivers::obeys(const InputSample& sample, const JointArray& hand, std:
   const bool first = own == heard_.end();
   if (first) own = heard_.insert(own, {sample.sender, sample, now, std::nullopt});
   own->heard = now;
+  sentence = frameChange(sample, own->anchor);
   const bool drives = isOfOneNode(driver_, sample.sender);
   const Driver* const other = drives ? nullptr : movingDriver(now);
   const bool changes = !first && !repeats(sample, own->anchor);

@@ -21,7 +21,8 @@ constexpr std::int64_t kRest = 300'000'000;
 class JointDrivers {
  public:
   /// @param hand  the joints at present [m], [rad]: who asks for no other place does not begin to move
-  /// @param[out] sentence  set if the sample is ignored although its sender moves
+  /// @param[out] sentence  set if the sample is ignored although its sender moves, and if it is in another frame than
+  ///                       that of its sender just before
   /// @return whether the sample is obeyed
   bool obeys(const InputSample& sample, const JointArray& hand, std::string& sentence);
 

@@ -77,7 +77,7 @@ int run() {
         handle, queue, publishers, parameters.input_window,
         [&] { return parameters.time_source == sim::TimeSource::Wall ? vibe::ros_utils::wallTime() : queue.now(); },
         [&thread](sim::InputChannel channel) { thread.wake(channel); });
-    sim::Services services(handle, thread);
+    sim::Services services(handle, thread, publishers);
     thread.start();
     spinner.start();
     waitForEnd(thread, watch);

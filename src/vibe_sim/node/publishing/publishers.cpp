@@ -5,6 +5,7 @@
 #include <limits>
 #include <type_traits>
 
+#include <ros/console.h>
 #include <rosgraph_msgs/Clock.h>
 #include <std_msgs/String.h>
 #include <vibe_msgs/ProcedureState.h>
@@ -18,6 +19,7 @@
 #include "conversions/session_message.hpp"
 #include "conversions/suture_message.hpp"
 #include "conversions/tool_message.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/procedure/helix_grip.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 
@@ -229,6 +231,15 @@ void Publishers::sutures(const TimedSimulation& simulation) {
 void Publishers::warn(const std::string& text) {
   ++warnings_;
   events_.publish(makeWarning(text, now_));
+}
+
+void Publishers::complain(const std::string& sentence) {
+  {
+    const std::lock_guard<std::mutex> lock(gate_mutex_);
+    if (!gate_.admits(sentence, steadyTime())) return;
+  }
+  ROS_WARN_STREAM(sentence);
+  warn(sentence);
 }
 
 void Publishers::tool(const TimedSimulation& simulation, bool continues, std::int64_t stamp) {

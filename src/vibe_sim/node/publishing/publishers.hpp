@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "conversions/tissue_message.hpp"
 #include "input/input_sample.hpp"
 #include "publishing/message_sink.hpp"
+#include "publishing/warning_gate.hpp"
 #include "simulation/timed_simulation.hpp"
 
 namespace vibe::sim {
@@ -40,11 +42,8 @@ class ArmPublishers {
 /// Publishes on one topic what a step has changed.
 using StepTopic = std::function<void(const TimedSimulation&)>;
 
-/// Between warnings about the same [s].
-constexpr double kWarningPeriod = 1;
-
-/// Every topic that the simulator sends. Only warn() may be called from any thread; the rest belongs to the stepping
-/// thread.
+/// Every topic that the simulator sends. Only warn() and complain() may be called from any thread; the rest belongs to
+/// the stepping thread.
 class Publishers {
  public:
   /// @param sinks     a node handle, or the bag that takes the place of the graph
@@ -76,6 +75,8 @@ class Publishers {
 
   /// A warning event at the present simulated time.
   void warn(const std::string& text);
+  /// The same and a line in the log, unless one of its kind was a moment ago: for what somebody may send often.
+  void complain(const std::string& sentence);
   /// Number of warnings since the last call.
   int takeWarnings() { return warnings_.exchange(0); }
 
@@ -93,6 +94,8 @@ class Publishers {
   std::vector<StepTopic> tool_;  // one by one, of a scene with a tool
   ArmPublishers arms_;
   std::atomic<int> warnings_{0};
+  std::mutex gate_mutex_;
+  WarningGate gate_;
   std::unique_ptr<tf2_ros::StaticTransformBroadcaster> static_transforms_;  // null for a bag
   std::unique_ptr<ParticleCloud> cloud_;
   std::vector<Eigen::Isometry3d> link_poses_;

@@ -129,7 +129,7 @@ void Player::attempt(const std::function<void()>& move) {
   } catch (const Error& error) {
     error_ = error.what();
     message_.playing = false;
-    ROS_ERROR_STREAM(error_);
+    ROS_ERROR_STREAM_THROTTLE(1, error_);
   }
 }
 

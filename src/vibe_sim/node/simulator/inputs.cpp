@@ -71,7 +71,7 @@ void Inputs::receive(const std::string& name, const std::string& publisher, cons
   try {
     take(name, topic, publisher, read());
   } catch (const Error& error) {
-    warnThrottled(topic, "A message on " + name + " from " + publisher + " is ignored: " + error.what());
+    publishers_.complain("A message on " + name + " from " + publisher + " is ignored: " + error.what());
   }
 }
 
@@ -79,12 +79,12 @@ void Inputs::take(const std::string& name, Topic& topic, const std::string& publ
   sample.sender = senderOf(name, topic, publisher);
   const std::string fault = faultOf(sample.stamp, now_(), window_);
   if (!fault.empty())
-    return warnThrottled(topic, "A message on " + name + " from " + publisher + " is ignored: " + fault +
-                                    "; check the clock of that node and whether both read the same /use_sim_time.");
+    return publishers_.complain("A message on " + name + " from " + publisher + " is ignored: " + fault +
+                                "; check the clock of that node and whether both read the same /use_sim_time.");
   if (!queue_.push(sample))
-    return warnThrottled(topic, "A message on " + name + " from " + publisher +
-                                    " is ignored: " + std::to_string(InputQueue::kCapacity) +
-                                    " messages with later stamps wait already; send less ahead.");
+    return publishers_.complain("A message on " + name + " from " + publisher +
+                                " is ignored: " + std::to_string(InputQueue::kCapacity) +
+                                " messages with later stamps wait already; send less ahead.");
   topic.owner = sample.sender;
   topic.last_message = steadyTime();
   arrived_(sample.channel);
@@ -103,19 +103,11 @@ bool Inputs::obeys(const std::string& name, Topic& topic, const std::string& pub
   const bool owned = topic.owner != nullptr && topic.owner->node != publisher &&
                      topic.subscriber.getNumPublishers() > 1 && now - topic.last_message < kOwnerPatience;
   if (owned) {
-    warnThrottled(topic, "Two nodes publish " + name + ": " + topic.owner->node + " is obeyed and " + publisher +
-                             " ignored; stop one of them.");
+    publishers_.complain("Two nodes publish " + name + ": " + topic.owner->node + " is obeyed and " + publisher +
+                         " ignored; stop one of them.");
     return false;
   }
   return true;
-}
-
-void Inputs::warnThrottled(Topic& topic, const std::string& sentence) {
-  const double now = steadyTime();
-  if (now - topic.last_warning < kWarningPeriod) return;
-  topic.last_warning = now;
-  ROS_WARN_STREAM(sentence);
-  publishers_.warn(sentence);
 }
 
 }  // namespace vibe::sim

@@ -5,7 +5,6 @@
 #include <list>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 
 #include <ros/callback_queue.h>
@@ -21,7 +20,7 @@
 namespace vibe::sim {
 
 /// Every topic that the simulator listens to. Valid messages go to the queue; an invalid message is reported in one
-/// sentence in the log and on procedure/events, at most once a second per topic, and has no other effect.
+/// sentence in the log and on procedure/events, of each kind at most once a second, and has no other effect.
 class Inputs {
  public:
   /// @param now      the simulator's time, for the window [ns]
@@ -37,7 +36,6 @@ class Inputs {
     ros::Subscriber subscriber;
     const SampleSender* owner = nullptr;  // that is obeyed: the last one of which a message was taken
     double last_message = 0;              // of the owner, steady time [s]
-    double last_warning = -1e9;           // steady time [s]
   };
 
   ros::NodeHandle handle_;
@@ -57,7 +55,6 @@ class Inputs {
   bool obeys(const std::string& name, Topic& topic, const std::string& publisher);
   void take(const std::string& name, Topic& topic, const std::string& publisher, InputSample sample);
   const SampleSender* senderOf(const std::string& name, const Topic& topic, const std::string& publisher);
-  void warnThrottled(Topic& topic, const std::string& sentence);
 };
 
 }  // namespace vibe::sim

@@ -1,6 +1,7 @@
 #include "simulator/services.hpp"
 
-#include <ros/console.h>
+#include "conversions/conversions.hpp"
+
 #include <std_srvs/SetBool.h>
 #include <vibe_msgs/LoadScene.h>
 #include <vibe_msgs/Reset.h>
@@ -15,14 +16,15 @@ namespace {
 constexpr std::uint32_t kCommandQueue = 10;
 
 // Both tools are always powered and homed, and there is one pause, that of the simulation.
-void obeyStateCommand(SimulationThread& thread, const std::string& topic, const std::string& command) {
+void obeyStateCommand(SimulationThread& thread, Publishers& publishers, const std::string& topic,
+                      const std::string& command) {
   if (command == "enable" || command == "resume") {
     thread.setPaused(false);
   } else if (command == "pause") {
     thread.setPaused(true);
   } else if (command != "home") {
-    ROS_WARN_STREAM("A message on " << topic << " is ignored: there is no command '" << command
-                                    << "'; send pause, resume, enable or home.");
+    publishers.complain("A message on " + topic + " is ignored: there is no command " + quoted(command) +
+                        "; send pause, resume, enable or home.");
   }
 }
 
@@ -41,12 +43,12 @@ void Services::offer(const std::string& name, Work work) {
   servers_.push_back(handle_.advertiseService(name, callback));
 }
 
-Services::Services(const ros::NodeHandle& handle, SimulationThread& thread) : handle_(handle) {
+Services::Services(const ros::NodeHandle& handle, SimulationThread& thread, Publishers& publishers) : handle_(handle) {
   handle_.setCallbackQueue(&queue_);
   for (const char* const topic : {"scope/state_command", "suturing_device/state_command"})
     commands_.push_back(handle_.subscribe<vibe_msgs::StateCommand>(
-        topic, kCommandQueue, [&thread, topic](const vibe_msgs::StateCommand::ConstPtr& command) {
-          obeyStateCommand(thread, topic, command->string);
+        topic, kCommandQueue, [&thread, &publishers, topic](const vibe_msgs::StateCommand::ConstPtr& command) {
+          obeyStateCommand(thread, publishers, topic, command->string);
         }));
   offer<std_srvs::SetBool>("pause",
                            [&thread](const std_srvs::SetBool::Request& r) { return thread.setPaused(r.data); });

@@ -9,6 +9,7 @@
 #include <ros/spinner.h>
 #include <ros/subscriber.h>
 
+#include "publishing/publishers.hpp"
 #include "simulator/simulation_thread.hpp"
 
 namespace vibe::sim {
@@ -17,7 +18,7 @@ namespace vibe::sim {
 /// They have threads of their own, because a call may wait for steps that need inputs.
 class Services {
  public:
-  Services(const ros::NodeHandle& handle, SimulationThread& thread);
+  Services(const ros::NodeHandle& handle, SimulationThread& thread, Publishers& publishers);
   ~Services();
 
  private:

@@ -231,9 +231,9 @@ StepInput SimulationThread::nextInput(std::int64_t stamp, bool real_time) {
   StepInput input = simulation_.input();
   for (const std::string& sentence :
        interpreter_.interpret(due, simulation_.model(), input, simulation_.state().joints))
-    warnThrottled(sentence);
+    publishers_.complain(sentence);
   const std::string released = real_time ? releaseSilentButtons(due, input) : "";
-  if (!released.empty()) warnThrottled(released);
+  if (!released.empty()) publishers_.complain(released);
   return input;
 }
 
@@ -249,16 +249,6 @@ void SimulationThread::endTiming() {
   timing_.published = toRosTime(ros_utils::wallTime());
   setWork(simulation_.simulation().report(), timing_);
   publishers_.stepTiming(timing_);
-}
-
-// Of a command that is sent 100 times a second, one sentence a second is enough.
-void SimulationThread::warnThrottled(const std::string& sentence) {
-  double& last = last_warnings_.try_emplace(sentence.substr(0, sentence.find(' ')), -1e9).first->second;
-  const double now = steadyTime();
-  if (now - last < kWarningPeriod) return;
-  last = now;
-  ROS_WARN_STREAM(sentence);
-  publishers_.warn(sentence);
 }
 
 void SimulationThread::reportEverySecond() {

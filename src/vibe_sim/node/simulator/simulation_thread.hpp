@@ -6,7 +6,6 @@
 #include <deque>
 #include <functional>
 #include <future>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -80,7 +79,6 @@ class SimulationThread {
   StepInput nextInput(std::int64_t stamp, bool real_time);
   void beginTiming(std::int64_t now, bool real_time);
   void endTiming();
-  void warnThrottled(const std::string& sentence);
   void reportEverySecond();
   void fail(const std::string& sentence);
 
@@ -112,13 +110,12 @@ class SimulationThread {
   vibe_msgs::StepTiming timing_;  // of the present step
   double hold_begin_ = 0;         // steady time at which the present hold began [s]
   Hold hold_ = Hold::None;
-  double recorder_since_ = 0;                    // steady time; 0: nobody listens yet [s]
-  double last_clock_ = 0;                        // steady time [s]
-  double last_lag_report_ = -1e9;                // steady time [s]
-  double lag_report_period_ = 0;                 // until the next [s]
-  double last_longest_step_ = 0;                 // processor time, in the window before this one [s]
-  std::map<std::string, double> last_warnings_;  // about a topic, steady time of the last [s]
-  std::uint32_t steps_asked_ = 0;                // of a running takeSteps()
+  double recorder_since_ = 0;      // steady time; 0: nobody listens yet [s]
+  double last_clock_ = 0;          // steady time [s]
+  double last_lag_report_ = -1e9;  // steady time [s]
+  double lag_report_period_ = 0;   // until the next [s]
+  double last_longest_step_ = 0;   // processor time, in the window before this one [s]
+  std::uint32_t steps_asked_ = 0;  // of a running takeSteps()
   std::uint32_t steps_left_ = 0;
   std::shared_ptr<Answer> steps_answer_;
 

@@ -6,6 +6,7 @@
 
 #include "conversions/conversions.hpp"
 #include "conversions/goal_message.hpp"
+#include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::sim {
@@ -69,7 +70,7 @@ void GoalServer::onGoal(const vibe_msgs::TraineeGoal& message) {
   try {
     take(message);
   } catch (const Error& error) {
-    ROS_WARN_STREAM("A goal is refused: " << error.what());
+    complain(std::string("A goal is refused: ") + error.what());
     book_.refuse(message.label, message.kind, error.what());
   }
   publish();
@@ -77,8 +78,12 @@ void GoalServer::onGoal(const vibe_msgs::TraineeGoal& message) {
 
 void GoalServer::onCancel(const std_msgs::UInt32& message) {
   if (!book_.cancel(message.data, trainee_) && message.data != 0)
-    ROS_WARN_STREAM("There is no goal " << message.data << " to cancel that has not ended.");
+    complain("There is no goal " + std::to_string(message.data) + " to cancel that has not ended.");
   publish();
+}
+
+void GoalServer::complain(const std::string& sentence) {
+  if (gate_.admits(sentence, steadyTime())) ROS_WARN_STREAM(sentence);
 }
 
 void GoalServer::publish() {

@@ -8,6 +8,7 @@
 #include <std_msgs/UInt32.h>
 #include <vibe_msgs/SendGoal.h>
 
+#include "publishing/warning_gate.hpp"
 #include "trainee/goal_book.hpp"
 
 namespace vibe::sim {
@@ -35,12 +36,14 @@ class GoalServer {
   void onCancel(const std_msgs::UInt32& message);
   std::uint32_t take(const vibe_msgs::TraineeGoal& message);
   void publish();
+  void complain(const std::string& sentence);
 
   std::string skill_;
   ros::Publisher progress_;
   ros::Subscriber goal_, cancel_;
   ros::ServiceServer service_;
   GoalBook book_;
+  WarningGate gate_;
   std::shared_ptr<const Model> model_;  // null: the scene is not known yet
   Trainee* trainee_ = nullptr;
   std::int64_t stamp_ = 0;

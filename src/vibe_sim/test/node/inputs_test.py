@@ -10,7 +10,7 @@ import rostest
 from geometry_msgs.msg import PoseStamped
 from node_test_support import EPOCH, SUTURING_DEVICE_JOINTS, SCOPE_JOINTS, joints, scene
 from sensor_msgs.msg import JointState, Joy
-from vibe_msgs.msg import ProcedureEvent, SolverStatistics, StepInput, TissuePull
+from vibe_msgs.msg import ProcedureEvent, SolverStatistics, StateCommand, StepInput, TissuePull
 from vibe_msgs.srv import Reset, Step
 from vibe_testing.program import Program
 from vibe_testing.recorder import Recorder
@@ -134,6 +134,30 @@ class InputsTest(unittest.TestCase):
         self.assertIsNotNone(self.events.waits_for(lambda m: True, 5))
         rospy.rostime.wallsleep(0.5)
         self.assertEqual(len(self.events.messages), 1)
+
+    def test_a_flood_of_unknown_commands_gives_one_warning_a_second(self):
+        command = rospy.Publisher("scope/state_command", StateCommand, queue_size=1000)
+        self.assertTrue(wait_until(lambda: command.get_num_connections() > 0, 20))
+        self.events.clear()
+        begin = time.monotonic()
+        for k in range(1000):
+            command.publish(StateCommand(string="fly {}".format(k)))
+            time.sleep(0.001)
+        command.publish(StateCommand(string="last one"))
+        self.assertIsNotNone(self.events.waits_for(lambda m: "there is no command 'fly" in m.text, 5))
+        rospy.rostime.wallsleep(0.3)
+        self.assertLessEqual(len(self.events.messages), 1 + (time.monotonic() - begin))
+        command.unregister()
+
+    def test_a_place_in_millimetres_is_refused_when_its_step_begins(self):
+        self.wait_for_silence("scope/servo_cp")
+        before = self.last_input_after(1)
+        self.publishers["scope/servo_cp"].publish(pose(x=86.0))
+        rospy.rostime.wallsleep(0.3)
+        self.assertEqual(self.last_input_after(5).joints, before.joints)
+        warning = self.events.waits_for(lambda m: "scope/servo_cp asks for a place 86" in m.text, 5)
+        self.assertIsNotNone(warning)
+        self.assertIn("millimetres", warning.text)
 
     def hash_after_steps(self, n):
         self.assertTrue(self.step(n).success)
