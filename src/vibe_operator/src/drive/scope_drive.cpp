@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace vibe::operating {
 
@@ -110,6 +111,12 @@ void ScopeDrive::changeJoint(const KeyBinding& binding, bool down) {
 
 void ScopeDrive::releaseAll() {
   while (!down_.empty()) keyUp(*down_.begin());
+  releaseJoints();
+}
+
+void ScopeDrive::releaseJoints() {
+  for (auto key = down_.begin(); key != down_.end();)
+    key = findBinding(*key)->kind == KeyBinding::Kind::Joint ? down_.erase(key) : std::next(key);
   for (std::size_t i = 0; i < axes_.size(); ++i) goals_[i] = axes_[i].stoppingPoint();
 }
 

@@ -13,6 +13,7 @@ namespace {
 constexpr double kPeriod = 1.0 / 60;     // [s]
 constexpr double kLongestStep = 0.25;    // after a longer gap the joints do not catch up [s]
 constexpr double kStall = 0.25;          // a simulator that is silent for longer takes no steps [s]
+constexpr double kHung = 1;              // a program that is silent for longer holds no key, as with buttons [s]
 constexpr double kClosing = 0.5;         // a topic that is left and taken again at once could lose its subscribers [s]
 constexpr double kSimulatorTimeout = 2;  // for joints of a simulator, or for it to listen [s]
 constexpr std::uint32_t kQueue = 10;
@@ -58,6 +59,7 @@ void ScopeSender::setSpeeds(const DriveSpeeds& speeds) {
 void ScopeSender::keyDown(int key) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!active_) return;
+  heard_ = steadySeconds();
   moveTo(ros::Time::now());
   drive_.keyDown(key);
 }
@@ -83,6 +85,7 @@ void ScopeSender::displace(int joint, double by) {
 
 ScopeSender::View ScopeSender::view() const {
   const std::lock_guard<std::mutex> lock(mutex_);
+  heard_ = steadySeconds();
   View view;
   view.driving = driving_;
   view.trouble = trouble_;
@@ -103,6 +106,7 @@ void ScopeSender::tick() {
     disconnect();
     return timer_.stop();
   }
+  if (steadySeconds() - heard_ > kHung) drive_.releaseJoints();
   if (!connected_) connect();
   trouble_ = findTrouble();
   if (!trouble_.empty()) return endDriving();

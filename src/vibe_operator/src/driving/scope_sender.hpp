@@ -49,6 +49,7 @@ class ScopeSender {
     vibe_msgs::ProcedureState::ConstPtr state;  ///< null: not come yet
     double force = 0;                           ///< of the tissue on the tool [N]; NaN: unknown
   };
+  /// To be called ten times a second: after a second without, keys of joints count as let go, because the program hangs.
   View view() const;
 
  private:
@@ -63,6 +64,7 @@ class ScopeSender {
   double force_;
   ros::Time last_;                                                           // up to which the joints have moved
   double waiting_since_ = 0, driving_since_ = 0, wanted_ = 0, seen_at_ = 0;  // steady clock [s]
+  mutable double heard_ = 0;                                                 // of the program; steady clock [s]
   SimulatorWatch simulator_;
   ControlWatch same_topic_, other_topic_;
 

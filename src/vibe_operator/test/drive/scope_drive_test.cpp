@@ -5,6 +5,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <random>
+#include <set>
 #include <vector>
 
 namespace vibe::operating::scope_drive_test {
@@ -167,6 +168,20 @@ TEST_F(ScopeDriveTest, ReleaseAllLiftsButtonsAndBrakes) {
   const Joints rest = drive.joints();
   drive.advance(5);
   EXPECT_EQ(drive.joints(), rest);
+}
+
+TEST_F(ScopeDriveTest, ReleaseJointsBrakesAndLeavesButtonsAlone) {
+  for (const int key : std::initializer_list<int>{'W', keys::kSpace, keys::kShift}) drive.keyDown(key);
+  drive.advance(1);
+  drive.releaseJoints();
+  EXPECT_EQ(drive.keysDown(), (std::set<int>{keys::kSpace, keys::kShift}));
+  EXPECT_EQ(changes.size(), 1u);
+  drive.advance(1);
+  EXPECT_TRUE(drive.atRest());
+  drive.keyUp('W');
+  const Joints rest = drive.joints();
+  drive.advance(1);
+  EXPECT_EQ(drive.joints(), rest) << "it came up already";
 }
 
 TEST_F(ScopeDriveTest, UnknownKeysDoNothing) {

@@ -81,6 +81,9 @@ class ScopeDrive {
   /// All keys come up; moving joints brake. Motion that the mouse has asked for ends too.
   void releaseAll();
 
+  /// Keys of joints come up, as after releaseAll(), and want a new press; buttons stay as they are.
+  void releaseJoints();
+
   /// The mouse asks for a displacement of a joint, before the factor of slow motion; ignored while a key moves it.
   void displace(int joint, double by);
 
