@@ -19,8 +19,13 @@ constexpr double kForcePeriod = 0.005;      // without measurements the arm gets
 constexpr double kJointInterval = 0.004;    // between commands to the scope, at least [s]
 constexpr double kArmButtonInterval = 0.1;  // between messages that change nothing [s]
 constexpr double kOldest = 0.5;             // a measurement that claims to be older has the stamp of another clock [s]
+constexpr double kAhead = 0.005;            // what clocks that are kept together differ by [s]
+constexpr double kReach = 10;               // no arm is larger [m]
+constexpr double kStill = 5;                // equal measurements for so long are named [s]
+constexpr double kPatience = 10;            // between warnings of a kind [s]
 constexpr double kLookInterval = 10;        // between looks for an arm that is silent [s]
 constexpr double kFirstLook = 2;            // after it began to be silent [s]
+constexpr double kMissed = 0.2;             // share of a force that is missed when it is held back; design choice
 constexpr std::uint32_t kArmQueue = 10;
 
 /// Values of a message in the order of vibe::Joint from `first` on. @return whether all are there and finite
@@ -37,11 +42,24 @@ bool readJointsInto(const sensor_msgs::JointState& message, int first, int count
   return true;
 }
 
-bool isFinite(const geometry_msgs::Pose& pose) {
-  const auto& p = pose.position;
+/// Of the ports of the scope's joints [s]
+double largestDelay(const TeleopMapping& mapping) {
+  double delay = 0;
+  for (const HandJoint& joint : mapping.joints)
+    if (joint.coordinate >= 0) delay = std::max(delay, joint.port.delay);
+  return delay;
+}
+
+/// What is wrong with a pose; empty: nothing.
+std::string faultOf(const geometry_msgs::Pose& pose) {
+  const Eigen::Vector3d p(pose.position.x, pose.position.y, pose.position.z);
   const auto& q = pose.orientation;
-  const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-  return std::isfinite(p.x + p.y + p.z) && std::abs(norm - 1) < 1e-2;
+  const double norm = Eigen::Vector4d(q.x, q.y, q.z, q.w).norm();
+  if (!p.allFinite() || !std::isfinite(norm)) return "a number is not finite";
+  if (std::abs(norm - 1) > 1e-2) return "its quaternion has length " + std::to_string(norm) + " instead of 1";
+  if (p.norm() > kReach)
+    return "it is " + std::to_string(p.norm()) + " m away from the base; the driver may publish millimetres";
+  return "";
 }
 
 }  // namespace
@@ -79,6 +97,7 @@ CrtkTeleopNode::CrtkTeleopNode(ros::NodeHandle handle, const CrtkParameters& par
       state_(startTeleop(mapping_, ros::WallTime::now().toSec())),
       updater_(handle) {
   checkClock();
+  input_.live = true;
   next_look_ = ros::WallTime::now().toSec() + kFirstLook;
   advertise(handle);
   subscribe(handle);
@@ -141,7 +160,7 @@ void CrtkTeleopNode::subscribe(ros::NodeHandle& handle) {
     listenToButton(handle, mapping_.device, [this](bool pressed) { input_.device = pressed; });
   for (std::size_t b = 0; b < mapping_.buttons.size(); ++b)
     if (!mapping_.buttons[b].topic.empty())
-      listenToButton(handle, mapping_.buttons[b], [this, b](bool pressed) { buttons_[b] = pressed ? 1 : 0; });
+      listenToButton(handle, mapping_.buttons[b], [this, b](bool pressed) { input_.buttons[b] = pressed ? 1 : 0; });
 }
 
 void CrtkTeleopNode::listenToButton(ros::NodeHandle& handle, const ArmButton& button,
@@ -160,10 +179,8 @@ void CrtkTeleopNode::listenToButton(ros::NodeHandle& handle, const ArmButton& bu
 }
 
 void CrtkTeleopNode::onPose(const geometry_msgs::PoseStamped& message) {
-  if (message.header.stamp.isZero() || !isFinite(message.pose)) {  // CRTK: invalid
-    ++invalid_;
-    return;
-  }
+  const std::string fault = message.header.stamp.isZero() ? "its stamp is 0" : faultOf(message.pose);  // CRTK: invalid
+  if (!fault.empty()) return refuse(measured(), fault);
   const auto& p = message.pose.position;
   const auto& q = message.pose.orientation;
   ArmSample sample;
@@ -185,26 +202,56 @@ void CrtkTeleopNode::onArmJoints(const sensor_msgs::JointState& message) {
                                                    << "; correct the mapping.");
       return;
     }
-    if (message.header.stamp.isZero() || index >= message.position.size() || !std::isfinite(message.position[index])) {
-      ++invalid_;
-      return;
-    }
+    if (message.header.stamp.isZero() || index >= message.position.size() || !std::isfinite(message.position[index]))
+      return refuse(measured(), "its stamp is 0, or the position of '" + name + "' is missing or not finite");
     sample.joints[j] = message.position[index];
   }
   takeSample(message.header, sample);
 }
 
+void CrtkTeleopNode::refuse(const std::string& topic, const std::string& what) {
+  ++invalid_;
+  ROS_WARN_STREAM_THROTTLE(kPatience, "A message on " << topic << " is ignored: " << what << " (" << invalid_
+                                                      << " such messages so far); look at its driver.");
+}
+
+/// When it was measured, of the clock of this computer.
+double CrtkTeleopNode::timeOf(const std_msgs::Header& header, double now) const {
+  const double time = header.stamp.toSec(), age = now - time;
+  if (age < -kAhead || age > kOldest) {
+    ROS_WARN_STREAM_THROTTLE(kPatience, "The stamps of " << measured() << " are " << -age
+                                                         << " s off the clock of this computer, so the times of "
+                                                            "arrival are used; synchronise the clocks.");
+    return now;
+  }
+  if (age > mapping_.timeout)
+    ROS_WARN_STREAM_THROTTLE(kPatience, "Measurements on "
+                                            << measured() << " come " << age << " s after their stamps, and the arm "
+                                            << "counts as silent after " << mapping_.timeout << " s; make the "
+                                            << "connection quicker, synchronise the clocks, or raise 'timeout' and "
+                                            << "'delay' below 'arm' in the mapping.");
+  else if (const double delay = largestDelay(mapping_); mapping_.force_scale != 0 && age > delay)
+    ROS_WARN_STREAM_THROTTLE(6 * kPatience, "Measurements on "
+                                                << measured() << " come up to " << age << " s after their stamps. If "
+                                                << "the way back takes as long, forces come later than the mapping "
+                                                << "says (" << delay << " s), and the arm may give energy; write a "
+                                                << "longer 'delay' below 'arm' in the mapping.");
+  return std::min(time, now);
+}
+
 void CrtkTeleopNode::takeSample(const std_msgs::Header& header, ArmSample sample) {
   const double now = ros::WallTime::now().toSec();
-  sample.time = header.stamp.toSec();
-  if (sample.time > now || now - sample.time > kOldest) {
-    ROS_WARN_STREAM_THROTTLE(10, "The stamps of " << measured() << " are " << sample.time - now
-                                                  << " s off the clock of this computer, so the times of arrival are "
-                                                     "used; synchronise the clocks.");
-    sample.time = now;
-  }
+  sample.time = timeOf(header, now);
   worst_age_ = std::max(worst_age_, now - sample.time);
-  ++samples_;
+  if (samples_++ > 0 && header.frame_id != base_frame_) {
+    ROS_WARN_STREAM_THROTTLE(kPatience, "The frame of " << measured() << " has changed from '" << base_frame_
+                                                        << "' to '" << header.frame_id << "', and the arm goes on from "
+                                                        << "here; if that goes on, two drivers may publish it.");
+    state_.last.reset();
+  }
+  if (sample.position != still_.position || sample.joints != still_.joints ||
+      sample.orientation.coeffs() != still_.orientation.coeffs())
+    still_ = sample;
   base_frame_ = header.frame_id;
   input_.sample = sample;
   advance(now);
@@ -232,8 +279,9 @@ void CrtkTeleopNode::lookForTheArm(double now) {
 }
 
 void CrtkTeleopNode::onGripper(const sensor_msgs::JointState& message) {
-  if (!message.header.stamp.isZero() && !message.position.empty() && std::isfinite(message.position[0]))
-    input_.gripper = message.position[0];
+  if (message.header.stamp.isZero() || message.position.empty() || !std::isfinite(message.position[0]))
+    return refuse(nameOf("gripper/measured_js"), "its stamp is 0, or its position is missing or not finite");
+  input_.gripper = message.position[0];
 }
 
 void CrtkTeleopNode::onState(const vibe_msgs::OperatingState& message) {
@@ -277,7 +325,8 @@ void CrtkTeleopNode::advance(double now) {
   const bool was_engaged = state_.engaged, was_on_device = state_.engaged && state_.on_device;
   const TeleopOutput output = step(mapping_, limits_, std::max(now, state_.time), input_, state_);
   input_.sample.reset();
-  if (!output.sentence.empty()) ROS_WARN_STREAM(output.sentence);
+  withheld_ = std::max(withheld_, output.withheld);
+  if (!output.sentence.empty()) ROS_WARN_STREAM_THROTTLE(1, output.sentence);
   if (output.engaged != was_engaged)
     ROS_INFO_STREAM((output.engaged ? "The arm drives the scope." : "The arm has let go of the scope."));
   if (output.on_device != was_on_device)
@@ -320,25 +369,32 @@ void CrtkTeleopNode::publishCommands(const TeleopOutput& output, double now, con
     scope_.publish(scopeCommand(drive, stamp));
     if (mapping_.gripper || output.on_device) suturing_device_.publish(suturingDeviceCommand(drive, stamp));
   }
-  const auto buttons = state_.last ? buttons_ : std::array<std::uint8_t, kButtonCount>{};
-  if (buttons == sent_buttons_ && now - last_buttons_ < kArmButtonInterval) return;
+  if (output.buttons == sent_buttons_ && now - last_buttons_ < kArmButtonInterval) return;
   DriveState drive;
-  drive.buttons = buttons;
+  drive.buttons = output.buttons;
   button_publisher_.publish(buttonCommand(drive, stamp));
-  sent_buttons_ = buttons;
+  sent_buttons_ = output.buttons;
   last_buttons_ = now;
 }
 
 void CrtkTeleopNode::fillDiagnostics(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
+  const double still = state_.last ? state_.last->time - still_.time : 0, delay = largestDelay(mapping_);
   if (!state_.last)
     status.summary(DiagnosticStatus::WARN, "the arm is silent");
   else
     status.summary(DiagnosticStatus::OK, !state_.engaged    ? "waiting"
                                          : state_.on_device ? "moving the device"
                                                             : "driving");
+  if (still > kStill)
+    status.mergeSummaryf(DiagnosticStatus::OK, "the arm measures the same for %.0f s, at rest or frozen", still);
   if (!scope_known_) status.mergeSummary(DiagnosticStatus::WARN, "no simulator");
   if (!arm_ready_) status.mergeSummary(DiagnosticStatus::WARN, "the arm is not ready");
+  if (withheld_ > kMissed)
+    status.mergeSummaryf(DiagnosticStatus::WARN, "up to %.0f %% of a force held back to stay passive", 100 * withheld_);
+  if (mapping_.force_scale != 0 && worst_age_ > delay)
+    status.mergeSummaryf(DiagnosticStatus::WARN, "measurements come %.0f ms late, arm.delay is %.0f ms",
+                         1e3 * worst_age_, 1e3 * delay);
   double balance = 1;
   bool acts = false;
   for (std::size_t j = 0; j < state_.ports.size(); ++j) {
@@ -352,9 +408,10 @@ void CrtkTeleopNode::fillDiagnostics(diagnostic_updater::DiagnosticStatusWrapper
   status.add("invalid measurements", invalid_);
   status.add("oldest measurement at its arrival [s]", worst_age_);
   status.add("least share of the energy that is left", balance);
+  status.add("largest share of a force that was held back", withheld_);
   status.add("passivity controller acts", acts);
   samples_before_ = samples_;
-  worst_age_ = 0;
+  worst_age_ = withheld_ = 0;
 }
 
 }  // namespace vibe::hardware

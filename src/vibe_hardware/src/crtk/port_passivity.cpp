@@ -11,6 +11,7 @@ constexpr double kReservedShare = 0.1;  // of the capacity, for damping; design 
 constexpr double kFilterTime = 5e-3;    // of the velocity [s]; design choice
 constexpr double kDampBelow = 0.75;     // of the capacity: damping is added; design choice
 constexpr double kAllDampBelow = 0.25;  // of the capacity: all of it
+constexpr double kFelt = 0.01;          // of the largest force: less is not missed; design choice
 
 double strength(const PortCommand& command) {
   return std::max(std::abs(command.low), std::abs(command.high));
@@ -82,6 +83,13 @@ double affordable(const PortConfig& config, const PortState& state, double now, 
   return force + left / time;
 }
 
+/// Returns what silence has cost, after a time.
+void payBack(const PortConfig& config, double dt, PortState& state) {
+  const double due = std::min(state.suspended, std::max(0.0, dt) * config.capacity / kReturnTime);
+  state.balance = std::min(config.capacity, state.balance + due);
+  state.suspended = std::min(state.suspended - due, config.capacity - state.balance);
+}
+
 }  // namespace
 
 PortState startPort(const PortConfig& config, double now) {
@@ -92,7 +100,10 @@ PortState startPort(const PortConfig& config, double now) {
 }
 
 void rebase(const PortConfig& config, double time, double position, PortState& state) {
-  if (state.measured) state.balance -= config.speed_limit * reserveOf(config, state, time, time).sum;
+  const double given = state.measured ? config.speed_limit * reserveOf(config, state, time, time).sum : 0;
+  if (state.measured) payBack(config, time - state.time, state);
+  state.balance -= given;
+  state.suspended += given;
   state.time = time;
   state.position = position;
   state.velocity = 0;
@@ -116,6 +127,7 @@ void observe(const PortConfig& config, double time, double position, PortState& 
   // the hand may be half a step beside the measured position
   const double unseen = 0.5 * config.resolution * std::abs(force - state.charged);
   state.balance = std::min(config.capacity, state.balance - force * motion - unseen);
+  payBack(config, dt, state);
   state.charged = force;
   const double kept = std::exp(-dt / kFilterTime);
   state.velocity = kept * state.velocity + (1 - kept) * motion / dt;
@@ -134,12 +146,14 @@ double command(const PortConfig& config, double now, double spring, double dampi
   const double limit = std::min(config.force_limit, affordable(config, state, now, state.balance));
   const double force = std::clamp(total, -limit, limit);
   state.acts = rendered != wanted || added > 0;
+  state.withheld = std::abs(wanted) > kFelt * config.force_limit ? 1 - rendered / wanted : 0;
   append(now, force, state);
   return force;
 }
 
 double release(double now, PortState& state) {
   state.acts = false;
+  state.withheld = 0;
   append(now, 0, state);
   return 0;
 }

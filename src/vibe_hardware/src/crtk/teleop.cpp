@@ -9,18 +9,23 @@ namespace {
 constexpr double kTissueTimeout = 0.1;  // as every device has it: vibe_msgs/HapticParameters [s]
 constexpr double kFadeTime = 0.05;      // [s]
 constexpr double kBlendTime = 0.02;     // in which the jump of a new spring fades to 1/e [s]; design choice
-constexpr double kJump = 5;             // speeds beyond so many speed limits are no motion of a hand
+constexpr double kJump = 3;             // speeds beyond so many speed limits are no motion of a hand; design choice
 
-/// Rotation from one orientation to the next as a vector, in the base [rad].
-Eigen::Vector3d turnBetween(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
-  Eigen::Quaterniond turn = to * from.conjugate();
-  if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
-  const double sine = turn.vec().norm();
-  return sine < 1e-12 ? Eigen::Vector3d(2 * turn.vec())
-                      : Eigen::Vector3d(2 * std::atan2(sine, turn.w()) / sine * turn.vec());
-}
+const char* const kJumped =
+    "The arm has jumped, faster than a hand moves it; the scope stays and the arm takes it up from here. If that goes "
+    "on, its driver may publish millimetres instead of metres, or two drivers the same topic.";
+const char* const kSilent = "The arm has fallen silent: its forces are off and the scope stays where it is.";
+constexpr double kCalm = 0.1;                    // without a jump until the arm engages again [s]
+constexpr double kMostSwing = 170 * M_PI / 180;  // of the stylus; beyond, its twist is taken up anew [rad]
+constexpr double kGripperTime = 0.2;             // in which a hand closes the gripper at the fastest [s]; design choice
+constexpr double kGripperCatchUp = 1;            // in which it takes its joint along at the end [s]; design choice
+constexpr double kGripperStep = 5e-3;            // of these motions at most [s]
+constexpr double kGripperJump = 0.3;             // of its way at once: no motion of a hand; design choice
+constexpr double kGripperEnd = 0.1;              // of its way is near an end; design choice
 
-bool isJump(const TeleopMapping& mapping, const std::array<double, kHandCoordinates>& motion, double dt) {
+using Motion = std::array<double, kHandCoordinates>;
+
+bool isJump(const TeleopMapping& mapping, const Motion& motion, double dt) {
   return std::any_of(mapping.joints.begin(), mapping.joints.end(), [&](const HandJoint& joint) {
     return joint.coordinate >= 0 && std::abs(motion[static_cast<std::size_t>(joint.coordinate)]) >
                                         kJump * joint.port.speed_limit * std::max(dt, 1e-3);
@@ -41,57 +46,96 @@ void letGo(TeleopState& state) {
   state.springs = {};
 }
 
+/// The rotation counts from here on.
+void refer(const TeleopMapping& mapping, TeleopState& state) {
+  if (!state.last || !mapping.arm_joints.empty()) return;
+  state.reference = state.last->orientation;
+  state.turned = Eigen::Vector3d(state.hand[HandRoll], state.hand[HandPitch], state.hand[HandYaw]);
+  state.rates = rotationSince(state.reference, state.reference, mapping.hand, mapping.twist, mapping.stylus, 0).rates;
+}
+
+/// How far the hand has moved between two measurements; of a rotation, the angle.
+Motion motionBetween(const TeleopMapping& mapping, const ArmSample& from, const ArmSample& to) {
+  Motion motion{};
+  if (!mapping.arm_joints.empty()) {
+    for (std::size_t i = 0; i < motion.size(); ++i) motion[i] = to.joints[i] - from.joints[i];
+    return motion;
+  }
+  motion.fill(from.orientation.angularDistance(to.orientation));
+  Eigen::Map<Eigen::Vector3d>(motion.data()) = mapping.hand.transpose() * (to.position - from.position);
+  return motion;
+}
+
+/// Coordinates after a motion to the newest measurement.
+void moveHand(const TeleopMapping& mapping, const Motion& motion, TeleopState& state) {
+  const bool pose = mapping.arm_joints.empty();
+  for (std::size_t i = 0; i < (pose ? 3U : motion.size()); ++i) state.hand[i] += motion[i];
+  if (!pose) return;
+  const double near = state.hand[static_cast<std::size_t>(HandRoll + mapping.twist)] - state.turned[mapping.twist];
+  const HandRotation rotation =
+      rotationSince(state.reference, state.last->orientation, mapping.hand, mapping.twist, mapping.stylus, near);
+  if (rotation.swing > kMostSwing) return refer(mapping, state);
+  for (std::size_t i = 0; i < 3; ++i)
+    state.hand[HandRoll + i] = state.turned[static_cast<int>(i)] + rotation.angles[static_cast<int>(i)];
+  state.rates = rotation.rates;
+}
+
 /// @return false if the arm has jumped
 bool follow(const TeleopMapping& mapping, const ArmSample& sample, TeleopState& state) {
-  std::array<double, kHandCoordinates> motion{};
   const bool first = !state.last;
   const double dt = first ? 0 : sample.time - state.last->time;
   if (!first && !(dt > 0)) return true;  // an old one
-  if (!first && !mapping.arm_joints.empty()) {
-    for (std::size_t i = 0; i < motion.size(); ++i) motion[i] = sample.joints[i] - state.last->joints[i];
-  } else if (!first) {
-    const Eigen::Vector3d way = mapping.hand.transpose() * (sample.position - state.last->position);
-    const Eigen::Vector3d turn = mapping.hand.transpose() * turnBetween(state.last->orientation, sample.orientation);
-    for (int i = 0; i < 3; ++i) motion[i] = way[i], motion[i + 3] = turn[i];
-  }
-  state.last = sample;
+  const Motion motion = first ? Motion{} : motionBetween(mapping, *state.last, sample);
   const bool jumped = isJump(mapping, motion, dt);
+  state.last = sample;
+  first || jumped ? refer(mapping, state) : moveHand(mapping, motion, state);
   for (std::size_t j = 0; j < state.ports.size(); ++j) {
     const HandJoint& joint = mapping.joints[j];
     if (joint.coordinate < 0) continue;
-    const auto c = static_cast<std::size_t>(joint.coordinate);
-    const double position = state.hand[c] + (jumped ? 0 : motion[c]);
-    if (jumped || first)
-      rebase(joint.port, sample.time, position, state.ports[j]);
-    else
-      observe(joint.port, sample.time, position, state.ports[j]);
+    const auto book = first || jumped ? rebase : observe;
+    book(joint.port, sample.time, state.hand[static_cast<std::size_t>(joint.coordinate)], state.ports[j]);
   }
-  if (jumped) return false;
-  for (std::size_t i = 0; i < motion.size(); ++i) state.hand[i] += motion[i];
-  return true;
+  return !jumped;
 }
 
-/// From where the joints are.
+/// The hand moves a joint from where it is.
+void takeUp(const TeleopMapping& mapping, std::size_t j, TeleopState& state) {
+  const HandJoint& joint = mapping.joints[j];
+  if (joint.coordinate < 0) return;
+  state.scales[j] = {joint.scale,
+                     state.joints[j] - joint.scale * state.hand[static_cast<std::size_t>(joint.coordinate)]};
+}
+
 void engage(const TeleopMapping& mapping, bool on_device, TeleopState& state) {
   state.engaged = true;
   state.on_device = on_device;
   state.tissue_time = -1e9;
+  refer(mapping, state);
   const Followers followers = followersOf(state);
-  for (std::size_t j = followers.first; j < followers.end; ++j) {
-    const HandJoint& joint = mapping.joints[j];
-    if (joint.coordinate < 0) continue;
-    JointScale& scale = state.scales[j];
-    scale.scale = joint.scale;
-    scale.offset = state.joints[j] - joint.scale * state.hand[static_cast<std::size_t>(joint.coordinate)];
-  }
+  for (std::size_t j = followers.first; j < followers.end; ++j) takeUp(mapping, j, state);
 }
 
-/// The scope stays where it was sent; the suturing device may have been moved by others.
-void changeOver(const TeleopMapping& mapping, const TeleopInput& input, TeleopState& state) {
-  letGo(state);
-  if (input.device)
-    std::copy(input.joints.begin() + kScopeJointCount, input.joints.end(), state.joints.begin() + kScopeJointCount);
+/// From where the tool is.
+void begin(const TeleopMapping& mapping, const TeleopInput& input, TeleopState& state) {
+  state.joints = input.joints;
+  state.gripper.reset();
+  state.gripper_moved = false;
+  for (std::size_t j = 0; j < state.joints.size(); ++j) {
+    resumeTrail(state.joints[j], state.trail.joints[j]);
+    state.trail.joints[j].moves = false;
+  }
   engage(mapping, input.device, state);
+}
+
+/// Where somebody else has moved the tool, the arm goes on from there.
+void watchTool(const TeleopMapping& mapping, const TeleopInput& input, TeleopState& state) {
+  for (std::size_t j = 0; j < state.joints.size(); ++j) {
+    if (!movedByOthers(static_cast<int>(j), input.joints[j], input.live, state.trail.joints[j])) continue;
+    state.joints[j] = input.joints[j];
+    if (mapping.gripper && mapping.gripper->joint == static_cast<int>(j)) state.gripper_moved = false;
+    resumeTrail(state.joints[j], state.trail.joints[j]);
+    takeUp(mapping, j, state);
+  }
 }
 
 double springForce(const JointSpring& spring, double coordinate) {
@@ -123,7 +167,7 @@ void takeSprings(const TeleopMapping& mapping, const TeleopInput& input, double 
   state.tissue_time = input.tissue ? input.tissue->time : -1e9;
 }
 
-void moveJoints(const TeleopMapping& mapping, const ToolLimits& limits, const TeleopInput& input, TeleopState& state) {
+void moveJoints(const TeleopMapping& mapping, const ToolLimits& limits, TeleopState& state) {
   const Followers followers = followersOf(state);
   for (std::size_t j = followers.first; j < followers.end; ++j) {
     const HandJoint& joint = mapping.joints[j];
@@ -131,12 +175,40 @@ void moveJoints(const TeleopMapping& mapping, const ToolLimits& limits, const Te
     const double wanted = jointPosition(state.scales[j], state.hand[static_cast<std::size_t>(joint.coordinate)]);
     state.joints[j] = std::clamp(wanted, limits[j].lower, limits[j].upper);
   }
-  if (!mapping.gripper || !input.gripper) return;
-  const ArmGripper& gripper = *mapping.gripper;
+}
+
+/// The joint of the gripper moves by as much as the gripper. What it was apart is used up at the ends of its way: there
+/// the joint stays while the gripper comes, and a gripper that comes to an end from the middle takes the joint along,
+/// as long as the tool obeys.
+void moveGripper(const ArmGripper& gripper, const TeleopInput& input, double dt, TeleopState& state) {
+  const double way = gripper.at_open - gripper.at_closed;
   const double share = std::clamp((*input.gripper - gripper.closed) / (gripper.open - gripper.closed), 0.0, 1.0);
-  const auto joint = static_cast<std::size_t>(gripper.joint);
-  state.joints[joint] = std::clamp(gripper.at_closed + share * (gripper.at_open - gripper.at_closed),
-                                   limits[joint].lower, limits[joint].upper);
+  const double wanted = gripper.at_closed + share * way;
+  if (!state.gripper || std::abs(wanted - *state.gripper) > kGripperJump * std::abs(way))
+    state.gripper = wanted, state.gripper_moved = false;
+  const double step = std::min(dt, kGripperStep) * std::abs(way);
+  const double motion = std::clamp(wanted - *state.gripper, -step / kGripperTime, step / kGripperTime);
+  const auto j = static_cast<std::size_t>(gripper.joint);
+  double& joint = state.joints[j];
+  const auto [low, high] = std::minmax({gripper.at_closed, gripper.at_open, joint});
+  joint = std::clamp(joint + motion, low, high);
+  *state.gripper += motion;
+  state.gripper_moved |= share > kGripperEnd && share < 1 - kGripperEnd;
+  const bool obeyed =
+      !isKnown(state.trail.joints[j], input.live) || std::abs(input.joints[j] - joint) < unnoticed(gripper.joint);
+  if (state.gripper_moved && (share == 0 || share == 1) && obeyed)
+    joint += std::clamp(wanted - joint, -step / kGripperCatchUp, step / kGripperCatchUp);
+}
+
+/// Those that count: pressed since the arm may be used.
+std::array<std::uint8_t, kButtonCount> pressedOf(const TeleopInput& input, bool usable, TeleopState& state) {
+  std::array<std::uint8_t, kButtonCount> pressed{};
+  for (std::size_t b = 0; b < pressed.size(); ++b) {
+    state.old_press[b] &= input.buttons[b];
+    if (!usable) state.old_press[b] = input.buttons[b];
+    pressed[b] = input.buttons[b] & ~state.old_press[b];
+  }
+  return pressed;
 }
 
 void sendForces(const TeleopMapping& mapping, double now, TeleopState& state, TeleopOutput& output) {
@@ -152,11 +224,12 @@ void sendForces(const TeleopMapping& mapping, double now, TeleopState& state, Te
     const double sent =
         silent ? release(now, state.ports[j]) : command(joint.port, now, spring, damping, state.ports[j]);
     output.passivity_acts |= state.ports[j].acts;
+    output.withheld = std::max(output.withheld, state.ports[j].withheld);
     output.efforts[static_cast<std::size_t>(joint.coordinate)] += sent;
     (joint.coordinate < HandRoll ? force : torque)[joint.coordinate % 3] += sent;
   }
   output.force = mapping.hand * force;
-  output.torque = mapping.hand * torque;
+  output.torque = state.rates * torque;
   if (mapping.force_frame == ForceFrame::Base || !state.last) return;
   output.force = state.last->orientation.conjugate() * output.force;
   output.torque = state.last->orientation.conjugate() * output.torque;
@@ -176,26 +249,29 @@ TeleopOutput step(const TeleopMapping& mapping, const ToolLimits& limits, double
   TeleopOutput output;
   const bool was_engaged = state.engaged;
   if (input.sample && !follow(mapping, *input.sample, state)) {
+    if (was_engaged) output.sentence = kJumped;
     letGo(state);
-    output.sentence =
-        "The arm has jumped, faster than a hand moves it; the scope stays and the arm takes it up from here.";
+    state.jump_time = now;
   }
   const bool silent = !state.last || now - state.last->time > mapping.timeout;
-  if (was_engaged && silent && output.sentence.empty())
-    output.sentence = "The arm has fallen silent: its forces are off and the scope stays where it is.";
+  if (was_engaged && silent && output.sentence.empty()) output.sentence = kSilent;
   if (silent) state.last.reset();
-  const bool may = input.ready && !silent && !input.clutch;
+  output.buttons = pressedOf(input, input.ready && !silent, state);
+  const bool may = input.ready && !silent && !input.clutch && now - state.jump_time >= kCalm;
   if (!may && state.engaged) letGo(state);
-  if (!may && !state.engaged && input.ready) state.joints = input.joints;
-  if (may && !state.engaged && output.sentence.empty()) {
-    state.joints = input.joints;
+  if (!may && input.ready) state.joints = input.joints;
+  if (may && !state.engaged) begin(mapping, input, state);
+  if (state.engaged) watchTool(mapping, input, state);
+  if (state.engaged && state.on_device != input.device) {
+    letGo(state);
     engage(mapping, input.device, state);
   }
-  if (state.engaged && state.on_device != input.device) changeOver(mapping, input, state);
   if (state.engaged) {
     if (!state.on_device) takeSprings(mapping, input, now - state.time, state);
-    moveJoints(mapping, limits, input, state);
+    moveJoints(mapping, limits, state);
+    if (mapping.gripper && input.gripper) moveGripper(*mapping.gripper, input, now - state.time, state);
   }
+  extendTrail(limits, state.joints, now, now - state.time, state.trail);
   state.time = now;
   sendForces(mapping, now, state, output);
   output.joints = state.joints;

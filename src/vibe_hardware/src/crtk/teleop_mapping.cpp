@@ -25,6 +25,10 @@ Eigen::Vector3d directionOf(const std::string& word) {
   return direction;
 }
 
+PortConfig turnOf(const PortConfig& way) {
+  return {way.delay, way.hold, 5, kTurnResolution, 0, 0.005, kTurnEnergy * way.capacity};
+}
+
 /// Reads a TeleopMapping out of a YAML document.
 class ArmReader {
  public:
@@ -49,6 +53,7 @@ class ArmReader {
     if (fields.count("buttons") > 0) readButtons(fields.at("buttons"));
     if (fields.count("gripper") > 0) readGripper(fields.at("gripper"));
     if (fields.count("device") > 0) readDevice(fields.at("device"));
+    chooseTwist();
     return mapping_;
   }
 
@@ -58,9 +63,10 @@ class ArmReader {
   const YamlSource& source_;
   const ToolLimits& limits_;
   TeleopMapping mapping_;
-  PortConfig way_, turn_{};          // of coordinates along and about an axis
-  std::map<int, std::string> used_;  // coordinates
-  bool any_pose_ = false;            // a motion of the hand moves a joint
+  PortConfig way_, turn_ = turnOf(way_);  // of coordinates along and about an axis
+  std::map<int, std::string> used_;       // coordinates
+  bool any_pose_ = false;                 // a motion of the hand moves a joint
+  std::string stylus_;  // axis of the moving frame; empty: the one that is named as the twist's in the base
 
   Fields mapOf(const YamlField& field, const std::vector<std::string>& known,
                const std::vector<std::string>& required) const {
@@ -81,7 +87,8 @@ class ArmReader {
   }
 
   void readHand(const YamlField& field) {
-    const Fields fields = mapOf(field, {"away", "up"}, {"away", "up"});
+    const Fields fields = mapOf(field, {"away", "up", "stylus"}, {"away", "up"});
+    if (fields.count("stylus") > 0) stylus_ = source_.choice(fields.at("stylus"), kDirections);
     const std::string away = source_.choice(fields.at("away"), kDirections);
     const std::string up = source_.choice(fields.at("up"), kDirections);
     if (away.back() == up.back())
@@ -92,6 +99,13 @@ class ArmReader {
     mapping_.hand.col(2) = z;
   }
 
+  /// The twist is what turns the scope, else what turns the helix, else the motion about the way away.
+  void chooseTwist() {
+    for (const Joint joint : {HelixRotation, Rotation})
+      if (mapping_.joints[joint].coordinate >= HandRoll) mapping_.twist = mapping_.joints[joint].coordinate - HandRoll;
+    mapping_.stylus = stylus_.empty() ? Eigen::Vector3d(mapping_.hand.col(mapping_.twist)) : directionOf(stylus_);
+  }
+
   void readArm(const YamlField& field) {
     const Fields fields = mapOf(field,
                                 {"delay", "timeout", "energy", "speed_limit", "turn_limit", "force_limit",
@@ -100,7 +114,7 @@ class ArmReader {
     readIf(fields, "timeout", "s", 0.02, 2, mapping_.timeout);
     readIf(fields, "delay", "s", 0, 0.5, way_.delay);
     readIf(fields, "energy", "J", 1e-4, 1, way_.capacity);
-    turn_ = {way_.delay, way_.hold, 5, kTurnResolution, 0, 0.005, kTurnEnergy * way_.capacity};
+    turn_ = turnOf(way_);
     readIf(fields, "speed_limit", "m/s", 0.01, 10, way_.speed_limit);
     readIf(fields, "turn_limit", "rad/s", 0.1, 100, turn_.speed_limit);
     readIf(fields, "force_limit", "N", 0, 100, way_.force_limit);

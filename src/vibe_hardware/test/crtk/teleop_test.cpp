@@ -230,6 +230,84 @@ TEST(Teleop, AnArmThatMeasuresOnlyItsJointsDrivesAndFeels) {
   EXPECT_NEAR(s.output.joints[Rotation], 0.1, 1e-9);
 }
 
+/// With a gripper whose 45 degrees are 18 mm of the needle arm, and a tool that is where it was sent.
+struct GripperSession : Session {
+  GripperSession() {
+    mapping =
+        mappingOf("gripper: {joint: needle_driver, closed: 0 deg, open: 45 deg, at_closed: 18 mm, at_open: 0 mm}\n");
+    input.joints[NeedleDriver] = 0.009;
+    input.gripper = 0;  // closed
+    tick();
+  }
+  double jaw() const { return output.joints[NeedleDriver]; }
+  void to(double degrees, double seconds = 0.5) {
+    const double begin = *input.gripper, end = degrees * M_PI / 180;
+    for (int i = 1; i <= 1e3 * seconds; ++i) input.gripper = begin + (end - begin) * i / (1e3 * seconds), tick();
+  }
+};
+
+TEST(Teleop, TheGripperTakesItsJointUpWhereItIsAndReachesItsWholeWayAgain) {
+  GripperSession s;
+  for (int i = 0; i < 2000; ++i) s.tick();
+  EXPECT_EQ(s.jaw(), 0.009);  // nobody has moved the gripper
+  s.to(10);
+  EXPECT_NEAR(s.jaw(), 0.009 - 0.004, 1e-9);
+  s.to(45);
+  EXPECT_NEAR(s.jaw(), 0, 1e-9);
+  s.to(0);
+  EXPECT_NEAR(s.jaw(), 0.018, 1e-9);
+  s.to(20);
+  s.input.clutch = true;
+  s.input.joints = s.output.joints;
+  s.to(23);
+  s.input.clutch = false;
+  s.tick();
+  EXPECT_NEAR(s.jaw(), 0.018 - 0.008, 1e-9);
+  s.to(45);
+  EXPECT_GT(s.jaw(), 0.001);
+  s.to(45);
+  EXPECT_NEAR(s.jaw(), 0, 1e-9);  // it was 1.2 mm behind, and comes along at the end
+}
+
+TEST(Teleop, AJumpOfTheGripperMovesNothing) {
+  GripperSession s;
+  s.to(30);
+  const double before = s.jaw();
+  s.input.gripper = 0;
+  for (int i = 0; i < 2000; ++i) s.tick();
+  EXPECT_EQ(s.jaw(), before);
+}
+
+TEST(Teleop, AButtonThatWasPressedBeforeCountsWhenItIsPressedAnew) {
+  Session s;
+  s.input.buttons[HelixGrab] = 1;
+  s.input.ready = false;
+  s.tick();
+  s.input.ready = true;
+  s.tick();
+  EXPECT_EQ(s.output.buttons[HelixGrab], 0);
+  s.input.buttons[HelixGrab] = 0;
+  s.tick();
+  s.input.buttons[HelixGrab] = 1;
+  s.input.clutch = true;  // the helix holds on
+  s.tick();
+  EXPECT_EQ(s.output.buttons[HelixGrab], 1);
+  s.silence(0.15);
+  EXPECT_EQ(s.output.buttons[HelixGrab], 0);
+  s.tick();
+  EXPECT_EQ(s.output.buttons[HelixGrab], 0);
+}
+
+TEST(Teleop, AnArmAtRestFollowsAToolThatSomebodyElseMoves) {
+  Session s;
+  s.tick();
+  for (int i = 0; i < 28; ++i) s.input.joints[Insertion] += 1e-3, s.tick(), s.tick();
+  for (int i = 0; i < 300; ++i) s.tick();
+  EXPECT_NEAR(s.output.joints[Insertion], 0.028, 0.5e-3);
+  for (int i = 0; i < 100; ++i) s.tick({0, 0, -1e-4});
+  EXPECT_NEAR(s.output.joints[Insertion], 0.038, 0.5e-3);  // and goes on from there
+}
+
 TEST(Teleop, EqualInputsGiveEqualOutputs) {
   Session a, b;
   for (int i = 0; i < 300; ++i)

@@ -28,17 +28,23 @@ struct PortCommand {
   double low = 0, high = 0;  ///< of the forces; equal but for merged ones [N], [N m]
 };
 
+/// In which what was booked for silence comes back [s]: after silences, and only then, the port gives on average up to
+/// capacity / kReturnTime more. Design choice: longer than a person waits for an oscillation, shorter than for a force.
+constexpr double kReturnTime = 1.5;
+
 /// What an observer knows and remembers; begun by startPort().
 struct PortState {
   static constexpr std::size_t kCommands = 256;  ///< beyond, the oldest two are merged
 
   double balance = 0;                             ///< energy that may still be given [J]
+  double suspended = 0;                           ///< booked for silence, comes back with time [J]
   double time = 0;                                ///< of the last measurement [s]
   double position = 0;                            ///< at that time [m], [rad]
   double velocity = 0;                            ///< low-pass filtered [m/s], [rad/s]
   double charged = 0;                             ///< force that was booked last [N], [N m]
   bool measured = false;                          ///< whether there is a measurement
   bool acts = false;                              ///< the last command was lowered
+  double withheld = 0;                            ///< share of the last spring force that was not sent
   std::array<PortCommand, kCommands> commands{};  ///< on their way or acting, oldest first; the first `count` are valid
   std::size_t count = 1;                          ///< of commands; the first is 0 since ever
 };
@@ -51,7 +57,8 @@ PortState startPort(const PortConfig& config, double now);
 void observe(const PortConfig& config, double time, double position, PortState& state);
 
 /// Goes on from a position after an unknown motion: after silence, or after a jump of the frame of reference. Books all
-/// energy that was reserved until then.
+/// energy that was reserved until then. Nobody knows whether it was given, so it comes back at the rate of the capacity
+/// in kReturnTime.
 void rebase(const PortConfig& config, double time, double position, PortState& state);
 
 /// What may be sent now instead of spring + damping. While the hand is no faster than the speed limit and delay and

@@ -1,10 +1,13 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 
+#include "vibe_hardware/crtk/hand_rotation.hpp"
 #include "vibe_hardware/crtk/teleop_mapping.hpp"
+#include "vibe_hardware/crtk/tool_trail.hpp"
 #include "vibe_hardware/driver/joint_scale.hpp"
 
 namespace vibe::hardware {
@@ -27,29 +30,40 @@ struct TissueResponse {
 
 /// What a step sees.
 struct TeleopInput {
-  std::optional<ArmSample> sample;           ///< that has come since the last step
-  std::array<double, kJointCount> joints{};  ///< where the hand of the simulator has the joints [m], [rad]
-  bool ready = false;                        ///< those are known, and the arm may be used (ENABLED and homed)
-  bool clutch = false;                       ///< is pressed
-  bool device = false;                       ///< the button for the suturing device is pressed
-  std::optional<double> gripper;             ///< angle [rad]
-  std::optional<TissueResponse> tissue;      ///< the newest one; empty: nothing is touched
+  std::optional<ArmSample> sample;                   ///< that has come since the last step
+  std::array<double, kJointCount> joints{};          ///< where the hand of the simulator has the joints [m], [rad]
+  bool live = false;                                 ///< they come all the time; else they count when they change
+  bool ready = false;                                ///< those are known, and the arm may be used (ENABLED and homed)
+  bool clutch = false;                               ///< is pressed
+  bool device = false;                               ///< the button for the suturing device is pressed
+  std::array<std::uint8_t, kButtonCount> buttons{};  ///< by vibe::Button; 1 while pressed
+  std::optional<double> gripper;                     ///< angle [rad]
+  std::optional<TissueResponse> tissue;              ///< the newest one; empty: nothing is touched
 };
 
 /// Everything that lasts from step to step.
 struct TeleopState {
-  std::array<double, kJointCount> joints{};      ///< commanded [m], [rad]
-  std::array<double, kHandCoordinates> hand{};   ///< coordinates [m], [rad]
+  std::array<double, kJointCount> joints{};                       ///< commanded [m], [rad]
+  std::array<double, kHandCoordinates> hand{};                    ///< coordinates [m], [rad]
+  Eigen::Quaterniond reference = Eigen::Quaterniond::Identity();  ///< since which the rotation counts
+  Eigen::Vector3d turned = Eigen::Vector3d::Zero();               ///< coordinates of the rotation there [rad]
+  Eigen::Matrix3d rates = Eigen::Matrix3d::Identity();            ///< HandRotation::rates, now
   std::array<JointScale, kJointCount> scales{};  ///< joint = offset + scale * coordinate, of those that follow
   /// Observer and limiter of each scope joint's coordinate; idle where the mapping has none.
   std::array<PortState, kScopeJointCount> ports{};
   std::array<JointSpring, kScopeJointCount> springs{};  ///< that are rendered
   std::array<double, kScopeJointCount> blends{};        ///< what is left of the springs before, fading [N], [N m]
   std::optional<ArmSample> last;  ///< newest measurement; empty: none yet, or older than the mapping's timeout
-  double tissue_time = -1e9;      ///< of the springs [s]
-  double time = 0;                ///< of the last step [s]
-  bool engaged = false;           ///< joints follow the hand
-  bool on_device = false;         ///< those of the suturing device; the scope stays
+  ToolTrail trail;                ///< of the joints that were commanded
+  /// Where the gripper, no faster than a hand, would have its joint; empty: it has not been taken up yet [m], [rad]
+  std::optional<double> gripper;
+  bool gripper_moved = false;                          ///< since then it has been away from its ends
+  std::array<std::uint8_t, kButtonCount> old_press{};  ///< buttons that must be released before they count
+  double tissue_time = -1e9;                           ///< of the springs [s]
+  double time = 0;                                     ///< of the last step [s]
+  double jump_time = -1e9;                             ///< when the arm has jumped [s]
+  bool engaged = false;                                ///< joints follow the hand
+  bool on_device = false;                              ///< those of the suturing device; the scope stays
 };
 
 /// What a step sends.
@@ -58,9 +72,11 @@ struct TeleopOutput {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< in the mapping's frame [N]
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< in the mapping's frame [N m]
   std::array<double, kHandCoordinates> efforts{};    ///< of the arm's joints, by arm_joints [N], [N m]
+  std::array<std::uint8_t, kButtonCount> buttons{};  ///< 1: counts as pressed
   bool engaged = false;                              ///< joints follow the hand; false: they stay and the forces are 0
   bool on_device = false;       ///< those of the suturing device; the scope stays and the forces are 0
   bool passivity_acts = false;  ///< on some coordinate the force of the tissue was lowered, or damping was added
+  double withheld = 0;          ///< largest share of a force of the tissue that an account of energy keeps back
   std::string sentence;         ///< one when something has changed that a person should know; else empty
 };
 
@@ -70,10 +86,12 @@ TeleopState startTeleop(const TeleopMapping& mapping, double now);
 /// One step: a function of its arguments. No clock, no graph, no memory but for sentences.
 ///   joint = where it was when the arm engaged + scale * motion of the hand since, within the limits of the joint.
 /// The arm engages when it may be used, measures, and the clutch is up; it lets go when one of these ends. Then forces
-/// are 0 and the joints stay. While the button for the suturing device is pressed, that follows instead of the scope,
-/// without forces: the tissue answers to joints of the scope only. A force of the tissue at a joint becomes scale times
-/// that on the coordinate (virtual work) times force_scale; new springs do not jump, and without a message for 0.1 s
-/// they fade within 0.05 s.
+/// are 0 and the joints stay. Where somebody else has moved the tool meanwhile, the arm goes on from there. The gripper
+/// moves its joint by as much as itself, from where that is. While the button for the suturing device is pressed, that
+/// follows instead of the scope, without forces: the tissue answers to joints of the scope only. A force of the tissue
+/// at a joint becomes scale times that on the coordinate (virtual work) times force_scale; new springs do not jump, and
+/// without a message for 0.1 s they fade within 0.05 s. Buttons count while the arm may be used and measures, but for
+/// those that were pressed before.
 /// @param now  not before the last one [s]
 TeleopOutput step(const TeleopMapping& mapping, const ToolLimits& limits, double now, const TeleopInput& input,
                   TeleopState& state);

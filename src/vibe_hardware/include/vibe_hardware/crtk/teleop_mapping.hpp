@@ -12,8 +12,8 @@
 namespace vibe::hardware {
 
 /// Coordinates of the hand that holds the arm, along and about the axes of its own frame: x away from the person, y to
-/// the left, z up. They are the integrals of its linear and angular velocity, so that force times motion is power. Of
-/// an arm that measures only its joints, the coordinates are those of TeleopMapping::arm_joints instead.
+/// the left, z up. One of the angles is the twist about the stylus, the other two are its swing (HandRotation). Of an
+/// arm that measures only its joints, the coordinates are those of TeleopMapping::arm_joints instead.
 enum HandCoordinate : int { HandX, HandY, HandZ, HandRoll, HandPitch, HandYaw };
 constexpr int kHandCoordinates = 6;  ///< length of arrays indexed by HandCoordinate
 
@@ -48,6 +48,8 @@ struct TeleopMapping {
   std::string name;                                    ///< of the arm, for messages
   std::vector<std::string> arm_joints;                 ///< of measured_js; empty: the arm measures measured_cp
   Eigen::Matrix3d hand = Eigen::Matrix3d::Identity();  ///< columns: unit vectors of the hand's axes in the arm's base
+  int twist = 0;                                       ///< number of the hand's axis about which the stylus twists
+  Eigen::Vector3d stylus = Eigen::Vector3d::UnitX();   ///< its own axis in the moving frame; unit vector
   /// By vibe::Joint. Each coordinate moves at most one joint of the scope and one of the suturing device.
   std::array<HandJoint, kJointCount> joints;
   ArmButton device;  ///< while it is pressed, the arm moves the suturing device and the scope stays; no topic: never
