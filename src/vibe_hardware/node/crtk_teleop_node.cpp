@@ -56,9 +56,8 @@ std::string faultOf(const geometry_msgs::Pose& pose) {
   const auto& q = pose.orientation;
   const double norm = Eigen::Vector4d(q.x, q.y, q.z, q.w).norm();
   if (!p.allFinite() || !std::isfinite(norm)) return "a number is not finite";
-  if (std::abs(norm - 1) > 1e-2) return "its quaternion has length " + std::to_string(norm) + " instead of 1";
-  if (p.norm() > kReach)
-    return "it is " + std::to_string(p.norm()) + " m away from the base; the driver may publish millimetres";
+  if (std::abs(norm - 1) > 1e-2) return "its quaternion has another length than 1";
+  if (p.norm() > kReach) return "it is more than 10 m away from the base; the driver may publish millimetres";
   return "";
 }
 
@@ -209,33 +208,38 @@ void CrtkTeleopNode::onArmJoints(const sensor_msgs::JointState& message) {
   takeSample(message.header, sample);
 }
 
+void CrtkTeleopNode::warn(const std::string& kind, const std::string& sentence) {
+  const double now = ros::WallTime::now().toSec();
+  double& last = said_[kind];
+  if (now - last < kPatience) return;
+  last = now;
+  ROS_WARN_STREAM(sentence);
+}
+
 void CrtkTeleopNode::refuse(const std::string& topic, const std::string& what) {
   ++invalid_;
-  ROS_WARN_STREAM_THROTTLE(kPatience, "A message on " << topic << " is ignored: " << what << " (" << invalid_
-                                                      << " such messages so far); look at its driver.");
+  warn(topic + what, "A message on " + topic + " is ignored: " + what + ". There have been " +
+                         std::to_string(invalid_) + " that are ignored; look at the driver of the arm.");
 }
 
 /// When it was measured, of the clock of this computer.
-double CrtkTeleopNode::timeOf(const std_msgs::Header& header, double now) const {
+double CrtkTeleopNode::timeOf(const std_msgs::Header& header, double now) {
   const double time = header.stamp.toSec(), age = now - time;
   if (age < -kAhead || age > kOldest) {
-    ROS_WARN_STREAM_THROTTLE(kPatience, "The stamps of " << measured() << " are " << -age
-                                                         << " s off the clock of this computer, so the times of "
-                                                            "arrival are used; synchronise the clocks.");
+    warn("clock", "The stamps of " + measured() + " are " + std::to_string(-age) +
+                      " s off the clock of this computer, so the times of arrival are used; synchronise the clocks.");
     return now;
   }
+  const std::string late = "Measurements on " + measured() + " come " + std::to_string(age) + " s after their stamps";
+  const double delay = largestDelay(mapping_);
   if (age > mapping_.timeout)
-    ROS_WARN_STREAM_THROTTLE(kPatience, "Measurements on "
-                                            << measured() << " come " << age << " s after their stamps, and the arm "
-                                            << "counts as silent after " << mapping_.timeout << " s; make the "
-                                            << "connection quicker, synchronise the clocks, or raise 'timeout' and "
-                                            << "'delay' below 'arm' in the mapping.");
-  else if (const double delay = largestDelay(mapping_); mapping_.force_scale != 0 && age > delay)
-    ROS_WARN_STREAM_THROTTLE(6 * kPatience, "Measurements on "
-                                                << measured() << " come up to " << age << " s after their stamps. If "
-                                                << "the way back takes as long, forces come later than the mapping "
-                                                << "says (" << delay << " s), and the arm may give energy; write a "
-                                                << "longer 'delay' below 'arm' in the mapping.");
+    warn("timeout", late + ", and the arm counts as silent after " + std::to_string(mapping_.timeout) +
+                        " s; make the connection quicker, synchronise the clocks, or raise 'timeout' and 'delay' "
+                        "below 'arm' in the mapping.");
+  else if (mapping_.force_scale != 0 && age > delay)
+    warn("delay", late + ". If the way back takes as long, forces come later than the mapping says (" +
+                      std::to_string(delay) +
+                      " s), and the arm may give energy; write a longer 'delay' below 'arm' in the mapping.");
   return std::min(time, now);
 }
 
@@ -244,12 +248,11 @@ void CrtkTeleopNode::takeSample(const std_msgs::Header& header, ArmSample sample
   sample.time = timeOf(header, now);
   worst_age_ = std::max(worst_age_, now - sample.time);
   if (samples_++ > 0 && header.frame_id != base_frame_) {
-    ROS_WARN_STREAM_THROTTLE(kPatience, "The frame of " << measured() << " has changed from '" << base_frame_
-                                                        << "' to '" << header.frame_id << "', and the arm goes on from "
-                                                        << "here; if that goes on, two drivers may publish it.");
+    warn("frame", "The frame of " + measured() + " has changed from '" + base_frame_ + "' to '" + header.frame_id +
+                      "', and the arm goes on from here; if that goes on, two drivers may publish it.");
     state_.last.reset();
   }
-  if (sample.position != still_.position || sample.joints != still_.joints ||
+  if (samples_ == 1 || sample.position != still_.position || sample.joints != still_.joints ||
       sample.orientation.coeffs() != still_.orientation.coeffs())
     still_ = sample;
   base_frame_ = header.frame_id;
@@ -326,7 +329,7 @@ void CrtkTeleopNode::advance(double now) {
   const TeleopOutput output = step(mapping_, limits_, std::max(now, state_.time), input_, state_);
   input_.sample.reset();
   withheld_ = std::max(withheld_, output.withheld);
-  if (!output.sentence.empty()) ROS_WARN_STREAM_THROTTLE(1, output.sentence);
+  if (!output.sentence.empty()) warn(output.sentence, output.sentence);
   if (output.engaged != was_engaged)
     ROS_INFO_STREAM((output.engaged ? "The arm drives the scope." : "The arm has let go of the scope."));
   if (output.on_device != was_on_device)
@@ -406,6 +409,7 @@ void CrtkTeleopNode::fillDiagnostics(diagnostic_updater::DiagnosticStatusWrapper
   status.add("state of the arm", arm_state_);
   status.add("measurements since the last message", samples_ - samples_before_);
   status.add("invalid measurements", invalid_);
+  status.add("the same measurement for [s]", still);
   status.add("oldest measurement at its arrival [s]", worst_age_);
   status.add("least share of the energy that is left", balance);
   status.add("largest share of a force that was held back", withheld_);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -46,9 +47,10 @@ class CrtkTeleopNode {
   bool scope_known_ = false, suturing_device_known_ = false;
   bool arm_ready_ = true;  // an arm without operating_state may be used
   std::string arm_state_, base_frame_;
-  double worst_age_ = 0;  // of a measurement at its arrival, since the last diagnostics [s]
-  double withheld_ = 0;   // largest share of a force of the tissue, since the last diagnostics
-  ArmSample still_;       // the first of equal measurements
+  double worst_age_ = 0;                // of a measurement at its arrival, since the last diagnostics [s]
+  double withheld_ = 0;                 // largest share of a force of the tissue, since the last diagnostics
+  std::map<std::string, double> said_;  // when a warning of a kind was given last [s]
+  ArmSample still_;                     // the first of equal measurements
   std::uint64_t samples_ = 0, samples_before_ = 0, invalid_ = 0;
   double next_look_ = 0;                             // for an arm that is silent [s]
   double last_buttons_ = -1e9, last_joints_ = -1e9;  // published [s]
@@ -68,7 +70,8 @@ class CrtkTeleopNode {
   void onPose(const geometry_msgs::PoseStamped& message);
   void onArmJoints(const sensor_msgs::JointState& message);
   void takeSample(const std_msgs::Header& header, ArmSample sample);
-  double timeOf(const std_msgs::Header& header, double now) const;
+  double timeOf(const std_msgs::Header& header, double now);
+  void warn(const std::string& kind, const std::string& sentence);
   void refuse(const std::string& topic, const std::string& what);
   void lookForTheArm(double now);
   void onGripper(const sensor_msgs::JointState& message);

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kReservedShare = 0.1;  // of the capacity, for damping; design choice
 constexpr double kFilterTime = 5e-3;    // of the velocity [s]; design choice
+constexpr double kTurnTime = 0.02;      // in a shorter interval a hand does not turn round [s]; design choice
 constexpr double kDampBelow = 0.75;     // of the capacity: damping is added; design choice
 constexpr double kAllDampBelow = 0.25;  // of the capacity: all of it
 constexpr double kFelt = 0.01;          // of the largest force: less is not missed; design choice
@@ -83,7 +84,7 @@ double affordable(const PortConfig& config, const PortState& state, double now, 
   return force + left / time;
 }
 
-/// Returns what silence has cost, after a time.
+/// Returns what silence and long intervals have cost, after a time.
 void payBack(const PortConfig& config, double dt, PortState& state) {
   const double due = std::min(state.suspended, std::max(0.0, dt) * config.capacity / kReturnTime);
   state.balance = std::min(config.capacity, state.balance + due);
@@ -126,7 +127,11 @@ void observe(const PortConfig& config, double time, double position, PortState& 
   const double force = motion > 0 ? high : low;
   // the hand may be half a step beside the measured position
   const double unseen = 0.5 * config.resolution * std::abs(force - state.charged);
-  state.balance = std::min(config.capacity, state.balance - force * motion - unseen);
+  // and in a long interval it may have gone with the larger force and come back against the smaller one
+  const double detour = 0.5 * (config.speed_limit * dt - std::abs(motion));
+  const double hidden = dt > kTurnTime ? (high - low) * std::max(0.0, detour) : 0;
+  state.balance = std::min(config.capacity, state.balance - force * motion - unseen - hidden);
+  state.suspended += hidden;
   payBack(config, dt, state);
   state.charged = force;
   const double kept = std::exp(-dt / kFilterTime);

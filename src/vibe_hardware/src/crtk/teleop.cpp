@@ -120,20 +120,19 @@ void begin(const TeleopMapping& mapping, const TeleopInput& input, TeleopState& 
   state.joints = input.joints;
   state.gripper.reset();
   state.gripper_moved = false;
-  for (std::size_t j = 0; j < state.joints.size(); ++j) {
-    resumeTrail(state.joints[j], state.trail.joints[j]);
-    state.trail.joints[j].moves = false;
-  }
+  for (std::size_t j = 0; j < state.joints.size(); ++j) resumeTrail(state.joints[j], state.trail.joints[j]);
   engage(mapping, input.device, state);
 }
 
 /// Where somebody else has moved the tool, the arm goes on from there.
 void watchTool(const TeleopMapping& mapping, const TeleopInput& input, TeleopState& state) {
   for (std::size_t j = 0; j < state.joints.size(); ++j) {
-    if (!movedByOthers(static_cast<int>(j), input.joints[j], input.live, state.trail.joints[j])) continue;
+    JointTrail& trail = state.trail.joints[j];
+    const bool rests = input.live && state.time - trail.rest_begin > kTrailRest;
+    if (!movedByOthers(static_cast<int>(j), input.joints[j], rests, trail)) continue;
     state.joints[j] = input.joints[j];
     if (mapping.gripper && mapping.gripper->joint == static_cast<int>(j)) state.gripper_moved = false;
-    resumeTrail(state.joints[j], state.trail.joints[j]);
+    resumeTrail(state.joints[j], trail);
     takeUp(mapping, j, state);
   }
 }
@@ -194,8 +193,7 @@ void moveGripper(const ArmGripper& gripper, const TeleopInput& input, double dt,
   joint = std::clamp(joint + motion, low, high);
   *state.gripper += motion;
   state.gripper_moved |= share > kGripperEnd && share < 1 - kGripperEnd;
-  const bool obeyed =
-      !isKnown(state.trail.joints[j], input.live) || std::abs(input.joints[j] - joint) < unnoticed(gripper.joint);
+  const bool obeyed = !input.live || std::abs(input.joints[j] - joint) < unnoticed(gripper.joint);
   if (state.gripper_moved && (share == 0 || share == 1) && obeyed)
     joint += std::clamp(wanted - joint, -step / kGripperCatchUp, step / kGripperCatchUp);
 }

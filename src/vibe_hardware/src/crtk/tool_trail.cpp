@@ -1,6 +1,7 @@
 #include "vibe_hardware/crtk/tool_trail.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "vibe_hardware/gamepad/pad_mapping.hpp"
@@ -17,16 +18,12 @@ void resumeTrail(double position, JointTrail& joint) {
   joint.high[0] = std::max(joint.high[0], position);
 }
 
-bool isKnown(const JointTrail& joint, bool live) {
-  return live || joint.moves;
-}
-
-bool movedByOthers(int index, double news, bool live, JointTrail& joint) {
-  joint.moves |= news != joint.seen;
+bool movedByOthers(int index, double news, bool rests, JointTrail& joint) {
+  const double low = std::min(joint.low[0], joint.low[1]), high = std::max(joint.high[0], joint.high[1]);
+  const auto outside = [&](double position) { return std::max({0.0, low - position, position - high}); };
+  const double before = outside(joint.seen), now = outside(news);
   joint.seen = news;
-  if (!isKnown(joint, live)) return false;
-  const double near = unnoticed(index);
-  return news < std::min(joint.low[0], joint.low[1]) - near || news > std::max(joint.high[0], joint.high[1]) + near;
+  return now > unnoticed(index) && (now > before || rests);
 }
 
 void extendTrail(const ToolLimits& limits, const std::array<double, kJointCount>& commanded, double now, double dt,
@@ -40,6 +37,8 @@ void extendTrail(const ToolLimits& limits, const std::array<double, kJointCount>
     if (next) joint.low = {joint.follows, joint.low[0]}, joint.high = {joint.follows, joint.high[0]};
     joint.low[0] = std::min(joint.low[0], joint.follows);
     joint.high[0] = std::max(joint.high[0], joint.follows);
+    if (std::abs(commanded[j] - joint.rest) > unnoticed(static_cast<int>(j)))
+      joint.rest = commanded[j], joint.rest_begin = now;
   }
 }
 

@@ -16,7 +16,7 @@ namespace {
 using Joints = std::array<double, kJointCount>;
 constexpr double kTick = 5e-3;       // [s]
 constexpr std::size_t kNewsAge = 4;  // ticks until an arm hears where the tool is
-constexpr double kPatience = 0.2;    // the tool obeys another arm after so long a silence [s]
+constexpr double kPatience = 0.7;    // the tool obeys another arm after so long a silence [s]
 
 TeleopMapping mappingOf() {
   return parseTeleopMapping(
@@ -45,6 +45,7 @@ struct Arm {
   bool runs = true;                          // its node
   double way = 0, turn = 0, grip = 0;        // that the hand has moved since the last measurement
   std::deque<std::array<double, 3>> recent;  // of the last ticks
+  Joints agreed{};  // what the hand had moved of each joint when that was last where the tool is
 
   double in(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
   bool happens(double per_second) { return in(0, 1) < per_second * kTick; }
@@ -85,13 +86,20 @@ struct Arm {
     }
     output = hardware::step(mapping, toolLimits(), now, input, state);
   }
-  /// What the hand has moved of a joint within the last ticks.
+  /// What the hand has moved of a joint until so many ticks ago.
   double moved(std::size_t joint, std::size_t ticks) const {
     const auto& then = recent[recent.size() - std::min(ticks, recent.size())];
-    if (joint == NeedleDriver) return (grip - then[2]) * 0.018 / (M_PI / 4);
+    if (joint == NeedleDriver) return then[2] * 0.018 / (M_PI / 4);
     const HandJoint& map = mapping.joints[joint];
     // twist and swing of a hand that is tilted turn faster than the hand, by 1 / cos(swing / 2)
-    return std::abs(map.scale) * (map.coordinate < HandRoll ? way - then[0] : 6 * (turn - then[1]));
+    return std::abs(map.scale) * (map.coordinate < HandRoll ? then[0] : 6 * then[1]);
+  }
+  /// @return motion of a joint at once beyond what the hand has moved since it was last where the tool is
+  double beyond(std::size_t joint, double tool) {
+    const double apart = std::abs(output.joints[joint] - tool), now = moved(joint, 1);
+    const double jump = apart - (now - agreed[joint]);
+    if (apart < unnoticed(static_cast<int>(joint))) agreed[joint] = moved(joint, 40);  // measurements may be late
+    return jump;
   }
 };
 
@@ -102,7 +110,7 @@ double play(unsigned seed, bool news_come) {
   Joints tool{0.1, 0, 0, 0, 0.01, 0, 0.009}, aim = tool;
   std::deque<Joints> news(kNewsAge, tool);
   std::size_t owner = 0;
-  double heard = 0, largest = 0, other_until = 0;
+  double heard = 0, taken = 0, largest = 0, other_until = 0;
   for (double now = kTick; now < 6; now += kTick) {
     news.push_back(tool), news.pop_front();
     if (std::uniform_real_distribution<double>(0, 1)(random) < 0.2 * kTick) {  // another node moves the tool
@@ -117,16 +125,17 @@ double play(unsigned seed, bool news_come) {
       arm.live(now, true);
       if (!arm.runs) continue;
       arm.step(now, news_come ? news.front() : Joints{0.1, 0, 0, 0, 0.01, 0, 0.009});
-      if (!arm.output.engaged || now < other_until) continue;
-      const bool takes_over = owner != a || now - heard > kPatience;
-      if (owner != a && now - heard <= kPatience) continue;
-      owner = a, heard = now;
-      // late measurements, and until the arm has heard that the tool does not obey it
-      const std::size_t ticks = takes_over ? 80 : 40;
+      const bool obeyed = arm.output.engaged && now >= other_until && (owner == a || now - heard > kPatience);
+      if (obeyed && (owner != a || now - heard > kPatience)) taken = now;
       for (std::size_t j = 0; j < tool.size(); ++j) {
         const double unit = j == Insertion || j == HelixAdvance || j == NeedleDriver ? 1e-3 : M_PI / 180;
-        largest = std::max(largest, (std::abs(arm.output.joints[j] - tool[j]) - arm.moved(j, ticks)) / unit);
+        const double jump = arm.beyond(j, tool[j]);
+        // until it hears that the tool obeys, an arm may just be giving way
+        const bool hears = now - taken < kTick || now - taken > (kNewsAge + 1) * kTick;
+        if (obeyed && hears) largest = std::max(largest, jump / unit);
       }
+      if (!obeyed) continue;
+      owner = a, heard = now;
       tool = arm.output.joints;
     }
   }

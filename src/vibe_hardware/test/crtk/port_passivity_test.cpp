@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <deque>
@@ -17,6 +18,7 @@ namespace {
 
 constexpr double kFine = 1e-4;    // step of the true motion [s]
 constexpr int kFinePerTick = 10;  // the arm measures at 1 kHz
+constexpr unsigned kSequences = 600;
 
 /// The hand: its next position, given time, position, velocity and the force that acts on it now.
 using HandModel = std::function<double(double, double, double&, double)>;
@@ -44,6 +46,15 @@ HandModel sine(double amplitude, double frequency) {
 HandModel yielding(double range) {
   return [=](double, double x, double& v, double force) {
     v = force > 0 ? 0.5 : -0.5;
+    return std::clamp(x + kFine * v, -range, range);
+  };
+}
+
+/// The same with the inertia of a hand: it does not turn round within 20 ms.
+HandModel slowlyYielding(double range) {
+  return [=, direction = 1.0, turned = 0.0](double t, double x, double& v, double force) mutable {
+    if ((force > 0) != (direction > 0) && t - turned > 0.02) direction = -direction, turned = t;
+    v = 0.5 * direction;
     return std::clamp(x + kFine * v, -range, range);
   };
 }
@@ -195,6 +206,96 @@ TEST(PortPassivity, AfterSilenceWhatWasReservedIsBooked) {
   rebase(config, 0.2, 0, port);
   // it acted from 0 until it was replaced and the delay longer, at the speed limit at most
   EXPECT_NEAR(port.balance, config.capacity - 0.5 * 1 * 0.03, 1e-12);
+}
+
+/// A link that breaks, a clutch, and frames of reference that change, in random order: what crtk_teleop does then.
+/// @return most energy within any interval, less what the bound allows beyond the capacity [J]
+double playBroken(unsigned seed, bool controlled) {
+  std::mt19937 random(seed);
+  const auto in = [&random](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  constexpr double kTimeout = 0.1, kDuration = 1.5;
+  PortConfig config;
+  config.delay = in(0, 0.03);
+  const HandModel hand =
+      seed % 3 == 0 ? slowlyYielding(in(0.001, 0.05)) : hands()[std::array{0, 1, 2, 5, 6, 7, 8}[seed % 7]];
+  const Tissue tissue = seed % 4 == 0 ? hostile(seed) : spring(in(50, 2000));
+  PortState port = startPort(config, 0);
+  struct Timed {
+    double time, value, frame;
+  };
+  std::deque<Timed> measurements, forces;
+  double x = 0, v = 0, acting = 0, energy = 0, lowest = 0, most = 0, frame = 0, known_frame = 0, news = -1, sent = 0;
+  double lost_until = 0, stalled_until = 0, clutch_until = 0;
+  bool silent = true;
+  for (int i = 0; i * kFine < kDuration; ++i) {
+    const double t = kFine * i;
+    while (!forces.empty() && forces.front().time <= t) acting = forces.front().value, forces.pop_front();
+    const double next = hand(t, x, v, acting);
+    energy += acting * (next - x);
+    x = next;
+    if (port.suspended > 0) energy -= kFine * config.capacity / kReturnTime;
+    lowest = std::min(lowest, energy);
+    most = std::max(most, energy - lowest);
+    if (i % kFinePerTick != 0) continue;
+    const double now = t + kFine;
+    if (in(0, 1) < 3e-3) lost_until = now + in(0, 0.4);
+    if (in(0, 1) < 1e-3) stalled_until = now + in(0, 0.2);
+    if (in(0, 1) < 1e-3) clutch_until = now + in(0, 0.2);
+    if (in(0, 1) < 5e-4) frame = in(-0.1, 0.1);
+    if (now > lost_until) measurements.push_back({now, x, frame});
+    for (; now > stalled_until && !measurements.empty(); measurements.pop_front()) {
+      const auto [time, value, its_frame] = measurements.front();
+      (silent || its_frame != known_frame ? rebase : observe)(config, time, value + its_frame, port);
+      known_frame = its_frame, news = time;
+      silent = now - news > kTimeout;
+    }
+    silent |= now - news > kTimeout;
+    if (now - sent < (news < now ? 5e-3 : 0)) continue;  // without news, 200 forces a second
+    const double wanted = std::clamp(tissue(now, port.position), -config.force_limit, config.force_limit);
+    double force = wanted;
+    if (controlled) force = silent || now < clutch_until ? release(now, port) : command(config, now, wanted, 0, port);
+    sent = now;
+    forces.push_back({std::max(now + in(0, config.delay), forces.empty() ? 0 : forces.back().time), force, 0});
+  }
+  return most - config.capacity;
+}
+
+TEST(PortPassivity, ALinkThatBreaksGivesNoMoreThanTheCapacityAndWhatComesBack) {
+  double worst = -1;
+  int beyond_without = 0;
+  for (unsigned seed = 1; seed <= kSequences; ++seed) {
+    const double beyond = playBroken(seed, true);
+    EXPECT_LE(beyond, 0) << "seed " << seed;
+    worst = std::max(worst, beyond);
+    if (seed > 100) continue;
+    beyond_without += playBroken(seed, false) > 0 ? 1 : 0;
+  }
+  std::printf("%u sequences: at least %.1f mJ below the bound; without controller %d of 100 beyond it\n", kSequences,
+              -1e3 * worst, beyond_without);
+  EXPECT_GT(beyond_without, 25);  // negative control
+}
+
+TEST(PortPassivity, WhatSilenceHasCostComesBackAndNoMore) {
+  PortConfig config;
+  PortState port = startPort(config, 0);
+  double time = 0, least = 1;
+  for (int i = 0; i < 100; ++i) {  // silences while a force acts
+    observe(config, time, 0, port);
+    command(config, time, 3, 0, port);
+    release(time + 0.1, port);
+    rebase(config, time += 0.3, 0, port);
+    least = std::min(least, port.balance);
+    EXPECT_LE(port.balance + port.suspended, config.capacity + 1e-12);
+  }
+  EXPECT_LT(least, 0.1 * config.capacity);
+  for (const double end = time + kReturnTime; time < end;) observe(config, time += 1e-3, 0, port);
+  EXPECT_NEAR(port.balance, config.capacity, 1e-9);
+  EXPECT_NEAR(port.suspended, 0, 1e-9);
+  port.balance = 0.01;  // spent on the hand: nothing brings that back but the hand
+  for (int i = 0; i < 5000; ++i) observe(config, time += 1e-3, 0, port);
+  EXPECT_EQ(port.balance, 0.01);
 }
 
 TEST(PortPassivity, ManyCommandsAreMergedAndStillCovered) {

@@ -205,6 +205,28 @@ TEST(Teleop, AnArmThatIsSilentJumpsOrIsNotReadyGetsNoForce) {
   EXPECT_EQ(disabled.output.force.norm(), 0);
 }
 
+TEST(Teleop, AfterAHundredDropoutsTheForceComesBackWithinTwoSeconds) {
+  for (const double gap : {0.15, 0.3}) {
+    Session s;
+    s.tick();
+    const auto press = [&s](int ticks) {
+      for (int i = 0; i < ticks; ++i) s.input.tissue = wallAt(s.time, 0, -1.5, 0), s.tick();
+    };
+    press(200);
+    EXPECT_NEAR(s.output.force.norm(), 1.5, 1e-2);
+    double withheld = 0;
+    for (int i = 0; i < 100; ++i) {
+      s.silence(gap);
+      press(50);
+      withheld = std::max(withheld, s.output.withheld);
+    }
+    EXPECT_GT(withheld, 0.3) << gap;  // which is said
+    press(2000);
+    EXPECT_NEAR(s.output.force.norm(), 1.5, 1e-2) << gap;
+    EXPECT_EQ(s.output.withheld, 0) << gap;
+  }
+}
+
 TEST(Teleop, AnArmThatMeasuresOnlyItsJointsDrivesAndFeels) {
   Session s;
   s.mapping = parseTeleopMapping(
@@ -306,6 +328,32 @@ TEST(Teleop, AnArmAtRestFollowsAToolThatSomebodyElseMoves) {
   EXPECT_NEAR(s.output.joints[Insertion], 0.028, 0.5e-3);
   for (int i = 0; i < 100; ++i) s.tick({0, 0, -1e-4});
   EXPECT_NEAR(s.output.joints[Insertion], 0.038, 0.5e-3);  // and goes on from there
+}
+
+TEST(Teleop, AnArmThatIsNotObeyedGivesWayWhenItRests) {
+  Session s;
+  s.input.live = true;
+  s.tick();
+  for (int i = 0; i < 900; ++i) s.tick({0, 0, -3e-5});
+  EXPECT_NEAR(s.output.joints[Insertion], 0.027, 1e-9);  // as long as it moves, the tool may only be late
+  for (int i = 0; i < 1200; ++i) s.tick();
+  EXPECT_EQ(s.output.joints[Insertion], 0);
+}
+
+TEST(Teleop, AToolThatIsSlowOrLateIsNotTakenForMovedByOthers) {
+  Session s;
+  s.input.live = true;
+  std::deque<double> news(80, 0.0);  // [ms]
+  double tool = 0;
+  s.tick();
+  for (int i = 0; i < 4000; ++i) {
+    const double speed = i < 3000 ? 0.4 * std::cos(i * 2e-3 * M_PI) : 0;  // [m/s]; the tool makes 0.15
+    tool += std::clamp(s.output.joints[Insertion] - tool, -0.15e-3, 0.15e-3);
+    news.push_back(tool), news.pop_front();
+    s.input.joints[Insertion] = news.front();
+    s.tick({0, 0, -1e-3 * (speed + 0.05)});
+  }
+  EXPECT_NEAR(s.output.joints[Insertion], 0.2, 1e-3);
 }
 
 TEST(Teleop, EqualInputsGiveEqualOutputs) {

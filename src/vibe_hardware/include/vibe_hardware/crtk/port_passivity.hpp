@@ -37,7 +37,7 @@ struct PortState {
   static constexpr std::size_t kCommands = 256;  ///< beyond, the oldest two are merged
 
   double balance = 0;                             ///< energy that may still be given [J]
-  double suspended = 0;                           ///< booked for silence, comes back with time [J]
+  double suspended = 0;                           ///< booked for what nobody saw; comes back with time [J]
   double time = 0;                                ///< of the last measurement [s]
   double position = 0;                            ///< at that time [m], [rad]
   double velocity = 0;                            ///< low-pass filtered [m/s], [rad/s]

@@ -32,7 +32,7 @@ struct TissueResponse {
 struct TeleopInput {
   std::optional<ArmSample> sample;                   ///< that has come since the last step
   std::array<double, kJointCount> joints{};          ///< where the hand of the simulator has the joints [m], [rad]
-  bool live = false;                                 ///< they come all the time; else they count when they change
+  bool live = false;                                 ///< they come all the time; else only a change says anything
   bool ready = false;                                ///< those are known, and the arm may be used (ENABLED and homed)
   bool clutch = false;                               ///< is pressed
   bool device = false;                               ///< the button for the suturing device is pressed
@@ -86,7 +86,7 @@ TeleopState startTeleop(const TeleopMapping& mapping, double now);
 /// One step: a function of its arguments. No clock, no graph, no memory but for sentences.
 ///   joint = where it was when the arm engaged + scale * motion of the hand since, within the limits of the joint.
 /// The arm engages when it may be used, measures, and the clutch is up; it lets go when one of these ends. Then forces
-/// are 0 and the joints stay. Where somebody else has moved the tool meanwhile, the arm goes on from there. The gripper
+/// are 0 and the joints stay. Where somebody else moves the tool, the arm goes on from there (ToolTrail). The gripper
 /// moves its joint by as much as itself, from where that is. While the button for the suturing device is pressed, that
 /// follows instead of the scope, without forces: the tissue answers to joints of the scope only. A force of the tissue
 /// at a joint becomes scale times that on the coordinate (virtual work) times force_scale; new springs do not jump, and
