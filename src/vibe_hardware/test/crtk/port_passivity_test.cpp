@@ -16,9 +16,9 @@
 namespace vibe::hardware::port_passivity_test {
 namespace {
 
-constexpr double kFine = 1e-4;    // step of the true motion [s]
-constexpr int kFinePerTick = 10;  // the arm measures at 1 kHz
-constexpr unsigned kSequences = 600;
+constexpr double kFine = 1e-4;                      // step of the true motion [s]
+constexpr int kFinePerTick = 10;                    // the arm measures at 1 kHz
+constexpr unsigned kFirst = 700, kSequences = 750;  // of 5,000; some of these need every rule
 
 /// The hand: its next position, given time, position, velocity and the force that acts on it now.
 using HandModel = std::function<double(double, double, double&, double)>;
@@ -265,11 +265,11 @@ double playBroken(unsigned seed, bool controlled) {
 TEST(PortPassivity, ALinkThatBreaksGivesNoMoreThanTheCapacityAndWhatComesBack) {
   double worst = -1;
   int beyond_without = 0;
-  for (unsigned seed = 1; seed <= kSequences; ++seed) {
+  for (unsigned seed = kFirst; seed < kFirst + kSequences; ++seed) {
     const double beyond = playBroken(seed, true);
     EXPECT_LE(beyond, 0) << "seed " << seed;
     worst = std::max(worst, beyond);
-    if (seed > 100) continue;
+    if (seed >= kFirst + 100) continue;
     beyond_without += playBroken(seed, false) > 0 ? 1 : 0;
   }
   std::printf("%u sequences: at least %.1f mJ below the bound; without controller %d of 100 beyond it\n", kSequences,
