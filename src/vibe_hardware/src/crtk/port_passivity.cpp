@@ -132,6 +132,7 @@ void observe(const PortConfig& config, double time, double position, PortState& 
   const double hidden = dt > kTurnTime ? (high - low) * std::max(0.0, detour) : 0;
   state.balance = std::min(config.capacity, state.balance - force * motion - unseen - hidden);
   state.suspended += hidden;
+  if (state.released && low == 0 && high == 0) state.suspended = config.capacity - state.balance;
   payBack(config, dt, state);
   state.charged = force;
   const double kept = std::exp(-dt / kFilterTime);
@@ -150,6 +151,7 @@ double command(const PortConfig& config, double now, double spring, double dampi
   const double total = rendered - std::max(std::min(damping, config.damping_limit), added) * state.velocity;
   const double limit = std::min(config.force_limit, affordable(config, state, now, state.balance));
   const double force = std::clamp(total, -limit, limit);
+  state.released = false;
   state.acts = rendered != wanted || added > 0;
   state.withheld = std::abs(wanted) > kFelt * config.force_limit ? 1 - rendered / wanted : 0;
   append(now, force, state);
@@ -157,6 +159,7 @@ double command(const PortConfig& config, double now, double spring, double dampi
 }
 
 double release(double now, PortState& state) {
+  state.released = true;
   state.acts = false;
   state.withheld = 0;
   append(now, 0, state);

@@ -293,9 +293,12 @@ TEST(PortPassivity, WhatSilenceHasCostComesBackAndNoMore) {
   for (const double end = time + kReturnTime; time < end;) observe(config, time += 1e-3, 0, port);
   EXPECT_NEAR(port.balance, config.capacity, 1e-9);
   EXPECT_NEAR(port.suspended, 0, 1e-9);
-  port.balance = 0.01;  // spent on the hand: nothing brings that back but the hand
-  for (int i = 0; i < 5000; ++i) observe(config, time += 1e-3, 0, port);
+  port.balance = 0.01;  // spent on the hand: nothing brings that back but the hand, or that it lets go
+  for (int i = 0; i < 5000; ++i) command(config, time, 0, 0, port), observe(config, time += 1e-3, 0, port);
   EXPECT_EQ(port.balance, 0.01);
+  for (const double end = time + kReturnTime + 0.1; time < end;)
+    release(time, port), observe(config, time += 1e-3, 0, port);
+  EXPECT_NEAR(port.balance, config.capacity, 1e-9);
 }
 
 TEST(PortPassivity, ManyCommandsAreMergedAndStillCovered) {

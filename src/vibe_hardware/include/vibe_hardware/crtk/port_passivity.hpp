@@ -43,6 +43,7 @@ struct PortState {
   double velocity = 0;                            ///< low-pass filtered [m/s], [rad/s]
   double charged = 0;                             ///< force that was booked last [N], [N m]
   bool measured = false;                          ///< whether there is a measurement
+  bool released = false;                          ///< the last command was release()
   bool acts = false;                              ///< the last command was lowered
   double withheld = 0;                            ///< share of the last spring force that was not sent
   std::array<PortCommand, kCommands> commands{};  ///< on their way or acting, oldest first; the first `count` are valid
@@ -69,7 +70,7 @@ void rebase(const PortConfig& config, double time, double position, PortState& s
 /// @return the force to send, which counts as sent
 double command(const PortConfig& config, double now, double spring, double damping, PortState& state);
 
-/// Sends no force, which is always possible. @return 0
+/// Sends no force, which is always possible. When none acts any more, all that was booked is suspended. @return 0
 double release(double now, PortState& state);
 
 }  // namespace vibe::hardware
