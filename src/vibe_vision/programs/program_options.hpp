@@ -9,11 +9,12 @@
 
 namespace vibe::vision {
 
-/// "5 mm" or "0.005" as metres. @throws Error that names the option
+/// "5 mm" or "0.005" as metres, up to what fits on a sheet: "5" is 5 m, a unit that was forgotten. @throws Error that
+/// names the option
 inline double lengthOption(const std::string& option, const std::string& text) {
   const YamlSource source = YamlSource::parse("value: 0\n", option, {});
   try {
-    return source.quantity({"", "", 1, YAML::Node(text)}, "m", 0, 10);
+    return source.quantity({"", "", 1, YAML::Node(text)}, "m", 0, 0.3);
   } catch (const Error& error) {
     throw Error(option + std::string(error.what()).substr(option.size() + 2));  // an option has no lines
   }

@@ -97,8 +97,11 @@ void printWarnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) std::printf("Warning: %s.\n", warning.c_str());
 }
 
+/// What could not be read again is not written.
 void save(const vision::VisionConfig& config, const std::string& file) {
-  vibe::writeFile(file, vision::toYaml(config), "The configuration");
+  const std::string yaml = vision::toYaml(config);
+  vision::VisionConfig::parse(yaml, "the result", vision::AxisRule::Optional);
+  vibe::writeFile(file, yaml, "The configuration");
   std::printf("Written to %s.\n", file.c_str());
 }
 
@@ -162,6 +165,16 @@ void printLens(const vision::LensCalibration& lens) {
               100 * lens.coverage);
 }
 
+/// A focal length that is a guess would spoil all axes that are calibrated with it.
+void requireFocalLength(const vision::LensCalibration& lens) {
+  constexpr double kUseless = 0.05;
+  const double uncertain = lens.deviation[0] / lens.camera.fx;
+  if (uncertain <= kUseless) return;
+  throw vibe::Error("these images leave the focal length uncertain by " +
+                    std::to_string(std::lround(100 * std::min(uncertain, 10.0))) +
+                    " %, so nothing is written; tilt the board by 20 to 40 deg, to all sides");
+}
+
 int calibrateLens(const Options& options) {
   const vision::VisionConfig config = vision::VisionConfig::load(options.config, vision::AxisRule::Optional);
   const vision::BoardSpec board = vision::boardOption(options.board, options.square);
@@ -171,6 +184,7 @@ int calibrateLens(const Options& options) {
   const vision::LensCalibration lens = vision::calibrateLens(views, board, first.image.width, first.image.height);
   printLens(lens);
   printWarnings(lens.warnings);
+  requireFocalLength(lens);
   saveLens(config, lens.camera, options.output);
   return 0;
 }
@@ -214,6 +228,11 @@ void requireSleeveForwards(const vision::LocatedMarkers& located, const vision::
       "write 'sign: -1' at slide_joint");
 }
 
+void printInk(double ink) {
+  if (ink == 0) return;
+  std::printf("The print is bolder than designed by %.1f um at each edge; written as 'ink'.\n", 1e6 * ink);
+}
+
 void sayWhatTakesTime(std::size_t images) {
   std::printf("Looks for the marker in %zu images; this takes seconds for each.\n", images);
   std::fflush(stdout);
@@ -235,12 +254,14 @@ void warnAboutRange(const vision::InstrumentConfig& instrument, const std::vecto
                      : "upper end");
 }
 
-vision::SlideAxis axisFromStops(const Options& options, const vision::VisionConfig& config, std::size_t instrument) {
+vision::SlideAxis axisFromStops(const Options& options, const vision::VisionConfig& config, std::size_t instrument,
+                                double& ink) {
   const std::vector<vision::StopImage> list = vision::loadStopList(options.stops);
   std::vector<vision::Frame> images;
   for (const vision::StopImage& stop : list) images.push_back(vision::readGrey(stop.image));
   sayWhatTakesTime(images.size());
   const vision::LocatedMarkers located = vision::locateMarkers(config, instrument, images, searchOf(options));
+  ink = located.ink;
   std::vector<vision::AxisStop> stops;
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (located.markers[i].found) {
@@ -272,7 +293,8 @@ std::vector<std::string> thinnedOut(const std::vector<std::string>& files) {
   return some;
 }
 
-vision::SlideAxis axisFromMotion(const Options& options, const vision::VisionConfig& config, std::size_t instrument) {
+vision::SlideAxis axisFromMotion(const Options& options, const vision::VisionConfig& config, std::size_t instrument,
+                                 double& ink) {
   std::vector<vision::Frame> images;
   for (const std::string& file : thinnedOut(vision::filesOf(options.images))) images.push_back(vision::readGrey(file));
   sayWhatTakesTime(images.size());
@@ -281,6 +303,7 @@ vision::SlideAxis axisFromMotion(const Options& options, const vision::VisionCon
     throw vibe::Error("the marker was not found in the first image, where slide 0 is (" +
                       located.markers.front().problem + "); begin with an image that shows it");
   }
+  ink = located.ink;
   std::vector<vision::MotionSample> samples;
   for (const vision::LocatedMarker& marker : located.markers)
     if (marker.found) samples.push_back({marker.pixel, marker.pixels_per_metre});
@@ -300,8 +323,12 @@ int calibrateAxis(const Options& options) {
   const std::size_t instrument = config.indexOf(options.instrument);
   if (options.highest_scale < options.lowest_scale)
     throw vibe::Error("--highest-scale is below --lowest-scale; exchange them");
-  config.instruments[instrument].axis =
-      options.stops.empty() ? axisFromMotion(options, config, instrument) : axisFromStops(options, config, instrument);
+  double ink = 0;
+  const vision::SlideAxis axis = options.stops.empty() ? axisFromMotion(options, config, instrument, ink)
+                                                       : axisFromStops(options, config, instrument, ink);
+  printInk(ink);
+  config.instruments[instrument].axis = axis;
+  config.instruments[instrument].ink = ink;
   save(config, options.output);
   return 0;
 }

@@ -26,6 +26,8 @@ constexpr double kLensLimit = 0.003;         // change of size from the middle t
 constexpr double kPathLimit = 5e-5;          // bow of the path [m]
 constexpr double kSure = 3;                  // standard deviations
 
+constexpr double kFocalTrial = 0.02;  // of the focal length, for what it would do
+
 constexpr int kBins = 25;                // along the range
 constexpr std::size_t kFewestBins = 10;  // for a straight line and a bow
 constexpr double kLeastPath = 0.5;       // of the range that has to be seen
@@ -75,7 +77,7 @@ CheckedQuantity judge(const std::string& name, double value, double deviation, d
 }  // namespace
 
 InstrumentCheck::InstrumentCheck(const InstrumentConfig& config, const CameraModel& camera)
-    : config_(config), height_(camera.height) {
+    : config_(config), camera_(camera), height_(camera.height) {
   lens_ = (Eigen::Vector2d(camera.cx, camera.cy) - config.axis.origin).dot(config.axis.direction);
 }
 
@@ -136,21 +138,68 @@ InstrumentCheck::Path InstrumentCheck::binned(double Look::*quantity, Places& bi
   return {(low + high) / 2, (high - low) / 2};
 }
 
-void InstrumentCheck::addGeometry(std::vector<CheckedQuantity>& quantities) const {
+struct InstrumentCheck::Courses {
+  Course size, path;
+  Path seen;
+  double centre = 0;  ///< of the lens, from -1 to 1 over what was seen
+};
+
+/// If enough of the range was seen.
+std::optional<InstrumentCheck::Courses> InstrumentCheck::courses() const {
   Places sizes, paths;
   Path seen;
   if (!looks_.empty()) seen = binned(&Look::log_scale, sizes), binned(&Look::lateral, paths);
   const double range = std::abs(alongOf(config_.axis, config_.upper) - alongOf(config_.axis, config_.lower));
-  if (sizes.size() < kFewestBins || 2 * seen.half < kLeastPath * range) {
+  if (sizes.size() < kFewestBins || 2 * seen.half < kLeastPath * range) return std::nullopt;
+  const double centre = (lens_ - seen.middle) / seen.half;
+  return Courses{courseOf(sizes, centre), courseOf(paths, centre), seen, centre};
+}
+
+/// What kFocalTrial more of the focal length would do to sizes and path: the lens would be taken to bend everything
+/// less.
+void InstrumentCheck::predictFocal(const Path& seen, Places& sizes, Places& paths) const {
+  CameraModel other = camera_;
+  other.fx *= 1 + kFocalTrial, other.fy *= 1 + kFocalTrial;
+  const Eigen::Vector2d direction = config_.axis.direction, across(-direction.y(), direction.x());
+  const auto seenAs = [&](double along) {
+    return Eigen::Vector2d(undistort(other, distort(camera_, config_.axis.origin + along * direction)) -
+                           config_.axis.origin);
+  };
+  for (int i = 0; i < kBins; ++i) {
+    const double place = 2.0 * i / (kBins - 1) - 1, along = seen.middle + place * seen.half;
+    sizes.emplace_back(place, std::log(0.5 * (seenAs(along + 1) - seenAs(along - 1)).norm()));
+    paths.emplace_back(place, seenAs(along).dot(across));
+  }
+}
+
+std::pair<double, double> InstrumentCheck::focalError() const {
+  const std::optional<Courses> seen = courses();
+  if (!seen) return {0, kInfinity};
+  Places sizes, paths;
+  predictFocal(seen->seen, sizes, paths);
+  const double size = courseOf(sizes, seen->centre).value[2], path = courseOf(paths, seen->centre).value[2];
+  const auto weight = [](double effect, const Course& course) { return effect / std::pow(course.deviation[2], 2); };
+  const double by_size = weight(size, seen->size), by_path = weight(path, seen->path);
+  const double information = by_size * size + by_path * path;
+  if (!(information > 0)) return {0, kInfinity};
+  return {kFocalTrial * (by_size * seen->size.value[2] + by_path * seen->path.value[2]) / information,
+          kFocalTrial / std::sqrt(information)};
+}
+
+void InstrumentCheck::addGeometry(std::vector<CheckedQuantity>& quantities) const {
+  const std::optional<Courses> all = courses();
+  if (!all) {
+    Places places;
+    const Path seen = looks_.empty() ? Path() : binned(&Look::log_scale, places);
+    const double range = std::abs(alongOf(config_.axis, config_.upper) - alongOf(config_.axis, config_.lower));
     for (const char* name : {"scale", "direction", "across", "perspective", "lens", "path"})
       quantities.push_back({name, Verdict::Unknown, 0, 0, 0,
                             "seen along " + withDecimals(200 * seen.half / range, 0) + " % of the range, in " +
                                 std::to_string(looks_.size()) + " pictures; move it slowly through the whole range"});
     return;
   }
-  const double centre = (lens_ - seen.middle) / seen.half;
-  addSizes(courseOf(sizes, centre), quantities);
-  addPath(courseOf(paths, centre), seen.half, quantities);
+  addSizes(all->size, quantities);
+  addPath(all->path, all->seen.half, quantities);
 }
 
 void InstrumentCheck::addSizes(const Course& size, std::vector<CheckedQuantity>& quantities) const {

@@ -1,6 +1,7 @@
 #pragma once
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +27,9 @@ class InstrumentCheck {
   /// @param alone  of a tracker that knows this picture only. @param slide  of the tracker that follows [m]
   void look(const Measurement& alone, double slide);
   CheckedInstrument result() const;
+  /// By how much the focal length would explain what was seen [1], and its standard deviation; infinite if this motion
+  /// does not show it.
+  std::pair<double, double> focalError() const;
 
  private:
   /// One picture, measured by itself, relative to the axis.
@@ -40,6 +44,7 @@ class InstrumentCheck {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
   InstrumentConfig config_;
+  CameraModel camera_;
   int height_;       // of the image, rows
   double lens_ = 0;  // where the axis is nearest to the lens' centre, along it [px]
   std::uint64_t frames_ = 0, tracked_ = 0, fast_ = 0;
@@ -50,6 +55,9 @@ class InstrumentCheck {
   double last_slide_ = 0, last_stamp_ = 0, last_look_ = 0;
   std::vector<Look> looks_;
 
+  struct Courses;
+  std::optional<Courses> courses() const;
+  void predictFocal(const Path& seen, Places& sizes, Places& paths) const;
   Path binned(double Look::*quantity, Places& bins) const;
   void addGeometry(std::vector<CheckedQuantity>& quantities) const;
   void addSizes(const Course& size, std::vector<CheckedQuantity>& quantities) const;

@@ -113,6 +113,7 @@ LocatedMarker toLocated(const Measurement& m, const SlideAxis& axis) {
   marker.pixel = axis.origin + m.along * d + m.lateral * Eigen::Vector2d(-d.y(), d.x());
   marker.pixels_per_metre = m.scale * pixelsPerMetre(axis, m.slide);
   marker.rotation = m.rotation;
+  marker.ink = m.ink;
   return marker;
 }
 
@@ -201,6 +202,10 @@ LocatedMarkers locateMarkers(const VisionConfig& config, std::size_t instrument,
     }
   }
   requireTwo(located, object.name);
+  std::vector<double> inks;
+  for (const LocatedMarker& marker : located.markers)
+    if (marker.found) inks.push_back(marker.ink);
+  located.ink = median(inks);
   return located;
 }
 

@@ -11,14 +11,17 @@ namespace {
 
 // Far beyond any rig: these ranges reject errors of units.
 constexpr int kSmallestImage = 16, kLargestImage = 16384;
-constexpr double kMaxFocalLength = 1e6;  // [px]
-constexpr double kMaxPixel = 1e5;        // [px]
-constexpr double kMaxDistortion = 1e4;   // k1 of a lens of 1 m is that large
-constexpr double kMaxResidual = 100;     // [px]
-constexpr double kMaxLength = 1;         // [m]
-constexpr double kMaxAngle = 100;        // [rad]
-constexpr std::size_t kMaxNamed = 8;     // instruments, as many as fit into a datagram
-constexpr double kUnitTolerance = 1e-9;  // a direction closer to length 1 is kept as it is
+constexpr double kMaxFocalLength = 1e6;                    // [px]
+constexpr double kShortestLens = 0.1, kLongestLens = 200;  // of the longer side of the image: 157 and 0.3 deg wide
+constexpr double kMaxPixel = 1e5;                          // [px]
+constexpr double kMaxDistortion = 1e4;                     // k1 of a lens of 1 m is that large
+constexpr double kMaxResidual = 100;                       // [px]
+constexpr double kMaxLength = 1;                           // [m]
+constexpr double kMaxLateral = 0.05;                       // [m]
+constexpr double kMaxInk = 2e-4;                           // [m]
+constexpr double kMaxAngle = 100;                          // [rad]
+constexpr std::size_t kMaxNamed = 8;                       // instruments, as many as fit into a datagram
+constexpr double kUnitTolerance = 1e-9;                    // a direction closer to length 1 is kept as it is
 constexpr double kSmallestDirection = 1e-3;
 
 }  // namespace
@@ -122,16 +125,19 @@ void ConfigReader::readInstruments(const YamlField& field) {
 
 InstrumentConfig ConfigReader::readInstrument(const YamlField& field) const {
   InstrumentConfig instrument;
-  const Keys keys{"name", "marker", "axis", "range", "lateral_tolerance", "motion", "slide_joint", "rotation_joint"};
+  const Keys keys{"name",   "marker",      "ink",           "axis", "range", "lateral_tolerance",
+                  "motion", "slide_joint", "rotation_joint"};
   Keys required{"name", "marker", "range", "slide_joint"};
   if (rule_ == AxisRule::Required) required.emplace_back("axis");
   const std::vector<YamlField> fields = mapOf(field, keys, required);
   for (const YamlField& entry : fields) {
     if (entry.key == "name") instrument.name = source_.text(entry);
     if (entry.key == "marker") instrument.marker = readMarker(entry);
+    if (entry.key == "ink") instrument.ink = source_.quantity(entry, "m", -kMaxInk, kMaxInk);
     if (entry.key == "axis") instrument.axis = readAxis(entry);
     if (entry.key == "range") readRange(entry, instrument);
-    if (entry.key == "lateral_tolerance") instrument.lateral_tolerance = source_.quantity(entry, "m", 1e-6, kMaxLength);
+    if (entry.key == "lateral_tolerance")
+      instrument.lateral_tolerance = source_.quantity(entry, "m", 1e-6, kMaxLateral);
     if (entry.key == "motion") instrument.motion = readMotion(entry);
     if (entry.key == "slide_joint")
       readJoint(entry, "m", instrument.slide_joint, instrument.slide_sign, instrument.slide_offset);
@@ -253,6 +259,12 @@ void ConfigReader::checkAxis(const YamlField& field, const InstrumentConfig& ins
 
 void ConfigReader::checkLens(const YamlField& field) const {
   const CameraModel& camera = config_.camera;
+  const double width = std::max(camera.width, camera.height);
+  for (const double focal : {camera.fx, camera.fy})
+    if (focal < kShortestLens * width || focal > kLongestLens * width)
+      source_.fail(field, "has a focal length of " + showQuantity(focal, "px") + " for an image of " +
+                              std::to_string(camera.width) + " x " + std::to_string(camera.height) +
+                              " px, which no lens has; write it in pixels: millimetres over the size of a pixel");
   for (const double x : {0.0, 0.5 * (camera.width - 1), camera.width - 1.0}) {
     for (const double y : {0.0, 0.5 * (camera.height - 1), camera.height - 1.0}) {
       if (undistort(camera, {x, y}).allFinite()) continue;

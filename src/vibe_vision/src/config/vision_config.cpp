@@ -129,6 +129,7 @@ void writeInstrument(const InstrumentConfig& instrument, std::ostream& out) {
   out << "  - name: " << quoted(instrument.name) << "\n";
   out << "    marker:\n";
   std::visit([&out](const auto& design) { writeMarker(design, out); }, instrument.marker);
+  if (instrument.ink != 0) out << "    ink: " << showQuantity(instrument.ink, "m") << "\n";
   if (instrument.axis.isCalibrated()) writeAxis(instrument.axis, out);
   out << "    range: " << pair(instrument.lower, instrument.upper, "m") << "\n";
   out << "    lateral_tolerance: " << showQuantity(instrument.lateral_tolerance, "m") << "\n";

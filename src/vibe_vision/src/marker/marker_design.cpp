@@ -53,6 +53,41 @@ SleeveDesign defaultSleeve() {
 
 namespace {
 
+RingDesign widened(RingDesign ring, double ink) {
+  const double most = (ring.outer_diameter - ring.inner_diameter) / 8;
+  ink = std::clamp(ink, -most, std::min(most, ring.inner_diameter / 4));
+  ring.outer_diameter += 2 * ink, ring.inner_diameter -= 2 * ink;
+  return ring;
+}
+
+/// The edges of the stripe are not at right angles to the axis.
+SleeveDesign widened(SleeveDesign sleeve, double ink) {
+  double thinnest = sleeve.length, last = -sleeve.length;
+  for (const Bar& bar : sleeve.bars) {
+    thinnest = std::min({thinnest, bar.end - bar.begin, bar.begin - last});
+    last = bar.end;
+  }
+  const double stretch = std::hypot(1, sleeve.helix_pitch / (M_PI * sleeve.diameter)) / std::abs(sleeve.helix_pitch);
+  const double stripe = std::min(sleeve.helix_duty, 1 - sleeve.helix_duty) / stretch;
+  ink = std::clamp(ink, -std::min(thinnest, stripe) / 4, std::min(thinnest, stripe) / 4);
+  for (Bar& bar : sleeve.bars) bar.begin -= ink, bar.end += ink;
+  sleeve.helix_begin -= ink, sleeve.helix_end += ink;
+  sleeve.helix_duty += 2 * ink * stretch;
+  return sleeve;
+}
+
+TagDesign widened(const TagDesign& tag, double) {
+  return tag;
+}
+
+}  // namespace
+
+MarkerDesign printed(const MarkerDesign& design, double ink) {
+  return std::visit([ink](const auto& marker) { return MarkerDesign(widened(marker, ink)); }, design);
+}
+
+namespace {
+
 /// White that must be around a ring, and at both ends of a sleeve: as wide as the blur of a fast marker.
 constexpr double kRingMargin = 0.15;    // of the outer diameter
 constexpr double kSleeveMargin = 0.05;  // of the length

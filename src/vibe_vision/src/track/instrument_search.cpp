@@ -54,6 +54,7 @@ bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& predic
     LostReason reason = gates_.judge(fit, slow_.nominal(slideOf(config_.axis, fit.x[kAlong])), false);
     if (reason == LostReason::None && fitter_.shows(kRotation) && isPart(fit) && !isNear(fit, prediction))
       reason = LostReason::Occluded;
+    if (reason != LostReason::None && fit.clipped > policy_.clipped_share) reason = LostReason::Saturated;
     const bool better = reason == LostReason::None && fit.loss < best.loss;
     if (better) best = fit;
     is_last = better;

@@ -15,6 +15,12 @@ double rodRadius(const InstrumentConfig& instrument) {
   return sleeve == nullptr ? 0 : sleeve->diameter / 2 * instrument.axis.pixels_per_metre;
 }
 
+MarkerFitter::MakePattern patternsOf(const InstrumentConfig& instrument, const MarkerView& view) {
+  return [design = instrument.marker, scale = instrument.axis.pixels_per_metre, view](double ink) {
+    return makePattern(printed(design, ink), scale, view);
+  };
+}
+
 double bandHalfWidth(const MarkerPattern& pattern, const InstrumentConfig& config) {
   return 1.1 * pattern.maxWindow().norm() + config.lateral_tolerance * config.axis.pixels_per_metre + 4;
 }
@@ -22,12 +28,12 @@ double bandHalfWidth(const MarkerPattern& pattern, const InstrumentConfig& confi
 }  // namespace
 
 InstrumentTracker::InstrumentTracker(const VisionConfig& config, const InstrumentConfig& instrument,
-                                     std::unique_ptr<MarkerPattern> pattern, const TrackerPolicy& policy)
+                                     const TrackerPolicy& policy)
     : config_(instrument),
       policy_(policy),
       view_(markerView(config.camera, instrument.axis)),
       min_contrast_(config.gates.min_contrast),
-      fitter_(std::move(pattern), config.noise, rodRadius(instrument)),
+      fitter_(patternsOf(instrument, view_), instrument.ink, config.noise, rodRadius(instrument)),
       map_(config.camera, instrument.axis,
            alongOf(instrument.axis, instrument.lower) - 1.1 * fitter_.pattern().maxWindow().norm(),
            alongOf(instrument.axis, instrument.upper) + 1.1 * fitter_.pattern().maxWindow().norm(),
@@ -52,7 +58,7 @@ void InstrumentTracker::reset() {
   light_.reset();
   doubts_.reset();
   reach_.settle();
-  lost_frames_ = 0;
+  lost_frames_ = followed_ = 0;
   lose(LostReason::NoFrame);
 }
 
@@ -122,6 +128,7 @@ bool InstrumentTracker::follow(const Frame& frame, const Prediction& prediction)
   if (reason_ != LostReason::None) return false;
   accept(frame, fit, prediction, false);
   lookForDistortions(frame, fit);
+  learnInk(fit, prior);
   stateDoubts(frame);
   return true;
 }
@@ -143,6 +150,13 @@ void InstrumentTracker::lookForDistortions(const Frame& frame, const MarkerFit& 
     doubts_.addShear(found.shear, speed, fit.x[kTilt], fit.x[kRotation]);
   else
     doubts_.addShear(found.shear, speed);
+}
+
+/// In frames 2, 4, 8, ... that are followed. What was learnt of the look was learnt with other lines.
+void InstrumentTracker::learnInk(const MarkerFit& fit, const FitPrior& prior) {
+  ++followed_;
+  const bool due = followed_ > 1 && (followed_ & (followed_ - 1)) == 0;
+  if (due && fit.visible > policy_.whole_from && fitter_.confirmInk(fit, prior)) slow_.reset();
 }
 
 Sight InstrumentTracker::sightAt(const MarkerFit& fit) const {

@@ -11,8 +11,7 @@ namespace vibe::vision {
 /// Follows one instrument. Each frame: predict, fit, gate; if that fails, search the axis, fit and gate again.
 class InstrumentTracker {
  public:
-  InstrumentTracker(const VisionConfig& config, const InstrumentConfig& instrument,
-                    std::unique_ptr<MarkerPattern> pattern, const TrackerPolicy& policy);
+  InstrumentTracker(const VisionConfig& config, const InstrumentConfig& instrument, const TrackerPolicy& policy);
 
   /// @param frame  an image of the calibration's sensor
   const Measurement& track(const Frame& frame);
@@ -20,6 +19,8 @@ class InstrumentTracker {
   const Measurement& lose(LostReason reason);
   const Measurement& measurement() const { return measurement_; }
   CalibrationDoubts& doubts() { return doubts_; }
+  double ink() const { return fitter_.ink(); }  ///< of the print, as far as it was learnt [m]
+  void setNoise(const PixelNoise& noise) { fitter_.setNoise(noise); }
   void reset();
 
  private:
@@ -41,6 +42,7 @@ class InstrumentTracker {
   bool searchNearby(const Frame& frame, const Prediction& prediction);
   MarkerMotion fastestMotion(const Frame& frame) const;
   bool searchRange(const Frame& frame, const Prediction& prediction, double begin, double end);
+  void learnInk(const MarkerFit& fit, const FitPrior& prior);
   MarkerFit tryCandidate(const Frame& frame, const Prediction& prediction, const AxisSearch::Candidate& candidate);
   FitPrior searchPrior(double slide) const;
   bool isPart(const MarkerFit& fit) const;
@@ -64,7 +66,8 @@ class InstrumentTracker {
   const SlowState unknown_;  ///< at the beginning, always
   LightModel light_;
   CalibrationDoubts doubts_;
-  int looks_ = 0;  ///< moving frames
+  int looks_ = 0;     ///< moving frames
+  int followed_ = 0;  ///< frames
   MotionFilter slide_, rotation_;
   double last_slide_ = 0, last_rotation_ = 0;
   int tries_ = 0;  ///< candidates of this frame

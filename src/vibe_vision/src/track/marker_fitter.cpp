@@ -22,6 +22,10 @@ constexpr double kLeastGamma = 0.8, kMostGamma = 3;
 // Changes after which the picture is made anew: of blur and motion [px], size, tilt and slant, of the place [px].
 constexpr double kPrepareBlur = 0.05, kPrepareMotion = 0.01, kPrepareScale = 0.01, kPrepareTurn = 0.02;
 constexpr double kPrepareSpin = 2e-3, kPreparePlace = 4;
+// Of the ink, for its derivative, at most in a step, and from which it counts [m]; in standard deviations.
+constexpr double kInkTrial = 5e-6, kMostInkStep = 3e-5, kLeastInk = 4e-6, kSureInk = 6;
+constexpr double kInkDoubt = 0.3;                        // of the edges' places [px]
+constexpr float kClipped = 253;                          // [DN]
 constexpr double kSeenAsWhole = 0.9;                     // visible share of a marker that nothing covers
 constexpr double kCoverShift = 0.12, kCoverTurn = 0.02;  // by what covers a sleeve [px], [rad]
 constexpr double kQuarterEnough = 0.9;  // seen share of a marker from which a quarter of the pixels show where it is
@@ -37,8 +41,11 @@ std::size_t capacityOf(const MarkerPattern& pattern) {
 
 }  // namespace
 
-MarkerFitter::MarkerFitter(std::unique_ptr<MarkerPattern> pattern, const PixelNoise& noise, double rod_radius)
-    : pattern_(std::move(pattern)),
+MarkerFitter::MarkerFitter(MakePattern make, double ink, const PixelNoise& noise, double rod_radius)
+    : make_(std::move(make)),
+      ink_(ink),
+      pattern_(make_(ink)),
+      inked_(make_(ink + kInkTrial)),
       observed_(pattern_->observes()),
       rotations_(pattern_->rotationGuesses()),
       radius_(pattern_->maxWindow().minCoeff() / 2),
@@ -84,6 +91,29 @@ void MarkerFitter::repeat(MarkerFit& fit, const FitPrior& prior, const MarkerMot
   refine(fit, prior, 0, kFollowSteps);
 }
 
+void MarkerFitter::setInk(double ink) {
+  ink_ = ink;
+  pattern_ = make_(ink);
+  inked_ = make_(ink + kInkTrial);
+  fit_.usePattern(*pattern_);
+  is_prepared_ = false;
+}
+
+/// Edges that are far from where they are expected are outliers of a fit: they count if the places of all edges are in
+/// doubt, which is less exact. Both ways must agree.
+bool MarkerFitter::learnInk(const MarkerFit& fit, const FitPrior& prior) {
+  inked_->prepare(poseOf(fit.x), fit.motion);
+  const Distortion exact = fit_.towards(*inked_, pixels_);
+  fit_.step(fit.x, prior, pixels_, {kInkDoubt, FitScope::All});
+  const Distortion coarse = fit_.towards(*inked_, pixels_);
+  const auto isSure = [](const Distortion& d) { return square(d.value) > square(kSureInk) * d.variance; };
+  const bool agree = square(exact.value - coarse.value) < square(kSureInk) * coarse.variance;
+  const double change = (isSure(coarse) ? coarse.value : agree && isSure(exact) ? exact.value : 0) * kInkTrial;
+  if (std::abs(change) < kLeastInk) return false;
+  setInk(ink_ + std::clamp(change, -kMostInkStep, kMostInkStep));
+  return true;
+}
+
 void MarkerFitter::learnLight(const MarkerFit& fit) {
   fit_.learnLight(fit.x, pixels_, light_);
   light_.shine(poseOf(fit.x), pixels_, pixels_.padded());
@@ -91,7 +121,7 @@ void MarkerFitter::learnLight(const MarkerFit& fit) {
 
 void MarkerFitter::forget() {
   light_.reset();
-  lit_frames_ = 0;
+  lit_frames_ = ink_tries_ = 0;
   seen_ = 0;
   is_prepared_ = false;
 }
@@ -142,6 +172,9 @@ bool MarkerFitter::read(AxisMap& map, const Frame& frame, MarkerFit& fit, bool g
   const MarkerPose pose = poseOf(fit.x);
   fit.roi = map.gather(frame, {pose.along, pose.lateral}, pattern_->window(pose, fit.motion.length), pixels_);
   all_ = 0;
+  const auto end = pixels_.value.begin() + static_cast<std::ptrdiff_t>(pixels_.count);
+  const auto clipped = std::count_if(pixels_.value.begin(), end, [](float v) { return v >= kClipped; });
+  fit.clipped = static_cast<double>(clipped) / std::max<double>(1, static_cast<double>(pixels_.count));
   useGamma(fit.x[kGamma]);
   if (gamma_ != 1) linearise();
   if (guess_light) light_.guess(pose, pixels_);
@@ -212,10 +245,12 @@ void MarkerFitter::take(const FitStep& step, MarkerFit& fit) {
   const double size = std::max({std::abs(step.change[kAlong]), std::abs(step.change[kLateral]),
                                 radius_ * std::abs(step.change[kLogScale]), radius_ * std::abs(step.change[kRotation]),
                                 radius_ * std::abs(step.change[kTilt])});
+  const double blur = fit.x[kBlur];
   fit.x += step.change * std::min(1.0, kMaxStep / std::max(size, 1e-12));
   fit.x[kGamma] = std::clamp(fit.x[kGamma], kLeastGamma, kMostGamma);
   useGamma(fit.x[kGamma]);
-  fit.x[kBlur] = std::clamp(fit.x[kBlur], 0.05, 4.0);
+  // A picture changes with the square of its blur: longer steps go to and fro.
+  fit.x[kBlur] = std::clamp(fit.x[kBlur], std::max(0.05, blur / 2), std::min(4.0, 2 * blur));
 }
 
 }  // namespace vibe::vision

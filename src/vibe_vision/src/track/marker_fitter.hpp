@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "track/axis_map.hpp"
@@ -18,17 +19,28 @@ struct MarkerFit {
   double weaker_edges = 0;  ///< see FitStep
   MarkerMotion motion;      ///< as assumed
   bool valid = false;       ///< the fit converged
+  double clipped = 0;       ///< share of the pixels that are as bright as a pixel can be
   PixelWindow roi;
 };
 
 /// Reads the pixels around a place and fits a marker's pattern to them.
 class MarkerFitter {
  public:
+  using MakePattern = std::function<std::unique_ptr<MarkerPattern>(double ink)>;  ///< [m]
+  /// @param ink  of the print, as far as it is known [m]
   /// @param rod_radius  of a sleeve at log_scale 0 [px]; 0 for a flat marker
-  MarkerFitter(std::unique_ptr<MarkerPattern> pattern, const PixelNoise& noise, double rod_radius);
+  MarkerFitter(MakePattern make, double ink, const PixelNoise& noise, double rod_radius);
 
   const MarkerPattern& pattern() const { return *pattern_; }
   bool shows(PoseIndex k) const { return observed_[k]; }
+  void setNoise(const PixelNoise& noise) { fit_.setNoise(noise); }
+  double ink() const { return ink_; }  ///< by which black reaches beyond the designed edges [m]
+  /// Takes what the last fit, of follow(), tells of the ink, if that is clear. It costs tens of milliseconds and memory
+  /// then. @return false if the ink stays as it was
+  bool confirmInk(const MarkerFit& fit, const FitPrior& prior) {
+    ink_known_ = !learnInk(fit, prior);
+    return !ink_known_;
+  }
   /// Forgets the light on the rod.
   void forget();
 
@@ -58,6 +70,10 @@ class MarkerFitter {
   void useGamma(double gamma);
   MarkerFit acquireWithAnyResponse(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
                                    double motion, double max_motion, bool known_rotation, double reach);
+  bool learnInk(const MarkerFit& fit, const FitPrior& prior);
+  void setInk(double ink);
+  MarkerFit acquireWithInk(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
+                           const MarkerFit& first, bool known_rotation);
   MarkerFit tryToAcquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior, double motion,
                          double max_motion, bool known_rotation, double reach);
   void learnLight(const MarkerFit& fit);
@@ -82,7 +98,9 @@ class MarkerFitter {
   static void doubtCovered(MarkerFit& fit);
   void take(const FitStep& step, MarkerFit& fit);
 
-  std::unique_ptr<MarkerPattern> pattern_;
+  MakePattern make_;
+  double ink_;
+  std::unique_ptr<MarkerPattern> pattern_, inked_;  ///< with more ink
   std::array<bool, kPoseParameters> observed_;
   std::vector<double> rotations_;
   double radius_;  ///< of the marker, about [px]
@@ -92,6 +110,8 @@ class MarkerFitter {
   SideLimits sides_;                 ///< in refine(); light 0: nothing beside the parameters
   int lit_frames_ = 0;               ///< followed since forget(), the light of which was learnt
   int tries_ = 0;                    ///< by acquire() since the light was learnt
+  int ink_tries_ = 0;                ///< likewise for the ink
+  bool ink_known_ = false;           ///< a frame that was followed confirmed it: a print stays as it is
   double gamma_ = 1;                 ///< of pixels_ and light_
   double table_gamma_ = 0;           ///< of linear_
   std::array<float, 256> linear_{};  ///< grey values

@@ -24,10 +24,16 @@ constexpr double kUnknownGamma = 0.1;                   // standard deviation fr
 constexpr double kCommonGamma = 2.2;                    // that of many cameras
 constexpr double kStrange = 2.5;                        // misfit from which the response may be why,
 constexpr double kStrangeRod = 1.4;                     // the same of a rod, whose light is looked for, too
-constexpr double kBothEdges = 0.6;     // of the share of all edges: a curve moves white and black ones apart
-constexpr double kLearnSheen = 0.6;    // kLearnVisible before the line of the lamp on a rod is known well
-constexpr int kLitFrames = 4;          // followed ones, after which the light is known beside a long motion
-constexpr int kGuessAfter = 3;         // tries after which what was learnt of the light is doubted
+constexpr double kBothEdges = 0.6;  // of the share of all edges: a curve moves white and black ones apart
+// kLearnVisible before the line of the lamp on a rod is known well, and while its light is the one that a picture with
+// dirt suggests.
+constexpr double kLearnSheen = 0.6, kLearnGuessed = 0.7;
+constexpr int kLitFrames = 4;   // followed ones, after which the light is known beside a long motion
+constexpr int kGuessAfter = 3;  // tries after which what was learnt of the light is doubted
+// Misfit from which, and loss of a pixel up to which, a search looks for the ink; candidates for which it does until a
+// marker is followed, which bounds the time; steps.
+constexpr double kStrangeInk = 1.3, kWorthInk = 0.5;
+constexpr int kInkTries = 6, kInkSteps = 3;
 constexpr double kHopeless = 0.8;      // loss of a pixel after the coarse alignment
 constexpr double kVeryHopeless = 0.8;  // before size and tilt are known
 constexpr double kPoor = 0.25;         // loss of a pixel from which the rotation may be wrong
@@ -42,6 +48,8 @@ MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVecto
   const double max_motion = most.length;
   most_ = most;
   MarkerFit fit = acquireWithAnyResponse(map, frame, start, prior, motion, max_motion, known_rotation, reach);
+  if (fit.misfit > kStrangeInk && fit.loss < kWorthInk && !ink_known_ && ink_tries_ < kInkTries)
+    fit = acquireWithInk(map, frame, start, prior, fit, known_rotation);
   // Only now: another motion would also explain some of what a response does.
   const bool strange = light_.isRound() && fit.valid && fit.misfit > kStrangeMotion && !isMotionLong(fit);
   if (strange && max_motion > 1 && fit.loss < kWorthRefining && read(map, frame, fit))
@@ -63,6 +71,28 @@ MarkerFit MarkerFitter::acquireWithAnyResponse(AxisMap& map, const Frame& frame,
   other[kGamma] = kCommonGamma;
   const MarkerFit second = tryToAcquire(map, frame, other, prior, motion, max_motion, known_rotation, reach);
   return explains(second) && (!fit.valid || second.loss < fit.loss) ? second : fit;
+}
+
+/// Lines that are wider or narrower than designed spoil the fit of a marker that nothing else explains.
+/// @param first  that fit
+MarkerFit MarkerFitter::acquireWithInk(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
+                                       const MarkerFit& first, bool known_rotation) {
+  ++ink_tries_;
+  const double before = ink_;
+  FitVector begin = start;
+  begin[kGamma] = first.x[kGamma];
+  MarkerFit fit = first;
+  for (int i = 0; i < kInkSteps && fit.loss < kWorthInk; ++i) {
+    // Another response may have been tried last.
+    if (!read(map, frame, fit, true)) break;
+    refine(fit, prior, kMotionUncertainty, kAcquireSteps);
+    if (!learnInk(fit, prior)) break;
+    fit = tryToAcquire(map, frame, begin, prior, fit.motion.length, most_.length, known_rotation, 0);
+  }
+  // What covers a marker would be explained by lines of another width, too, but not all of it.
+  if (fit.valid && fit.visible > kLearnVisible && fit.misfit < kStrangeMotion) return fit;
+  if (ink_ != before) setInk(before);
+  return first;
 }
 
 MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
@@ -98,7 +128,7 @@ MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const Fit
   }
   const bool unsure = guess || (lit_frames_ < kLitFrames && isMotionLong(fit));
   const int rounds = !unsure ? 0 : (light_.shines() ? 2 : 1);
-  for (int i = 0; i < rounds && fit.visible > (light_.shines() ? kLearnSheen : kLearnVisible); ++i) {
+  for (int i = 0; i < rounds && fit.visible > (light_.shines() ? kLearnSheen : kLearnGuessed); ++i) {
     refineWithLight(fit, prior, max_motion);
     if (fit.valid && guess) tries_ = 0;
   }

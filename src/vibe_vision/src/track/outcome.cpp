@@ -46,6 +46,9 @@ constexpr Words kDoubts[] = {
     {"response",
      "the grey values do not grow with the light as configured: set camera.gamma to the camera's response, or switch "
      "its gamma correction off"},
+    {"noise",
+     "the pictures are clearly noisier than configured: set camera.noise to the gain in use, or give more light; what "
+     "is measured counts until then"},
 };
 
 template <class Enum, std::size_t count>

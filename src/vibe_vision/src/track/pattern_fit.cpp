@@ -112,7 +112,7 @@ void setPose(const MarkerPose& pose, FitVector& x) {
 }
 
 PatternFit::PatternFit(MarkerPattern& pattern, const PixelNoise& noise, std::size_t capacity)
-    : pattern_(pattern),
+    : pattern_(&pattern),
       noise_(noise),
       observed_(pattern.observes()),
       factor_(capacity + kLanes),
@@ -128,7 +128,7 @@ PatternFit::PatternFit(MarkerPattern& pattern, const PixelNoise& noise, std::siz
 }
 
 void PatternFit::evaluate(const FitVector& x, const PixelBlock& pixels) {
-  pattern_.evaluate(poseOf(x), pixels, values_);
+  pattern_->evaluate(poseOf(x), pixels, values_);
 }
 
 void PatternFit::startLevels(const PixelBlock& pixels, FitVector& x) const {
@@ -299,7 +299,7 @@ Distortions PatternFit::distortions(const FitPrior& unlearnt, const PixelBlock& 
   FitSubvector g;
   assemble(x, unlearnt, h, g);
   const Eigen::LDLT<FitSubmatrix> factors(h);
-  const auto per_area = static_cast<float>(1 / square(pattern_.rim() * std::exp(x[kLogScale])));
+  const auto per_area = static_cast<float>(1 / square(pattern_->rim() * std::exp(x[kLogScale])));
   const auto slope = static_cast<float>(sight.slope), per_pixel = static_cast<float>(sight.per_pixel);
   for (std::size_t i = 0; i < count; ++i) {
     const float u = pixels.along[i] - x0;
@@ -313,6 +313,17 @@ Distortions PatternFit::distortions(const FitPrior& unlearnt, const PixelBlock& 
   }
   found.bend = distortion(factors, g, count);
   return found;
+}
+
+Distortion PatternFit::towards(MarkerPattern& other, const PixelBlock& pixels) {
+  const std::size_t count = pixels.padded();
+  const auto contrast = static_cast<float>(at_[kContrast]);
+  std::copy_n(values_.value.data(), count, before_.data());
+  other.evaluate(poseOf(at_), pixels, values_);
+  float* column = equations_.column(columns_);
+  for (std::size_t i = 0; i < count; ++i) column[i] = lit_[i] * contrast * (values_.value[i] - before_[i]);
+  pattern_->evaluate(poseOf(at_), pixels, values_);
+  return distortion(factors_, gradient_, count);
 }
 
 /// What the column behind those of the fit tells beside them.

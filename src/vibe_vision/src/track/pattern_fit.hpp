@@ -95,6 +95,9 @@ struct FitStep {
 class PatternFit {
  public:
   PatternFit(MarkerPattern& pattern, const PixelNoise& noise, std::size_t capacity);
+  /// Another pattern of the same kind and size from now on.
+  void usePattern(MarkerPattern& pattern) { pattern_ = &pattern; }
+  void setNoise(const PixelNoise& noise) { noise_ = noise; }
 
   /// The pattern at x; before the functions below. pattern.prepare() must have been called nearby. No allocation.
   void evaluate(const FitVector& x, const PixelBlock& pixels);
@@ -118,6 +121,9 @@ class PatternFit {
   /// What the pixels of the last step(), which was valid, tell of distortions beside all that it looked for.
   /// @param unlearnt  the prior before any picture: what a bend does to the first ones, it has taught
   Distortions distortions(const FitPrior& unlearnt, const PixelBlock& pixels, const Sight& sight);
+  /// What they tell, beside all that it looked for, of a step towards another pattern, whose picture is prepared: 1 is
+  /// all the way.
+  Distortion towards(MarkerPattern& other, const PixelBlock& pixels);
   const PatternValues& values() const { return values_; }
   /// Learns how the light changes around a rod, from the pixels and weights of the last step.
   void learnLight(const FitVector& x, const PixelBlock& pixels, RodLight& light) const;
@@ -141,7 +147,7 @@ class PatternFit {
   void solve(const FitVector& x, const FitPrior& prior, FitStep& result);
   void assemble(const FitVector& x, const FitPrior& prior, FitSubmatrix& h, FitSubvector& g) const;
 
-  MarkerPattern& pattern_;
+  MarkerPattern* pattern_;
   PixelNoise noise_;
   std::array<bool, kPoseParameters> observed_;
   PatternValues values_;

@@ -10,7 +10,7 @@ namespace vibe::vision {
 namespace {
 
 constexpr double kBlurRatio = 1.25;        // of the blur from one level to the next
-constexpr double kProfileStep = 1.0 / 32;  // of the radial profile [px]
+constexpr double kPerBlur = 9;             // values of the radial profile per standard deviation
 constexpr double kGaussTail = 6.5;         // standard deviations of a Gaussian that count
 constexpr double kReach = 4.5, kRoom = 2;  // standard deviations and pixels beyond which all is white
 constexpr double kMinRingMotion = 0.05;    // below it the picture is that of 0.05 px [px]
@@ -107,9 +107,9 @@ RingTable::RingTable(double inner, double outer, double reach_u, double reach_v,
 
 std::vector<double> RingTable::radialProfile(double blur) const {
   const double reach = std::hypot(integral_rows_, columns_) * kStep;
-  std::vector<double> profile(static_cast<std::size_t>(reach / kProfileStep) + 4);
+  std::vector<double> profile(static_cast<std::size_t>(reach * kPerBlur / blur) + 4);
   for (std::size_t i = 0; i < profile.size(); ++i) {
-    const double r = static_cast<double>(i) * kProfileStep;
+    const double r = static_cast<double>(i) * blur / kPerBlur;
     profile[i] = 1 - blurredDisc(r, outer_, blur) + blurredDisc(r, inner_, blur);
   }
   return profile;
@@ -121,13 +121,16 @@ void RingTable::buildLevel(Level& level) const {
   level.integral.resize(static_cast<std::size_t>(integral_rows_) * columns_);
   for (int j = 0; j < columns_; ++j) {
     const double v = (j - kMargin) * kStep;
-    const auto value = [&](double u) { return lookUp(profile, std::hypot(u, v) / kProfileStep); };
-    double sum = 0;
+    const auto value = [&](double u) { return lookUp(profile, std::sqrt(u * u + v * v) * kPerBlur / level.blur); };
+    double sum = 0, last = value(0);
     for (int i = 0; i < integral_rows_; ++i) {
       level.integral[static_cast<std::size_t>(i) * columns_ + j] = static_cast<float>(sum);
       const double h = kStep / kParts, u = i * kStep;
-      for (int k = 0; k < kParts; ++k)
-        sum += h / 6 * (value(u + k * h) + 4 * value(u + (k + 0.5) * h) + value(u + (k + 1) * h));
+      for (int k = 0; k < kParts; ++k) {
+        const double next = value(u + (k + 1) * h);
+        sum += h / 6 * (last + 4 * value(u + (k + 0.5) * h) + next);
+        last = next;
+      }
     }
   }
   prefilterIntegral(level.integral);

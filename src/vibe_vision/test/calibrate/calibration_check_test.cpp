@@ -102,6 +102,34 @@ TEST(CalibrationCheck, AFocalLengthThatIsTenPerCentWrong) {
   EXPECT_EQ(wrong, (Names{"helix lens", "helix path"}));
 }
 
+TEST(CalibrationCheck, AFocalLengthThatIsFivePerCentWrongBehindALensThatBendsLess) {
+  SyntheticScene scene = movingScene();
+  for (double& k : scene.degradation.distortion) k /= 6;
+  scene.camera.distortion = scene.degradation.distortion;
+  const Renderer renderer(scene);
+  Pictures frames;
+  for (std::uint64_t k = 0; k < kFrames; k += 2) frames.push_back(renderer.render(k));
+  VisionConfig config = nominalConfig(scene);
+  EXPECT_EQ(namesOf(Verdict::Wrong, check(config, frames)), Names());
+  config.camera.fx *= 1.05, config.camera.fy *= 1.05;
+  const auto result = check(config, frames);
+  EXPECT_EQ(namesOf(Verdict::Wrong, result), Names{"helix lens"});
+  EXPECT_NE(quantity(result, 0, "lens").text.find("too long by about"), std::string::npos);
+}
+
+TEST(CalibrationCheck, AFocalLengthThatNothingShows) {
+  SyntheticScene scene = movingScene();
+  scene.degradation.distortion = scene.camera.distortion = {};
+  const Renderer renderer(scene);
+  Pictures frames;
+  for (std::uint64_t k = 0; k < kFrames; k += 2) frames.push_back(renderer.render(k));
+  VisionConfig config = nominalConfig(scene);
+  config.camera.fx *= 1.05, config.camera.fy *= 1.05;
+  const auto result = check(config, frames);
+  EXPECT_EQ(quantity(result, 0, "lens").verdict, Verdict::Unknown);
+  EXPECT_NE(quantity(result, 0, "lens").text.find("tilted to all sides"), std::string::npos);
+}
+
 TEST(CalibrationCheck, AnAxisThatIsSlantedOtherwise) {
   VisionConfig config = nominalConfig(movingScene());
   config.instruments[1].axis.perspective += 0.3;

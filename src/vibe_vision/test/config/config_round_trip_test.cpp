@@ -55,6 +55,7 @@ void expectEqual(const InstrumentConfig& a, const InstrumentConfig& b) {
   EXPECT_EQ(a.lower, b.lower);
   EXPECT_EQ(a.upper, b.upper);
   EXPECT_EQ(a.lateral_tolerance, b.lateral_tolerance);
+  EXPECT_EQ(a.ink, b.ink);
   EXPECT_EQ(a.motion.max_speed, b.motion.max_speed);
   EXPECT_EQ(a.motion.max_acceleration, b.motion.max_acceleration);
   EXPECT_EQ(a.motion.max_angular_speed, b.motion.max_angular_speed);

@@ -84,6 +84,7 @@ class RandomConfig {
     instrument.lower = from(-0.02, 0);
     instrument.upper = from(0.001, 0.03);
     instrument.lateral_tolerance = from(1e-4, 1e-3);
+    instrument.ink = from(-5e-5, 5e-5);
     instrument.motion = {from(0.1, 2), from(1, 100), from(1, 100)};
     instrument.slide_joint = "slide" + suffix;
     instrument.slide_sign = random_() % 2 == 0 ? 1 : -1;

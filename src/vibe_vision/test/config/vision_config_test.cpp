@@ -129,6 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"2500 px, 2500 px", "25 mm, 25 mm", "'25 mm' is a length, but it must be a length in the image"},
         Mistake{"2500 px, 2500 px", "nan, 2500", "is not finite"},
         Mistake{"2500 px, 2500 px", "0, 2500", "is out of range"},
+        Mistake{"2500 px, 2500 px", "16, 16", "which no lens has; write it in pixels"},
         Mistake{"  centre: [363.5 px, 271.5 px]\n", "", "camera: lacks the key 'centre'"},
         Mistake{"  centre:", "  distortion: [-40, 0, 0, 0, 0]\n  centre:", "folds the image over"},
         Mistake{"  centre:", "  distortion: [0.1]\n  centre:", "has 1 values; write 5"},

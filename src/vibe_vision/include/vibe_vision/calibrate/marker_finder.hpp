@@ -60,12 +60,14 @@ struct LocatedMarker {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< centre, undistorted [px]
   double pixels_per_metre = 0;                      ///< from the size at which it is seen [px/m]
   double rotation = 0;                              ///< of a sleeve [rad]
+  double ink = 0;                                   ///< InstrumentConfig::ink as the image shows it [m]
 };
 
 struct LocatedMarkers {
   std::vector<LocatedMarker> markers;  ///< one per image
   /// Where positive slide is as a sleeve shows it: a unit vector in the undistorted image; zero for a ring.
   Eigen::Vector2d direction = Eigen::Vector2d::Zero();
+  double ink = 0;  ///< median of those of the images [m]
 };
 
 /// Finds an instrument's marker in images that were taken along its axis, without a calibrated axis: a search of the

@@ -49,6 +49,7 @@ struct MotionLimits {
 struct InstrumentConfig {
   std::string name;                               ///< e.g. "helix", "needle_driver"
   MarkerDesign marker;                            ///< what to look for
+  double ink = 0;                                 ///< by which black reaches beyond its edges on the print [m]
   SlideAxis axis;                                 ///< where; not calibrated only with AxisRule::Optional
   double lower = 0, upper = 0;                    ///< slide beyond which nothing is looked for [m]
   double lateral_tolerance = 5e-4;                ///< by which the marker's centre may leave the axis [m]

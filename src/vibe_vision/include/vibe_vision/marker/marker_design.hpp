@@ -52,6 +52,9 @@ double tagMargin(const TagDesign& tag);       ///< white that must be around it:
 
 using MarkerDesign = std::variant<RingDesign, SleeveDesign, TagDesign>;  ///< what the tracker knows to look for
 
+/// As it is on paper if black reaches beyond each of its edges by `ink` [m]; less than 0: it ends before. No line gets
+/// thinner than half of what was designed. A tag stays as it is.
+MarkerDesign printed(const MarkerDesign& design, double ink);
 /// The sleeve that ships: 3 mm rod.
 SleeveDesign defaultSleeve();
 /// Everything a printed marker must fulfil. @throws Error with one sentence that names `place`

@@ -38,7 +38,8 @@ enum class Doubt {
   Unchecked,  ///< the marker may move fast, and too few frames have been seen to know whether they are
   Askew,      ///< a sleeve is askew on its rod
   Bent,       ///< a flat marker is bent, or the ends of a marker stand off
-  Response    ///< the response of the camera is not the one that was given
+  Response,   ///< the response of the camera is not the one that was given
+  Noise       ///< the pictures are noisier than was stated
 };
 const char* toText(Doubt doubt);  ///< a sentence for people, with possible causes; empty for None
 const char* toWord(Doubt doubt);  ///< "size", "shutter", ...: one word for tables; empty for None
@@ -58,6 +59,7 @@ struct Measurement {
   double scale = 1;                                 ///< size of the marker relative to the calibrated one
   double tilt = 0;                                  ///< in the image, against the axis [rad]
   double contrast = 0;                              ///< white - black [DN]
+  double ink = 0;                                   ///< InstrumentConfig::ink, as far as it was learnt [m]
   int roi_x = 0, roi_y = 0, roi_width = 0, roi_height = 0;  ///< where it was looked for, full image [px]
   bool reacquired = false;                                  ///< found by a search, not near a prediction
 
@@ -84,6 +86,7 @@ class Tracker {
   Tracker(Tracker&&) noexcept;  ///< leaves the other unusable
   Tracker& operator=(Tracker&&) noexcept;
 
+  /// A frame with stamp and number of the last one is that one again: it adds nothing.
   /// @return valid until the next call
   const Measurements& track(const Frame& frame);
   /// Forgets where the instruments are; turns of the rotation are kept.

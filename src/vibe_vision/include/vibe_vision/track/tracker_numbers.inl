@@ -57,6 +57,8 @@ VIBE_REAL(nearby_reach, 2.5, "", "the same in which places are tried", "design c
 VIBE_REAL(nearby_visible, 0.5, "", "share of a sleeve that must be seen there", "design choice")
 VIBE_REAL(saturated_share, 0.5, "", "share of saturated pixels along the axis for the reason `saturated`",
           "design choice: of what is reported only")
+VIBE_REAL(clipped_share, 0.2, "", "share of saturated pixels of a marker for the same reason",
+          "design choice: of what is reported only")
 VIBE_REAL(dark_contrasts, 2, "", "brightest pixel, in least contrasts, for the reason `dark`",
           "design choice: of what is reported only")
 
