@@ -3,6 +3,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "bench/bench_cell.hpp"
+#include "bench/doubt_table.hpp"
 #include "vibe_core/program/command_line.hpp"
 #include "vibe_core/program/error.hpp"
 
@@ -13,7 +14,7 @@ struct Options {
   BenchOptions bench;
   std::vector<std::string> scenes;
   std::string csv;
-  bool quick = false, list = false;
+  bool quick = false, list = false, doubts = false;
 };
 
 void addOptions(OptionList& line, Options& options) {
@@ -23,6 +24,7 @@ void addOptions(OptionList& line, Options& options) {
   line.option("--method", options.bench.methods, "only these methods")
       .check(oneOf({"ring", "sleeve", "centroid", "aruco", "apriltag"}));
   line.flag("--quick", options.quick, "60 frames of one seed of every scene; no sizes, exposures and sensors");
+  line.flag("--doubts", options.doubts, "only print how often a wrong report has no doubt, and a right one has");
   line.flag("--list", options.list, "print the names of the scenes and end");
   line.option("--csv", options.csv, "write to this file instead of the standard output");
 }
@@ -42,6 +44,11 @@ int run(const Options& options) {
   if (options.list) {
     for (const std::string& name : sceneNames()) std::cout << name << "\n";
     for (const HarderScene& scene : harderScenes()) std::cout << scene.name << "\n";
+    for (const HarderScene& scene : faultyScenes()) std::cout << scene.name << "\n";
+    return 0;
+  }
+  if (options.doubts) {
+    writeDoubts(std::cout, doubtTable(options.scenes, options.bench.seeds, options.bench.frames));
     return 0;
   }
   std::ofstream file;

@@ -13,11 +13,13 @@ constexpr double kMemory = 0.99;        // of a picture that is looked at
 constexpr double kSignificant = 6;      // standard deviations
 constexpr double kLeastRowTime = 1e-6;  // [s]; a row in 10 us is usual
 constexpr double kFitMemory = 0.05;
-constexpr int kEnoughFits = 30, kEnoughResponses = 3;  // which are looked for only where they explain a picture
-constexpr double kWrongSize = 0.02;                    // prints are right to 0.5 %
-constexpr double kCurved = 0.1;                        // log of a response that is not the given one
+constexpr int kEnoughFits = 5, kEnoughResponses = 3;  // which are looked for only where they explain a picture
+constexpr double kWrongSize = 0.02;                   // prints are right to 0.5 %
+constexpr double kOtherExposure = 0.2;                // relative to the exposure that was told
+constexpr double kCurved = 0.1;                       // log of a response that is not the given one
 constexpr double kAskew = 0.0125;     // [rad]: 0.7 deg; at 1.5 mm from the axis it moves an edge by 19 um
 constexpr double kBent = 0.0015;      // of the radius: a ring of 4 mm on something round of 30 mm
+constexpr double kOval = 0.006;       // of the radius: it moves the rotation by 0.4 deg to both sides
 constexpr double kStandsOff = 0.025;  // of the size: 0.05 mm at the rim of a ring, 0.12 mm at the ends of a sleeve
 constexpr double kReliefSignificant = 5, kLeastSlope = 0.01;
 // Standard deviations before any picture: time between rows [s], tilt of a print and of a rod [rad].
@@ -31,6 +33,8 @@ void CalibrationDoubts::reset() {
   information_.setZero();
   sums_.setZero();
   others_ = {};
+  exposure_weight_ = exposure_sum_ = 0;
+  oval_weight_ = oval_sum_ = {};
   bend_weight_ = bend_sum_ = relief_weight_ = relief_sum_ = relief_bias_ = log_scale_ = log_gamma_ = 0;
   fits_ = 0;
   solve();
@@ -128,6 +132,35 @@ bool CalibrationDoubts::isBent() const {
   return std::abs(relief_sum_) > kStandsOff * relief_weight_ && std::abs(relief_sum_) > kReliefSignificant * deviation;
 }
 
+void CalibrationDoubts::addOval(const std::array<Distortion, 2>& oval) {
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (!(oval[k].variance > 0)) continue;
+    oval_weight_[k] = kMemory * oval_weight_[k] + 1 / oval[k].variance;
+    oval_sum_[k] = kMemory * oval_sum_[k] + oval[k].value / oval[k].variance;
+  }
+}
+
+bool CalibrationDoubts::isOval() const {
+  double square_sum = 0, chi_squared = 0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (oval_weight_[k] == 0) continue;
+    square_sum += square(oval_sum_[k] / oval_weight_[k]);
+    chi_squared += square(oval_sum_[k]) / oval_weight_[k];
+  }
+  return square_sum > square(kOval) && chi_squared > square(kSignificant);
+}
+
+void CalibrationDoubts::addExposure(const Distortion& stretch, double motion) {
+  if (!(stretch.variance > 0)) return;
+  exposure_weight_ = kMemory * exposure_weight_ + square(motion) / stretch.variance;
+  exposure_sum_ = kMemory * exposure_sum_ + motion * stretch.value / stretch.variance;
+}
+
+bool CalibrationDoubts::isExposedOtherwise() const {
+  return std::abs(exposure_sum_) > kOtherExposure * exposure_weight_ &&
+         std::abs(exposure_sum_) > kSignificant * std::sqrt(exposure_weight_);
+}
+
 void CalibrationDoubts::addFit(double log_scale, double log_gamma) {
   log_scale_ = fits_ == 0 ? log_scale : log_scale_ + kFitMemory * (log_scale - log_scale_);
   log_gamma_ = fits_ == 0 ? log_gamma : log_gamma_ + kFitMemory * (log_gamma - log_gamma_);
@@ -137,8 +170,10 @@ void CalibrationDoubts::addFit(double log_scale, double log_gamma) {
 Doubt CalibrationDoubts::doubt() const {
   if (row_time_ != 0) return Doubt::Shutter;
   if (fits_ >= kEnoughFits && std::abs(log_scale_) > kWrongSize) return Doubt::Size;
+  if (isExposedOtherwise()) return Doubt::Exposure;
   if (askew_) return Doubt::Askew;
   if (isBent()) return Doubt::Bent;
+  if (isOval()) return Doubt::Oval;
   return fits_ >= kEnoughResponses && std::abs(log_gamma_) > kCurved ? Doubt::Response : Doubt::None;
 }
 

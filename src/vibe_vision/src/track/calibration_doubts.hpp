@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include <Eigen/Core>
 
 #include "vibe_vision/track/tracker.hpp"
@@ -22,6 +24,9 @@ struct Distortions {
   /// By how much the ends of the marker are nearer to the camera than its middle is, against the design, growing with
   /// the square of the distance [px]. It shows where the camera looks at the marker from the side.
   Distortion relief;
+  /// By how much a rod is wider where its rotation is 0 and half a turn on than a quarter turn from there, and the same
+  /// an eighth of a turn further, relative to its mean radius.
+  std::array<Distortion, 2> oval;
 };
 
 /// From where a marker is seen.
@@ -29,6 +34,7 @@ struct Sight {
   Eigen::Vector2d down;  ///< direction of the image's rows, along and across the axis
   double slope = 0;      ///< of the line of sight against the marker's normal, along the axis
   double per_pixel = 0;  ///< change of it [1/px]
+  double radius = 0;     ///< of a rod [px]
 };
 
 /// Collects over many frames what speaks against camera and calibration although the marker is tracked.
@@ -38,6 +44,7 @@ class CalibrationDoubts {
   explicit CalibrationDoubts(double rows) : rows_(rows) { reset(); }
   void reset();
   void addBend(const Distortion& bend);
+  void addOval(const std::array<Distortion, 2>& oval);
   /// @param size  of the marker, from its middle [px]. @param slope  of the line of sight, as Sight::slope
   /// @param uneven  by how much other faults of the model may move the ends against the middle [px]
   void addRelief(const Distortion& relief, double size, double slope, double uneven);
@@ -45,6 +52,8 @@ class CalibrationDoubts {
   void addShear(const Distortion& shear, double speed);
   /// Of a marker around a rod. @param tilt  that the fit found besides, in the image [rad]
   void addShear(const Distortion& shear, double speed, double tilt, double rotation);
+  /// @param stretch  of the motion during the exposure [px]. @param motion  as speed and exposure say [px]
+  void addExposure(const Distortion& stretch, double motion);
   /// @param log_scale  of the marker against its calibrated size. @param log_gamma  of the response against that given
   void addFit(double log_scale, double log_gamma);
 
@@ -76,6 +85,8 @@ class CalibrationDoubts {
   };
   Explanation explain(bool shutter, bool askew) const;
   bool isBent() const;
+  bool isOval() const;
+  bool isExposedOtherwise() const;
   void add(const Vector& by, double value, double variance);
   void solve();
 
@@ -86,6 +97,8 @@ class CalibrationDoubts {
   double row_deviation_ = 0;  ///< of the time between rows, whatever else may be wrong [s]
   double row_time_ = 0;       ///< [s]; 0: all rows are exposed at the same time
   bool askew_ = false;
+  double exposure_weight_ = 0, exposure_sum_ = 0;  ///< of the stretch, relative to the motion
+  std::array<double, 2> oval_weight_{}, oval_sum_{};
   double bend_weight_ = 0, bend_sum_ = 0;
   double relief_weight_ = 0, relief_sum_ = 0;  ///< relative to the size
   double relief_bias_ = 0;                     ///< what other faults of the model add to relief_sum_

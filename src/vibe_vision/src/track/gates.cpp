@@ -30,6 +30,10 @@ LostReason Gates::judge(const MarkerFit& fit, const FitVector& nominal, bool exp
   return other || fit.misfit > most ? LostReason::Mismatch : LostReason::None;
 }
 
+bool Gates::showsStripe(const MarkerFit& fit) const {
+  return fit.stripe_seen > policy_.stripe_seen * std::min(fit.visible, 1.0);
+}
+
 /// A ring shows its tilt only by the direction of its slant, which perspective turns a little.
 double Gates::sureTilt(const MarkerFit& fit) const {
   double doubt = policy_.sure_tilt * std::sqrt(fit.covariance(kTilt, kTilt));

@@ -15,6 +15,9 @@ class Gates {
   /// @param expected  the place agrees with a good prediction
   LostReason judge(const MarkerFit& fit, const FitVector& nominal, bool expected = false) const;
 
+  /// What tells the rotation is seen as well as the rest, and agrees.
+  bool showsStripe(const MarkerFit& fit) const;
+
  private:
   double sureTilt(const MarkerFit& fit) const;
 

@@ -27,9 +27,9 @@ bool InstrumentTracker::searchNearby(const Frame& frame, const Prediction& predi
   if (deviation > policy_.known_place) return false;
   const FitPrior prior = slow_.prior(slide);
   const double motion = std::abs(motionAt(prediction.slide, prediction.rotation, frame.exposure).length);
-  const bool known_rotation = prediction.rotation.deviation() < policy_.known_rotation;
-  const MarkerFit fit = fitter_.acquire(map_, frame, startAt(slide, prior, prediction), prior, motion,
-                                        fastestMotion(frame), known_rotation, policy_.nearby_reach * deviation);
+  MarkerFit fit = fitter_.acquire(map_, frame, startAt(slide, prior, prediction), prior, motion, fastestMotion(frame),
+                                  prediction.turn, policy_.nearby_reach * deviation);
+  checkStripe(prior, prediction, fit);
   if (gates_.judge(fit, slow_.nominal(slide)) != LostReason::None || fit.visible < policy_.nearby_visible) return false;
   if (!isNear(fit, prediction)) return false;
   accept(frame, fit, prediction, true);
@@ -38,53 +38,114 @@ bool InstrumentTracker::searchNearby(const Frame& frame, const Prediction& predi
 }
 
 bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& prediction, double begin, double end) {
-  const double from = alongOf(config_.axis, std::max(begin, config_.lower));
-  const double to = alongOf(config_.axis, std::min(end, config_.upper));
-  const double fastest = fastestMotion(frame).length;
-  const AxisSearch::Result& found =
-      search_.run(map_, frame, from - policy_.search_margin, to + policy_.search_margin, fastest, min_contrast_);
-  MarkerFit best;
-  best.loss = 1e9;
-  bool is_last = false;  // whose pixels the fitter has
+  const double from = alongOf(config_.axis, std::max(begin, config_.lower)) - policy_.search_margin;
+  const double to = alongOf(config_.axis, std::min(end, config_.upper)) + policy_.search_margin;
+  const AxisSearch::Result& found = search_.run(map_, frame, from, to, fastestMotion(frame).length, min_contrast_);
   reason_ = whyNothing({found.in_view, found.saturated, found.brightest}, min_contrast_, policy_);
-  const bool patient = lost_frames_ > policy_.relax_after;
-  for (int i = 0; i < found.count && tries_ < (patient ? policy_.tries - 1 : policy_.tries); ++i, ++tries_) {
-    const int other = patient && i > 0 ? 1 + lost_frames_ % (found.count - 1) : i;
-    const MarkerFit fit = tryCandidate(frame, prediction, found.candidates[other]);
-    LostReason reason = gates_.judge(fit, slow_.nominal(slideOf(config_.axis, fit.x[kAlong])), false);
-    if (reason == LostReason::None && fitter_.shows(kRotation) && isPart(fit) && !isNear(fit, prediction))
-      reason = LostReason::Occluded;
-    if (reason != LostReason::None && fit.clipped > policy_.clipped_share) reason = LostReason::Saturated;
-    const bool better = reason == LostReason::None && fit.loss < best.loss;
-    if (better) best = fit;
-    is_last = better;
-    if (reason != LostReason::None && reason_ == LostReason::NotFound) reason_ = reason;
-    if (best.valid && best.loss < policy_.good_loss) break;
-  }
+  bool is_last = false;
+  const MarkerFit best = bestOf(frame, prediction, found, is_last);
   if (!best.valid) return false;
   if (!isExpected(best, prediction, frame.stamp)) {
     reason_ = LostReason::Jump;
     return false;
   }
+  copies_.find(best.x[kAlong], lost_frames_ > 0 && !isNear(best, prediction));
   accept(frame, best, prediction, true);
   if (is_last && prediction.known) lookForDistortions(frame, best);
+  rememberCopies(frame, found, from, to, best.x[kAlong]);
   stateDoubts(frame);
   return true;
+}
+
+/// @param is_last  the fitter has its pixels
+MarkerFit InstrumentTracker::bestOf(const Frame& frame, const Prediction& prediction, const AxisSearch::Result& found,
+                                    bool& is_last) {
+  MarkerFit best;
+  best.loss = 1e9;
+  const bool patient = lost_frames_ > policy_.relax_after;
+  for (int i = 0; i < found.count && tries_ < (patient ? policy_.tries - 1 : policy_.tries); ++i, ++tries_) {
+    const int other = patient && i > 0 ? 1 + lost_frames_ % (found.count - 1) : i;
+    if (copies_.isAt(found.candidates[other].along)) continue;
+    is_last = consider(tryCandidate(frame, prediction, found.candidates[other]), prediction, best);
+    if (best.valid && best.loss < policy_.good_loss) return best;
+  }
+  const bool likely = found.count > 0 && found.candidates[0].score > policy_.looks_alike;
+  if (!best.valid && likely && fitter_.shows(kRotation) && !copies_.isAt(found.candidates[0].along))
+    is_last = consider(tryBars(frame, prediction, found.candidates[0]), prediction, best);
+  return best;
+}
+
+/// @return whether it is the marker, and better
+bool InstrumentTracker::consider(const MarkerFit& fit, const Prediction& prediction, MarkerFit& best) {
+  LostReason reason = gates_.judge(fit, slow_.nominal(slideOf(config_.axis, fit.x[kAlong])), false);
+  if (reason == LostReason::None && fitter_.shows(kRotation) && isPart(fit) && !isNear(fit, prediction))
+    reason = LostReason::Occluded;
+  if (reason != LostReason::None && fit.clipped > policy_.clipped_share) reason = LostReason::Saturated;
+  const bool better = reason == LostReason::None && fit.loss < best.loss;
+  if (better) best = fit;
+  if (reason != LostReason::None && reason_ == LostReason::NotFound) reason_ = reason;
+  return better;
+}
+
+/// What looks like the marker, but is not what is followed.
+void InstrumentTracker::rememberCopies(const Frame& frame, const AxisSearch::Result& found, double from, double to,
+                                       double own) {
+  const double apart = fitter_.pattern().maxWindow().x();
+  copies_.forget(from, to, own, apart);
+  for (int i = 0; i < found.count; ++i) {
+    const AxisSearch::Candidate& other = found.candidates[i];
+    if (other.score < policy_.looks_alike || std::abs(other.along - own) < apart) continue;
+    MarkerFit best;
+    best.loss = policy_.good_loss;
+    if (consider(tryCandidate(frame, {}, other), {}, best)) copies_.see(other.along);
+  }
+}
+
+/// A little of the axis in every other frame.
+void InstrumentTracker::lookForCopies(const Frame& frame) {
+  if (++looks_for_copies_ % 2 != 0) return;
+  const double from = search_.begin() + looked_, to = std::min(from + policy_.copy_step, search_.end());
+  looked_ = to < search_.end() ? looked_ + policy_.copy_step : 0;
+  rememberCopies(frame, search_.run(map_, frame, from, to, 0, min_contrast_), from, to, measurement_.along);
+}
+
+/// As long as what is followed may be a copy, something else may be the marker.
+bool InstrumentTracker::leaveCopy(const Frame& frame) {
+  if (!measurement_.tracked() || !copies_.doubted() || ++doubted_frames_ % policy_.copy_search != 0) return false;
+  const double own = measurement_.along;
+  copies_.see(own);
+  if (searchRange(frame, {}, config_.lower, config_.upper)) return true;
+  copies_.forget(own, own, own, -1);
+  return false;
 }
 
 MarkerFit InstrumentTracker::tryCandidate(const Frame& frame, const Prediction& prediction,
                                           const AxisSearch::Candidate& candidate) {
   const double slide = slideOf(config_.axis, candidate.along);
   const MarkerMotion fastest = fastestMotion(frame);
-  const bool known_rotation =
-      prediction.known && rotation_.started() && prediction.rotation.deviation() < policy_.known_rotation;
   const FitPrior prior = searchPrior(slide);
   FitVector start = startAt(slide, prior, prediction);
   const double size = std::log(candidate.scale);
   if (std::abs(size - start[kLogScale]) > policy_.scale_step) start[kLogScale] = size;
-  if (candidate.shows_rotation && !known_rotation) start[kRotation] = candidate.rotation;
-  return fitter_.acquire(map_, frame, start, prior, candidate.motion, fastest,
-                         known_rotation || candidate.shows_rotation);
+  if (candidate.shows_rotation && !prediction.turn) start[kRotation] = candidate.rotation;
+  MarkerFit fit = fitter_.acquire(map_, frame, start, prior, candidate.motion, fastest,
+                                  prediction.turn || candidate.shows_rotation);
+  checkStripe(prior, prediction, fit);
+  return fit;
+}
+
+/// A candidate the stripe of which is hidden, so that it would keep the fit from the bars.
+MarkerFit InstrumentTracker::tryBars(const Frame& frame, const Prediction& prediction,
+                                     const AxisSearch::Candidate& candidate) {
+  const double slide = slideOf(config_.axis, candidate.along);
+  const FitPrior prior = withTurn(searchPrior(slide), prediction);
+  fitter_.useStripe(false);
+  MarkerFit fit = fitter_.acquire(map_, frame, startAt(slide, prior, prediction), prior, candidate.motion,
+                                  fastestMotion(frame), true);
+  if (fit.valid) fitter_.leaveStripe(fit, prior);
+  fitter_.useStripe(true);
+  fit.shows_turn = false;
+  return fit;
 }
 
 /// Part of the bars also fits at other places, but not as well.

@@ -20,6 +20,7 @@ MarkerFitter::MakePattern patternsOf(const InstrumentConfig& instrument, const M
     return makePattern(printed(design, ink), scale, view);
   };
 }
+constexpr double kAnyTurn = M_PI * M_PI / 3;  // variance of a rotation of which nothing is known [rad^2]
 
 double bandHalfWidth(const MarkerPattern& pattern, const InstrumentConfig& config) {
   return 1.1 * pattern.maxWindow().norm() + config.lateral_tolerance * config.axis.pixels_per_metre + 4;
@@ -42,6 +43,7 @@ InstrumentTracker::InstrumentTracker(const VisionConfig& config, const Instrumen
               alongOf(instrument.axis, instrument.upper)),
       gates_(config, instrument, policy),
       reach_(instrument.motion.max_speed, policy),
+      copies_(policy),
       slow_(config, instrument, fitter_.pattern().observes()),
       unknown_(slow_),
       doubts_(instrument.axis.direction.x()),
@@ -57,6 +59,7 @@ void InstrumentTracker::reset() {
   fitter_.forget();
   light_.reset();
   doubts_.reset();
+  copies_.reset();
   reach_.settle();
   lost_frames_ = followed_ = 0;
   lose(LostReason::NoFrame);
@@ -78,6 +81,7 @@ const Measurement& InstrumentTracker::track(const Frame& frame) {
   const Prediction prediction = predict(frame.stamp);
   reason_ = LostReason::NotFound;
   tries_ = 0;
+  if (leaveCopy(frame)) return measurement_;
   if (prediction.close && follow(frame, prediction)) return measurement_;
   if (search(frame, prediction)) return measurement_;
   return lose(reason_);
@@ -95,6 +99,7 @@ InstrumentTracker::Prediction InstrumentTracker::predict(double stamp) {
   p.dt = stamp - slide_.time();
   p.slide = slide_.predict(stamp);
   if (rotation_.started()) p.rotation = rotation_.predict(stamp);
+  p.turn = rotation_.started() && p.rotation.deviation() < policy_.known_rotation;
   p.close = p.slide.deviation() * pixelsPerMetre(config_.axis, p.slide.mean[0]) < policy_.close_enough;
   return p;
 }
@@ -121,8 +126,9 @@ bool InstrumentTracker::follow(const Frame& frame, const Prediction& prediction)
   start[kLateral] = measurement_.tracked() ? measurement_.lateral : 0;
   MarkerFit fit =
       fitter_.follow(map_, frame, start, prior, motionAt(prediction.slide, prediction.rotation, frame.exposure),
-                     prediction.slide.deviation() * scale);
+                     prediction.slide.deviation() * scale, prediction.turn || !fitter_.shows(kRotation));
   if (fit.valid) correctMotion(frame, prior, fit);
+  checkStripe(prior, prediction, fit);
   reason_ = gates_.judge(fit, slow_.nominal(slide), isNear(fit, prediction));
   if (reason_ == LostReason::None && !isExpected(fit, prediction, frame.stamp)) reason_ = LostReason::Jump;
   if (reason_ != LostReason::None) return false;
@@ -130,7 +136,25 @@ bool InstrumentTracker::follow(const Frame& frame, const Prediction& prediction)
   lookForDistortions(frame, fit);
   learnInk(fit, prior);
   stateDoubts(frame);
+  lookForCopies(frame);
   return true;
+}
+
+/// Where the stripe is hidden, some of what hides it still agrees with it, anywhere: the rotation is then what was
+/// known before, and the bars tell the place.
+void InstrumentTracker::checkStripe(const FitPrior& prior, const Prediction& prediction, MarkerFit& fit) {
+  fit.shows_turn = !fitter_.shows(kRotation) || !fit.valid || gates_.showsStripe(fit);
+  if (!fit.shows_turn) fitter_.leaveStripe(fit, withTurn(prior, prediction));
+}
+
+/// What is known of the rotation without the stripe.
+FitPrior InstrumentTracker::withTurn(const FitPrior& prior, const Prediction& prediction) const {
+  const bool known = prediction.known && rotation_.started();
+  FitPrior with = prior;
+  with.mean[kRotation] = known ? prediction.rotation.mean[0] : last_rotation_;
+  with.information(kRotation, kRotation) =
+      1 / std::min(known ? prediction.rotation.covariance(0, 0) : kAnyTurn, kAnyTurn);
+  return with;
 }
 
 /// Rows that are exposed one after the other shear the picture of a marker that moves along them. In the first frames
@@ -143,8 +167,11 @@ void InstrumentTracker::lookForDistortions(const Frame& frame, const MarkerFit& 
   const FitPrior unlearnt = unknown_.prior(last_slide_);
   const Sight sight = sightAt(fit);
   const Distortions found = fitter_.distortions(unlearnt, sight);
+  if (looks_ % policy_.look_every == 0 && std::abs(fit.motion.length) > policy_.telling_motion)
+    doubts_.addExposure(fitter_.stretch(fit, unlearnt), fit.motion.length);
   const double uneven = fitter_.shows(kRotation) ? policy_.uneven * square(fit.x[kBlur]) : 0;
   doubts_.addBend(found.bend);
+  doubts_.addOval(found.oval);
   doubts_.addRelief(found.relief, fitter_.pattern().rim(), sight.slope, uneven);
   if (fitter_.shows(kRotation))
     doubts_.addShear(found.shear, speed, fit.x[kTilt], fit.x[kRotation]);
@@ -163,12 +190,27 @@ Sight InstrumentTracker::sightAt(const MarkerFit& fit) const {
   const Eigen::Vector2d direction = config_.axis.direction;
   const double slant = fitter_.shows(kRotation) ? fit.x[kSlant] : slow_.nominal(last_slide_)[kSlant];
   const double slope = (fit.x[kAlong] - view_.principal_along) / view_.focal_length;
-  return {{direction.y(), direction.x()}, std::sin(slant) + std::cos(slant) * slope, 1 / view_.focal_length};
+  return {{direction.y(), direction.x()},
+          std::sin(slant) + std::cos(slant) * slope,
+          1 / view_.focal_length,
+          rodRadius(config_) * std::exp(fit.x[kLogScale])};
 }
 
+/// Of several, that which leaves least of the report, and then what the calibration is doubted for.
 void InstrumentTracker::stateDoubts(const Frame& frame) {
   vision::stateDoubts(doubts_, slide_.predict(frame.stamp), pixelsPerMetre(config_.axis, last_slide_),
                       frame.sensor_height, policy_, measurement_);
+  Doubt& doubt = measurement_.doubt;
+  if (!stripe_)
+    doubt = Doubt::Stripe;
+  else if (doubt != Doubt::None && doubt != Doubt::Unchecked)
+    return;
+  else if (copies_.doubted())
+    doubt = Doubt::Copy;
+  else if (broken_ || odd_rows_ > policy_.odd_rows)
+    doubt = Doubt::Rows;
+  else if (light_.surprise() > policy_.strange_light)
+    doubt = Doubt::Light;
 }
 
 /// Where the marker is now tells its speed during the exposure better than what was predicted.
@@ -190,6 +232,8 @@ void InstrumentTracker::accept(const Frame& frame, const MarkerFit& fit, const P
   measurement_ = {};
   measurement_.reason = LostReason::None;
   measurement_.reacquired = reacquired;
+  stripe_ = fit.shows_turn;
+  copies_.follow(fit.x[kAlong]);
   const double scale = pixelsPerMetre(config_.axis, slideOf(config_.axis, fit.x[kAlong]));
   measurement_.rotation = NAN;
   if (fitter_.shows(kRotation)) {
@@ -204,6 +248,7 @@ void InstrumentTracker::accept(const Frame& frame, const MarkerFit& fit, const P
   describe(fit);
   // The covariance of a sleeve that was searched has the light and the motion in it.
   const double doubt = reacquired && !fitter_.shows(kRotation) ? policy_.search_doubt : 0;
+  odd_rows_ = fitter_.oddRows(sightAt(fit));
   if (fit.visible > policy_.good_look) slow_.update(fit.x, fit.covariance, measurement_.slide, doubt);
   reach_.settle();
   lost_frames_ = 0;
@@ -242,11 +287,9 @@ void InstrumentTracker::describe(const MarkerFit& fit) {
 void InstrumentTracker::updateFilters(double stamp, const MarkerFit& fit, double scale, bool restart) {
   const double variance = fit.covariance(kAlong, kAlong) / square(scale) + square(policy_.filter_floor);
   last_slide_ = slideOf(config_.axis, fit.x[kAlong]);
-  if (restart)
-    slide_.start(stamp, last_slide_, variance);
-  else
-    slide_.update(stamp, last_slide_, variance);
-  if (!fitter_.shows(kRotation)) return;
+  if (restart) slide_.start(stamp, last_slide_, variance);
+  broken_ = !restart && slide_.update(stamp, last_slide_, variance);
+  if (!fitter_.shows(kRotation) || !stripe_) return;
   const double turn_variance = fit.covariance(kRotation, kRotation) + square(1e3 * policy_.filter_floor);
   last_rotation_ = measurement_.rotation;
   if (restart || !rotation_.started())

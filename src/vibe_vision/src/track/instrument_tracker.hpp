@@ -29,12 +29,20 @@ class InstrumentTracker {
     double dt = 0;       ///< since the last measurement [s]
     bool known = false;  ///< something was seen before
     bool close = false;  ///< well enough to fit right away
+    bool turn = false;   ///< the rotation is known well enough to fit from it
   };
   Prediction predict(double stamp);
   MarkerMotion motionAt(const MotionFilter::State& slide, const MotionFilter::State& rotation, double exposure) const;
   FitVector startAt(double slide, const FitPrior& prior, const Prediction& prediction) const;
   bool follow(const Frame& frame, const Prediction& prediction);
+  void lookForCopies(const Frame& frame);
+  bool leaveCopy(const Frame& frame);
+  void rememberCopies(const Frame& frame, const AxisSearch::Result& found, double from, double to, double own);
+  MarkerFit bestOf(const Frame& frame, const Prediction& prediction, const AxisSearch::Result& found, bool& is_last);
+  bool consider(const MarkerFit& fit, const Prediction& prediction, MarkerFit& best);
   void lookForDistortions(const Frame& frame, const MarkerFit& fit);
+  FitPrior withTurn(const FitPrior& prior, const Prediction& prediction) const;
+  void checkStripe(const FitPrior& prior, const Prediction& prediction, MarkerFit& fit);
   Sight sightAt(const MarkerFit& fit) const;
   void stateDoubts(const Frame& frame);
   void correctMotion(const Frame& frame, const FitPrior& prior, MarkerFit& fit);
@@ -44,6 +52,7 @@ class InstrumentTracker {
   bool searchRange(const Frame& frame, const Prediction& prediction, double begin, double end);
   void learnInk(const MarkerFit& fit, const FitPrior& prior);
   MarkerFit tryCandidate(const Frame& frame, const Prediction& prediction, const AxisSearch::Candidate& candidate);
+  MarkerFit tryBars(const Frame& frame, const Prediction& prediction, const AxisSearch::Candidate& candidate);
   FitPrior searchPrior(double slide) const;
   bool isPart(const MarkerFit& fit) const;
   bool isNear(const MarkerFit& fit, const Prediction& prediction) const;
@@ -62,6 +71,7 @@ class InstrumentTracker {
   AxisSearch search_;
   Gates gates_;
   Reach reach_;
+  Copies copies_;
   SlowState slow_;
   const SlowState unknown_;  ///< at the beginning, always
   LightModel light_;
@@ -70,6 +80,11 @@ class InstrumentTracker {
   int followed_ = 0;  ///< frames
   MotionFilter slide_, rotation_;
   double last_slide_ = 0, last_rotation_ = 0;
+  bool stripe_ = true;   ///< the rotation was seen, of a marker that shows it
+  bool broken_ = false;  ///< the motion is not the one of the frames before
+  double odd_rows_ = 0;  ///< share of the last picture, see PatternFit
+  double looked_ = 0;    ///< for copies, from the beginning of the axis up to here [px]
+  int looks_for_copies_ = 0, doubted_frames_ = 0;
   int tries_ = 0;  ///< candidates of this frame
   int lost_frames_ = 0;
   LostReason reason_ = LostReason::NotFound;

@@ -49,7 +49,7 @@ MotionFilter::State MotionFilter::predict(double time) const {
   return later;
 }
 
-void MotionFilter::update(double time, double value, double variance) {
+bool MotionFilter::update(double time, double value, double variance) {
   const State predicted = predict(time);
   const double surprise = square(value - predicted.mean[0]) / (predicted.covariance(0, 0) + variance);
   if (surprise > kBreak) {  // a stop or a push: what was known about the motion does not hold any more
@@ -57,7 +57,7 @@ void MotionFilter::update(double time, double value, double variance) {
     start(time, value, variance);
     state_.mean[1] = (value - last) / dt;
     state_.covariance(1, 1) = square(max_acceleration_ * dt / 2);
-    return;
+    return true;
   }
   activity_ = std::clamp(activity_ * std::exp(kLearning * (std::min(surprise, kSurprise) - 1)), kLeast, kMost);
   const Eigen::Vector3d gain = predicted.covariance.col(0) / (predicted.covariance(0, 0) + variance);
@@ -66,6 +66,7 @@ void MotionFilter::update(double time, double value, double variance) {
   time_ = time;
   state_.mean = predicted.mean + gain * (value - predicted.mean[0]);
   state_.covariance = keep * predicted.covariance * keep.transpose() + variance * gain * gain.transpose();
+  return false;
 }
 
 namespace {
@@ -76,6 +77,7 @@ constexpr double kLevel = 1, kLevelWalk = 1.5e-3;
 constexpr double kPlace = 0.3, kPlaceWalk = 1e-3;
 constexpr double kAmplitude = 0.03, kAmplitudeWalk = 2e-4;
 constexpr double kModel = 1e-3;  // what the model leaves unexplained, relative
+constexpr double kSurpriseMemory = 0.2;
 constexpr double kLongest = 60;  // after which phases are counted anew [s]
 
 /// Mean of t sin(w t) over an exposure, relative to the mean of cos(w t): what a flicker's slope moves the middle by.
@@ -89,6 +91,7 @@ double lever(double frequency, double exposure) {
 
 void LightModel::reset() {
   started_ = false;
+  surprise_ = 1;
   mean_.setZero();
   covariance_.setZero();
   covariance_.diagonal() << square(kLevel), square(kPlace), square(kPlace), square(kAmplitude), square(kAmplitude),
@@ -114,7 +117,9 @@ void LightModel::update(double time, double place, double brightness, double dev
   const double variance = square(deviation) + square(kModel);
   const Vector ph = covariance_ * h;
   const Vector gain = ph / (h.dot(ph) + variance);
-  mean_ += gain * (value - h.dot(mean_));
+  const double innovation = value - h.dot(mean_);
+  surprise_ += kSurpriseMemory * (square(innovation) / (h.dot(ph) + variance) - surprise_);
+  mean_ += gain * innovation;
   covariance_ -= gain * ph.transpose();
   covariance_ = (covariance_ + covariance_.transpose().eval()) / 2;
 }
@@ -126,7 +131,7 @@ LightModel::Delay LightModel::delay(double time, double exposure) const {
     h[3 + 2 * static_cast<int>(i)] = -std::sin(phase) * arm;
     h[4 + 2 * static_cast<int>(i)] = std::cos(phase) * arm;
   }
-  return {h.dot(mean_), h.dot(covariance_ * h)};
+  return {h.dot(mean_), h.dot(covariance_ * h) * std::max(surprise_, 1.0)};
 }
 
 }  // namespace vibe::vision

@@ -24,7 +24,8 @@ class MotionFilter {
   double time() const { return time_; }  ///< of the last measurement [s]
   void reset() { started_ = false; }
   void start(double time, double value, double variance);
-  void update(double time, double value, double variance);
+  /// @return true if what was known of the motion does not explain it: it begins anew
+  bool update(double time, double value, double variance);
   /// At a time not before the last measurement; velocity and acceleration stay within the limits.
   State predict(double time) const;
 
@@ -54,6 +55,8 @@ class LightModel {
     double mean = 0, variance = 0;  ///< [s], [s^2]
   };
   Delay delay(double time, double exposure) const;
+  /// Squared normalised innovation, averaged over the last frames: 1 if the light changes as the model expects.
+  double surprise() const { return surprise_; }
 
  private:
   static constexpr int kStates = 7;  ///< constant, place, place^2, cosine and sine of two flickers
@@ -63,6 +66,7 @@ class LightModel {
   Vector mean_;
   Matrix covariance_;
   double start_ = 0;  ///< of the flickers' phases [s]
+  double surprise_ = 1;
   bool started_ = false;
 };
 

@@ -55,12 +55,18 @@ MarkerFitter::MarkerFitter(MakePattern make, double ink, const PixelNoise& noise
 }
 
 MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
-                               const MarkerMotion& motion, double uncertainty) {
+                               const MarkerMotion& motion, double uncertainty, bool known_rotation) {
   MarkerFit fit;
   fit.x = start;
   fit.motion = motion;
   if (!read(map, frame, fit)) return fit;
   prepare(fit);
+  if (!known_rotation) {
+    fit.loss = 1;
+    chooseRotation(fit);
+    if (!read(map, frame, fit)) return fit;
+    prepare(fit);
+  }
   seen_ > kQuarterEnough ? useQuarter() : useHalf();
   fit_.evaluate(fit.x, pixels_);
   fit_.startLevels(pixels_, fit.x);
@@ -76,7 +82,7 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
   if (fit.valid && fit.misfit > kStrangeMotion && isMotionLong(fit))
     refineMotion(fit, prior, std::abs(motion.length) + kMotionDoubt);
   seen_ = fit.visible;
-  if (light_.isRound() && fit.valid && fit.visible > kLearnVisible) {
+  if (light_.isRound() && fit.valid && std::min(fit.visible, fit.stripe_seen) > kLearnVisible) {
     useQuarter();
     fit_.learnLight(fit.x, pixels_, light_);
     ++lit_frames_;
@@ -112,6 +118,20 @@ bool MarkerFitter::learnInk(const MarkerFit& fit, const FitPrior& prior) {
   if (std::abs(change) < kLeastInk) return false;
   setInk(ink_ + std::clamp(change, -kMostInkStep, kMostInkStep));
   return true;
+}
+
+void MarkerFitter::leaveStripe(MarkerFit& fit, const FitPrior& prior) {
+  hideStripe();  // where it was taken for the stripe, and where the stripe would be
+  fit.x[kRotation] = prior.mean[kRotation];
+  fit_.evaluate(fit.x, pixels_);
+  hideStripe();
+  refine(fit, prior, 0, kFollowSteps);
+}
+
+void MarkerFitter::hideStripe() {
+  const std::vector<float>& slope = fit_.values().derivative[kRotation];
+  for (std::size_t i = 0; i < pixels_.padded(); ++i)
+    if (slope[i] != 0) pixels_.weight[i] = 0;
 }
 
 void MarkerFitter::learnLight(const MarkerFit& fit) {
@@ -181,6 +201,11 @@ bool MarkerFitter::read(AxisMap& map, const Frame& frame, MarkerFit& fit, bool g
   pattern_->select(pose, fit.motion.length, pixels_);
   all_ = pixels_.count;
   light_.shine(pose, pixels_, pixels_.padded());
+  if (!stripe_) {
+    prepare(fit, true);
+    fit_.evaluate(fit.x, pixels_);
+    hideStripe();
+  }
   return all_ >= kMinPixels;
 }
 
@@ -216,6 +241,7 @@ void MarkerFitter::refine(MarkerFit& fit, const FitPrior& prior, double uncertai
     // As long as the edges move, pixels near them are no outliers: weighed as such, they would keep the fit there.
     uncertainty = last > kConverged ? std::max(last / kLessUncertain, std::min(last, moved)) : 0;
     fit.valid = moved < kConverged && last == 0;
+    if (fit.valid && observed_[kRotation]) fit.stripe_seen = fit_.stripeSeen(pixels_);
     if (fit.valid) return stateCovariance(fit);
     if (moved > kWandering[std::min<std::size_t>(i, kWandering.size() - 1)]) return;
   }

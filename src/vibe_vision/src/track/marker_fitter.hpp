@@ -17,6 +17,8 @@ struct MarkerFit {
   double loss = 0;          ///< mean of the robust loss of a pixel
   double visible = 0;       ///< share of the information about the position that was used
   double weaker_edges = 0;  ///< see FitStep
+  double stripe_seen = 1;   ///< the same of the information about the rotation, of a marker that shows it
+  bool shows_turn = true;   ///< false: the rotation is what was known before
   MarkerMotion motion;      ///< as assumed
   bool valid = false;       ///< the fit converged
   double clipped = 0;       ///< share of the pixels that are as bright as a pixel can be
@@ -45,10 +47,19 @@ class MarkerFitter {
   void forget();
 
   /// From a good prediction. @param uncertainty  of its position, standard deviation [px]
+  /// @param known_rotation  start.rotation is a prediction
   MarkerFit follow(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
-                   const MarkerMotion& motion, double uncertainty);
+                   const MarkerMotion& motion, double uncertainty, bool known_rotation = true);
+  /// The last fit again, from the bars alone. @param prior  tells the rotation
+  void leaveStripe(MarkerFit& fit, const FitPrior& prior);
+  /// Whether acquire() looks at the stripe of a sleeve; else the prior tells the rotation.
+  void useStripe(bool use) { stripe_ = use; }
   /// The last fit again, with what it told of the motion.
   void repeat(MarkerFit& fit, const FitPrior& prior, const MarkerMotion& motion);
+  /// By how much longer the motion during the exposure was than the last fit assumed [px].
+  Distortion stretch(const MarkerFit& fit, const FitPrior& unlearnt);
+  /// Of the picture in the last fit, see PatternFit.
+  double oddRows(const Sight& sight) const { return fit_.oddRows(pixels_, sight.down); }
   /// Of the picture in the last fit, which was valid. @param unlearnt  the prior before any picture
   Distortions distortions(const FitPrior& unlearnt, const Sight& sight) {
     return fit_.distortions(unlearnt, pixels_, sight);
@@ -66,6 +77,7 @@ class MarkerFitter {
 
   bool read(AxisMap& map, const Frame& frame, MarkerFit& fit, bool guess_light = false);
   void linearise();
+  void hideStripe();
   void prepare(const MarkerFit& fit, bool rough = false);
   void useGamma(double gamma);
   MarkerFit acquireWithAnyResponse(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
@@ -112,6 +124,7 @@ class MarkerFitter {
   int tries_ = 0;                    ///< by acquire() since the light was learnt
   int ink_tries_ = 0;                ///< likewise for the ink
   bool ink_known_ = false;           ///< a frame that was followed confirmed it: a print stays as it is
+  bool stripe_ = true;               ///< see useStripe()
   double gamma_ = 1;                 ///< of pixels_ and light_
   double table_gamma_ = 0;           ///< of linear_
   std::array<float, 256> linear_{};  ///< grey values

@@ -277,6 +277,14 @@ void MarkerFitter::doubtLight(MarkerFit& fit, double max_motion) {
   doubtCovered(fit);
 }
 
+Distortion MarkerFitter::stretch(const MarkerFit& fit, const FitPrior& unlearnt) {
+  MarkerFit longer = fit;
+  longer.motion.length += std::copysign(kMotionTrial, fit.motion.length);
+  prepare(longer);
+  fit_.measureMotion(0, pixels_, longer.motion.length - fit.motion.length);
+  return fit_.stretch(unlearnt, pixels_);
+}
+
 /// Then it does not look like blur.
 bool MarkerFitter::isMotionLong(const MarkerFit& fit) {
   return fit.loss < kWorthRefining && std::abs(fit.motion.length) > kTellingMotion;

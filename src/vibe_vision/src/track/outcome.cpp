@@ -1,5 +1,6 @@
 #include "track/outcome.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -49,6 +50,31 @@ constexpr Words kDoubts[] = {
     {"noise",
      "the pictures are clearly noisier than configured: set camera.noise to the gain in use, or give more light; what "
      "is measured counts until then"},
+    {"oval",
+     "the sleeve is wider in one direction than in the other, which moves its rotation: it may be pressed or glued "
+     "with a "
+     "fold; glue it anew, on a round rod"},
+    {"exposure",
+     "the picture of the moving marker is blurred more or less than its speed and the exposure say: the exposure may "
+     "not "
+     "be the one that was told; set it to that of the camera"},
+    {"light",
+     "the brightness changes more than a lamp on the mains makes it: it may flicker strongly, or another light be "
+     "switched; use a lamp on direct current"},
+    {"rows",
+     "rows of the picture do not belong together, or the marker moved as the instrument cannot: rows may be lost or of "
+     "an "
+     "earlier picture, a thing along the axis may cover some, or the instrument has hit something; check the "
+     "connection "
+     "of the camera"},
+    {"copy",
+     "something else on the axis looks like the marker, or the marker came back elsewhere than it was lost, and what "
+     "is "
+     "followed has not moved since: it may be a copy or a reflection; move the instrument, and take the other away"},
+    {"stripe",
+     "the stripe that tells the rotation is not seen where the bars are, so that the rotation is only a guess: it may "
+     "be "
+     "covered, saturated, of another print, or the picture mirrored; uncover it, or compare the print with its design"},
 };
 
 template <class Enum, std::size_t count>
@@ -98,6 +124,41 @@ void stateDoubts(const CalibrationDoubts& doubts, const MotionFilter::State& sta
   const double fastest = std::abs(state.mean[1]) + std::sqrt(state.covariance(1, 1));
   const bool known = doubts.unknownShutterError(fastest, height) < policy.unchecked_shift;
   measurement.doubt = known || doubt == Doubt::Shutter ? doubt : Doubt::Unchecked;
+}
+
+void Copies::find(double along, bool lost) {
+  const bool elsewhere = known_ && lost && std::abs(along - along_) > policy_.copy_moved;
+  if (!elsewhere && known_) return;
+  suspect_ = elsewhere;
+  moved_ = false;
+  known_ = true;
+  anchor_ = along;
+}
+
+void Copies::follow(double along) {
+  along_ = along;
+  if (!known_) anchor_ = along;
+  known_ = true;
+  if (std::abs(along - anchor_) > policy_.copy_moved) moved_ = true;
+}
+
+void Copies::see(double along) {
+  const auto end = places_.begin() + static_cast<std::ptrdiff_t>(count_);
+  if (std::any_of(places_.begin(), end, [&](double p) { return std::abs(p - along) <= policy_.copy_moved; })) return;
+  std::rotate(places_.rbegin(), places_.rbegin() + 1, places_.rend());
+  places_.front() = along;
+  count_ = std::min(count_ + 1, places_.size());
+}
+
+void Copies::forget(double from, double to, double own, double apart) {
+  const auto end = places_.begin() + static_cast<std::ptrdiff_t>(count_);
+  const auto gone = [&](double p) { return p >= from && p <= to && std::abs(p - own) > apart; };
+  count_ = static_cast<std::size_t>(std::remove_if(places_.begin(), end, gone) - places_.begin());
+}
+
+bool Copies::isAt(double along) const {
+  const auto end = places_.begin() + static_cast<std::ptrdiff_t>(count_);
+  return std::any_of(places_.begin(), end, [&](double p) { return std::abs(p - along) <= policy_.copy_moved; });
 }
 
 bool Reach::contains(double slide, const MotionFilter::State& predicted, double last_slide, double dt) const {

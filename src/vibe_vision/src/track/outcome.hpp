@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "track/calibration_doubts.hpp"
 #include "track/kalman_filters.hpp"
 #include "vibe_vision/track/tracker_policy.hpp"
@@ -28,6 +30,30 @@ void stateDoubts(const CalibrationDoubts& doubts, const MotionFilter::State& sta
 inline double exposureShift(double exposure) {
   return exposure * exposure / 24;
 }
+
+/// Whether what is followed may be a copy of the marker. What moves is the marker; what rests while something else
+/// looks like it, too, or what was found elsewhere after the marker was lost, is in doubt until it moves.
+class Copies {
+ public:
+  explicit Copies(const TrackerPolicy& policy) : policy_(policy) {}
+  void reset() { *this = Copies(policy_); }
+  /// A search found what is followed from now on [px along the axis]. @param lost  it was not seen before
+  void find(double along, bool lost);
+  void follow(double along);
+  bool doubted() const { return !moved_ && (suspect_ || count_ > 0); }
+  /// Something that is not followed looks like the marker there.
+  void see(double along);
+  /// What was seen from one place to another, but for what may be hidden by the marker.
+  void forget(double from, double to, double own, double apart);
+  bool isAt(double along) const;
+
+ private:
+  TrackerPolicy policy_;
+  bool known_ = false, moved_ = false, suspect_ = false;
+  double anchor_ = 0, along_ = 0;
+  std::array<double, 4> places_{};
+  std::size_t count_ = 0;
+};
 
 /// Where an instrument can be. Frames in a row that agree on a place out of reach are believed: somebody moved it.
 class Reach {

@@ -306,7 +306,10 @@ Distortions PatternFit::distortions(const FitPrior& unlearnt, const PixelBlock& 
     column[i] = lit_[i] * contrast * per_area * u * u * (slope + per_pixel * u) * by_along[i];
   }
   found.relief = distortion(factors, g, count);
-  if (observed_[kRotation]) return found;
+  if (observed_[kRotation]) {
+    found.oval = oval(factors, g, pixels, sight);
+    return found;
+  }
   for (std::size_t i = 0; i < count; ++i) {
     const float u = pixels.along[i] - x0, v = pixels.lateral[i] - y0;
     column[i] = lit_[i] * contrast * per_area * (v * v * v * by_lateral[i] - u * u * u * by_along[i]);
@@ -324,6 +327,33 @@ Distortion PatternFit::towards(MarkerPattern& other, const PixelBlock& pixels) {
   for (std::size_t i = 0; i < count; ++i) column[i] = lit_[i] * contrast * (values_.value[i] - before_[i]);
   pattern_->evaluate(poseOf(at_), pixels, values_);
   return distortion(factors_, gradient_, count);
+}
+
+/// A line of sight meets a wider rod at a place nearer to its middle.
+std::array<Distortion, 2> PatternFit::oval(const Eigen::LDLT<FitSubmatrix>& factors, const FitSubvector& g,
+                                           const PixelBlock& pixels, const Sight& sight) {
+  const float* slope = values_.derivative[kRotation].data();
+  const double sine = std::sin(at_[kTilt]), cosine = std::cos(at_[kTilt]);
+  std::array<Distortion, 2> found;
+  for (int k = 0; k < 2; ++k) {
+    float* column = equations_.column(columns_);
+    for (std::size_t i = 0; i < pixels.padded(); ++i) {
+      const double v = cosine * (pixels.lateral[i] - at_[kLateral]) - sine * (pixels.along[i] - at_[kAlong]);
+      const double phi = std::asin(std::clamp(v / sight.radius, -0.95, 0.95));
+      const double wider = std::cos(2 * (phi - at_[kRotation]) - k * M_PI / 2);
+      column[i] = static_cast<float>(lit_[i] * at_[kContrast] * slope[i] * wider * std::tan(phi));
+    }
+    found[static_cast<std::size_t>(k)] = distortion(factors, g, pixels.padded());
+  }
+  return found;
+}
+
+Distortion PatternFit::stretch(const FitPrior& unlearnt, const PixelBlock& pixels) {
+  FitSubmatrix h;
+  FitSubvector g;
+  assemble(at_, unlearnt, h, g);
+  std::copy_n(moved_[0].data(), pixels.padded(), equations_.column(columns_));
+  return distortion(Eigen::LDLT<FitSubmatrix>(h), g, pixels.padded());
 }
 
 /// What the column behind those of the fit tells beside them.
@@ -360,6 +390,36 @@ void PatternFit::solve(const FitVector& x, const FitPrior& prior, FitStep& resul
   const FitSubvector change = factors_.solve(gradient_);
   result.valid = change.allFinite();
   for (int a = 0; a < columns_; ++a) result.change[parameter_[a]] = change[a];
+}
+
+double PatternFit::stripeSeen(const PixelBlock& pixels) const {
+  const std::vector<float>& slope = values_.derivative[kRotation];
+  float used = 0, full = 0;
+  for (std::size_t i = 0; i < pixels.padded(); ++i) {
+    const float told = slope[i] * slope[i];
+    used += weight_[i] * told;
+    full += told;
+  }
+  return full > 0 ? used / full : 0;
+}
+
+double PatternFit::oddRows(const PixelBlock& pixels, const Eigen::Vector2d& down) const {
+  constexpr int kBands = 64;  // of two rows
+  std::array<float, kBands> used{}, full{};
+  const auto x = static_cast<float>(down.x() / 2), y = static_cast<float>(down.y() / 2);
+  const auto first = static_cast<float>(kBands / 2 - x * at_[kAlong] - y * at_[kLateral]);
+  for (std::size_t i = 0; i < pixels.count / 2; ++i) {  // which sample all of the window
+    const float place = first + x * pixels.along[i] + y * pixels.lateral[i];
+    const auto band = static_cast<std::size_t>(std::clamp(place, 0.F, kBands - 1.F));
+    used[band] += weight_[i] * information_[i];
+    full[band] += pixels.weight[i] * information_[i];
+  }
+  float odd = 0, all = 0;
+  for (std::size_t i = 0; i < kBands; ++i) {
+    odd += used[i] < full[i] / 2 ? full[i] : 0;
+    all += full[i];
+  }
+  return all > 0 ? odd / all : 0;
 }
 
 FitMatrix PatternFit::covariance() const {

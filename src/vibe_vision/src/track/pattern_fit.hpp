@@ -124,6 +124,13 @@ class PatternFit {
   /// What they tell, beside all that it looked for, of a step towards another pattern, whose picture is prepared: 1 is
   /// all the way.
   Distortion towards(MarkerPattern& other, const PixelBlock& pixels);
+  /// Of a marker that shows the rotation: share of the information about it that the last step() used.
+  double stripeSeen(const PixelBlock& pixels) const;
+  /// Share of the information about the position that is in rows of the image most of which do not agree.
+  /// @param down  as Sight::down
+  double oddRows(const PixelBlock& pixels, const Eigen::Vector2d& down) const;
+  /// The same of the length of the motion [px], after measureMotion() of it.
+  Distortion stretch(const FitPrior& unlearnt, const PixelBlock& pixels);
   const PatternValues& values() const { return values_; }
   /// Learns how the light changes around a rod, from the pixels and weights of the last step.
   void learnLight(const FitVector& x, const PixelBlock& pixels, RodLight& light) const;
@@ -139,6 +146,8 @@ class PatternFit {
   Sides sides(const PixelBlock& pixels, const RodLight& light, const SideLimits& limits,
               const MarkerMotion& motion) const;
   Distortion distortion(const Eigen::LDLT<FitSubmatrix>& factors, const FitSubvector& g, std::size_t count);
+  std::array<Distortion, 2> oval(const Eigen::LDLT<FitSubmatrix>& factors, const FitSubvector& g,
+                                 const PixelBlock& pixels, const Sight& sight);
   FitMatrix spread(const FitSubmatrix& inverse) const;
   void chooseColumns(const FitOptions& options);
   void weigh(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);

@@ -29,6 +29,8 @@ constexpr int kArucoId = 7, kAprilTagId = 7;
 
 /// @throws Error for an unknown scene
 BenchScene makeBenchScene(const Cell& cell, std::uint64_t seed);
+/// Copies the pixels of a frame, which frames share. @return they may be changed
+std::uint8_t* ownPixels(Frame& frame);
 /// A larger sensor around the same picture.
 void enlarge(SyntheticScene& scene, int width, int height);
 /// Sizes, exposures and sensors of the whole table.
@@ -44,6 +46,9 @@ struct HarderScene {
 };
 
 const std::vector<HarderScene>& harderScenes();
+/// Scenes in which something is wrong with the marker, the picture or what is said of it.
+const std::vector<HarderScene>& faultyScenes();
+/// Of both kinds.
 /// @return null for a standard scene
 const HarderScene* findHarderScene(const std::string& name);
 

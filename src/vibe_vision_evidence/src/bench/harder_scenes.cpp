@@ -87,16 +87,6 @@ void takeAway(SyntheticScene& scene) {
   for (SyntheticInstrument& instrument : scene.instruments) instrument.lateral = 0.2;
 }
 
-/// Copies the pixels, which frames share.
-std::uint8_t* ownPixels(Frame& frame) {
-  const ImageView old = frame.image;
-  const auto pixels = std::make_shared<std::vector<std::uint8_t>>();
-  for (int y = 0; y < old.height; ++y) pixels->insert(pixels->end(), old.row(y), old.row(y) + old.width);
-  frame.image = {pixels->data(), old.width, old.height, old.width};
-  frame.owner = pixels;
-  return pixels->data();
-}
-
 /// Half the length of the printed picture along the axis [px].
 double halfLength(const InstrumentConfig& instrument) {
   const double scale = instrument.axis.pixels_per_metre / 2;
@@ -204,14 +194,24 @@ std::vector<HarderScene> makeScenes() {
 
 }  // namespace
 
+std::uint8_t* ownPixels(Frame& frame) {
+  const ImageView old = frame.image;
+  const auto pixels = std::make_shared<std::vector<std::uint8_t>>();
+  for (int y = 0; y < old.height; ++y) pixels->insert(pixels->end(), old.row(y), old.row(y) + old.width);
+  frame.image = {pixels->data(), old.width, old.height, old.width};
+  frame.owner = pixels;
+  return pixels->data();
+}
+
 const std::vector<HarderScene>& harderScenes() {
   static const std::vector<HarderScene> scenes = makeScenes();
   return scenes;
 }
 
 const HarderScene* findHarderScene(const std::string& name) {
-  for (const HarderScene& scene : harderScenes())
-    if (scene.name == name) return &scene;
+  for (const auto* scenes : {&harderScenes(), &faultyScenes()})
+    for (const HarderScene& scene : *scenes)
+      if (scene.name == name) return &scene;
   return nullptr;
 }
 

@@ -16,7 +16,7 @@ constexpr double kLead = 14e-3;
 /// What a method says about its marker in one frame.
 struct Estimate {
   bool found = false;
-  bool doubted = false;                                  ///< if found: it says that something may be wrong
+  Doubt doubt = Doubt::None;                             ///< if found: what may be wrong
   LostReason reason = LostReason::NotFound;              ///< if not found; of the own trackers
   double along = 0;                                      ///< undistorted [px]
   double rotation = 0;                                   ///< [rad]

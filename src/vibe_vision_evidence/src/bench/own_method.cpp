@@ -13,7 +13,7 @@ Estimate toEstimate(const SlideAxis& axis, const Measurement& measurement) {
   estimate.found = measurement.tracked();
   estimate.reason = measurement.reason;
   if (!estimate.found) return estimate;
-  estimate.doubted = measurement.doubt != Doubt::None;
+  estimate.doubt = measurement.doubt;
   estimate.along = measurement.along;
   estimate.rotation = measurement.rotation;
   const double scale = pixelsPerMetre(axis, measurement.slide);

@@ -60,7 +60,7 @@ void Scorer::addFrame(const SyntheticTruth& truth, const Estimate& estimate, dou
   if (truth.visible < limits_.phantom) ++sum_.hidden;
   if (!estimate.found) return;
   ++sum_.reports;
-  if (estimate.doubted) ++sum_.doubted;
+  if (estimate.doubt != Doubt::None) ++sum_.doubted;
   if (truth.visible < limits_.phantom) {
     ++sum_.phantom;
     return;

@@ -39,7 +39,13 @@ enum class Doubt {
   Askew,      ///< a sleeve is askew on its rod
   Bent,       ///< a flat marker is bent, or the ends of a marker stand off
   Response,   ///< the response of the camera is not the one that was given
-  Noise       ///< the pictures are noisier than was stated
+  Noise,      ///< the pictures are noisier than was stated
+  Oval,       ///< a sleeve is not round
+  Exposure,   ///< the motion during the exposure is not as long as speed and exposure say
+  Light,      ///< the light changes in a way that is not that of a lamp on the mains
+  Rows,       ///< rows of the image do not belong together, or not to this moment
+  Copy,       ///< what is followed may be a copy of the marker
+  Stripe,     ///< what tells the rotation of a sleeve is hidden or does not fit: the rotation is what was known before
 };
 const char* toText(Doubt doubt);  ///< a sentence for people, with possible causes; empty for None
 const char* toWord(Doubt doubt);  ///< "size", "shutter", ...: one word for tables; empty for None

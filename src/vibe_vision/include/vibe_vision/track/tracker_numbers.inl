@@ -28,10 +28,19 @@ VIBE_REAL(weaker_edges, 0.4, "", "share of the edges of one direction that must 
 VIBE_REAL(slack, 1, "px", "beyond the range and across the axis", "design choice")
 VIBE_REAL(max_black, 0.75, "", "black over white", "design choice: paper and ink differ more")
 
+VIBE_REAL(stripe_seen, 0.6, "", "share of the stripe that must be seen, of the share of all, to tell the rotation",
+          "0.95 of an uncovered one, 0.9 behind a finger, 0.3 of a cover that it is not")
+
 VIBE_POLICY_SECTION("Where it can be")
 VIBE_REAL(reach_deviations, 6, "", "standard deviations of a prediction that an instrument may be away",
           "design choice")
 VIBE_REAL(rest, 1e-4, "m", "by which anything may have moved", "design choice: a pixel of the design point")
+VIBE_REAL(copy_moved, 4, "px", "by which what is followed must move to be no copy", "design choice: a search errs by 1")
+VIBE_COUNT(copy_search, 4, "frames after which the axis is searched again while it may be a copy", "design choice")
+VIBE_REAL(copy_step, 24, "px", "of the axis that every other frame looks at for copies",
+          "design choice: 500 px in 0.3 s, for 2 % of the time")
+VIBE_REAL(looks_alike, 0.9, "", "correlation along the axis from which something looks like the marker",
+          "0.92 and more of markers, 0.78 at most of other things in the scenes")
 VIBE_COUNT(jumps_to_believe, 3, "frames in a row that agree on a place out of reach until they are believed",
            "design choice")
 
@@ -67,6 +76,11 @@ VIBE_REAL(good_look, 0.6, "", "share of the marker that must be seen to learn si
           "design choice: what covers a marker changes its look")
 VIBE_REAL(search_doubt, 0.1, "", "share of the first variance of size, tilt and blur that a search leaves of a ring",
           "design choice")
+VIBE_REAL(odd_rows, 0.1, "", "share of a marker that is in rows that do not agree, for the doubt `rows`",
+          "0.01 at most in the standard scenes without highlights, 0.04 to 1 of stale and lost rows")
+VIBE_REAL(strange_light, 25, "", "mean squared normalised innovation of the brightness, for the doubt `light`",
+          "design choice: five standard deviations")
+VIBE_REAL(telling_motion, 2, "px", "motion during the exposure whose length a picture shows", "design choice")
 VIBE_COUNT(first_looks, 16, "moving frames that are all looked at for distortions", "design choice: 0.1 s at 147 Hz")
 VIBE_COUNT(look_every, 4, "of later ones, every how many", "design choice: a look costs half a step of the fit")
 VIBE_REAL(telling_speed, 0.05, "m/s", "from which a picture would be sheared", "design choice")
