@@ -87,23 +87,24 @@ bool InstrumentTracker::consider(const MarkerFit& fit, const Prediction& predict
   return better;
 }
 
-/// What looks like the marker, but is not what is followed.
+/// What looks like the marker and rests, but is not what is followed.
 void InstrumentTracker::rememberCopies(const Frame& frame, const AxisSearch::Result& found, double from, double to,
                                        double own) {
   const double apart = fitter_.pattern().maxWindow().x();
   copies_.forget(from, to, own, apart);
   for (int i = 0; i < found.count; ++i) {
     const AxisSearch::Candidate& other = found.candidates[i];
-    if (other.score < policy_.looks_alike || std::abs(other.along - own) < apart) continue;
+    const bool alike = other.score > policy_.looks_alike && other.motion < policy_.telling_motion;
+    if (!alike || std::abs(other.along - own) < apart) continue;
     MarkerFit best;
     best.loss = policy_.good_loss;
     if (consider(tryCandidate(frame, {}, other), {}, best)) copies_.see(other.along);
   }
 }
 
-/// A little of the axis in every other frame.
+/// A little of the axis in some frames.
 void InstrumentTracker::lookForCopies(const Frame& frame) {
-  if (++looks_for_copies_ % 2 != 0) return;
+  if (++looks_for_copies_ % policy_.look_every != 0) return;
   const double from = search_.begin() + looked_, to = std::min(from + policy_.copy_step, search_.end());
   looked_ = to < search_.end() ? looked_ + policy_.copy_step : 0;
   rememberCopies(frame, search_.run(map_, frame, from, to, 0, min_contrast_), from, to, measurement_.along);

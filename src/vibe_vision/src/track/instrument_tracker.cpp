@@ -167,7 +167,8 @@ void InstrumentTracker::lookForDistortions(const Frame& frame, const MarkerFit& 
   const FitPrior unlearnt = unknown_.prior(last_slide_);
   const Sight sight = sightAt(fit);
   const Distortions found = fitter_.distortions(unlearnt, sight);
-  if (looks_ % policy_.look_every == 0 && std::abs(fit.motion.length) > policy_.telling_motion)
+  const int rarely = looks_ > policy_.first_looks ? policy_.look_every : 1;
+  if (looks_ % (policy_.look_every * rarely) == 0 && std::abs(fit.motion.length) > policy_.telling_motion)
     doubts_.addExposure(fitter_.stretch(fit, unlearnt), fit.motion.length);
   const double uneven = fitter_.shows(kRotation) ? policy_.uneven * square(fit.x[kBlur]) : 0;
   doubts_.addBend(found.bend);

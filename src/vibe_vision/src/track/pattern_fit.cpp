@@ -333,17 +333,22 @@ Distortion PatternFit::towards(MarkerPattern& other, const PixelBlock& pixels) {
 std::array<Distortion, 2> PatternFit::oval(const Eigen::LDLT<FitSubmatrix>& factors, const FitSubvector& g,
                                            const PixelBlock& pixels, const Sight& sight) {
   const float* slope = values_.derivative[kRotation].data();
-  const double sine = std::sin(at_[kTilt]), cosine = std::cos(at_[kTilt]);
+  const auto sine = static_cast<float>(std::sin(at_[kTilt]) / sight.radius);
+  const auto cosine = static_cast<float>(std::cos(at_[kTilt]) / sight.radius);
+  const auto x0 = static_cast<float>(at_[kAlong]), y0 = static_cast<float>(at_[kLateral]);
+  const auto contrast = static_cast<float>(at_[kContrast]);
   std::array<Distortion, 2> found;
-  for (int k = 0; k < 2; ++k) {
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double turn = 2 * at_[kRotation] + static_cast<double>(k) * M_PI / 2;
+    const auto c = static_cast<float>(std::cos(turn)), s = static_cast<float>(std::sin(turn));
     float* column = equations_.column(columns_);
     for (std::size_t i = 0; i < pixels.padded(); ++i) {
-      const double v = cosine * (pixels.lateral[i] - at_[kLateral]) - sine * (pixels.along[i] - at_[kAlong]);
-      const double phi = std::asin(std::clamp(v / sight.radius, -0.95, 0.95));
-      const double wider = std::cos(2 * (phi - at_[kRotation]) - k * M_PI / 2);
-      column[i] = static_cast<float>(lit_[i] * at_[kContrast] * slope[i] * wider * std::tan(phi));
+      const float v = cosine * (pixels.lateral[i] - y0) - sine * (pixels.along[i] - x0);
+      const float sin_phi = std::max(-0.95F, std::min(v, 0.95F)), cos_phi = std::sqrt(1 - sin_phi * sin_phi);
+      const float wider = c * (1 - 2 * sin_phi * sin_phi) + s * 2 * sin_phi * cos_phi;
+      column[i] = lit_[i] * contrast * slope[i] * wider * sin_phi / cos_phi;
     }
-    found[static_cast<std::size_t>(k)] = distortion(factors, g, pixels.padded());
+    found[k] = distortion(factors, g, pixels.padded());
   }
   return found;
 }

@@ -10,8 +10,8 @@
 
 namespace vibe::vision::evidence {
 
-/// How well a tracker knows when it is wrong: of one marker in one scene. Wrong is a report of a hidden marker, or one that
-/// is off by more than 0.5 mm, 3 degrees or five stated deviations.
+/// How well a tracker knows when it is wrong: of one marker in one scene. Wrong is a report of a hidden marker, or one
+/// that is off by more than 0.5 mm, 3 degrees or five stated deviations.
 struct DoubtRow {
   std::string scene;
   bool sleeve = false;

@@ -37,8 +37,8 @@ VIBE_REAL(reach_deviations, 6, "", "standard deviations of a prediction that an 
 VIBE_REAL(rest, 1e-4, "m", "by which anything may have moved", "design choice: a pixel of the design point")
 VIBE_REAL(copy_moved, 4, "px", "by which what is followed must move to be no copy", "design choice: a search errs by 1")
 VIBE_COUNT(copy_search, 4, "frames after which the axis is searched again while it may be a copy", "design choice")
-VIBE_REAL(copy_step, 24, "px", "of the axis that every other frame looks at for copies",
-          "design choice: 500 px in 0.3 s, for 2 % of the time")
+VIBE_REAL(copy_step, 24, "px", "of the axis that is looked at for copies, as often as for distortions",
+          "design choice: 500 px in 0.6 s")
 VIBE_REAL(looks_alike, 0.9, "", "correlation along the axis from which something looks like the marker",
           "0.92 and more of markers, 0.78 at most of other things in the scenes")
 VIBE_COUNT(jumps_to_believe, 3, "frames in a row that agree on a place out of reach until they are believed",
