@@ -49,7 +49,7 @@ class ScopeSender {
     vibe_msgs::ProcedureState::ConstPtr state;  ///< null: not come yet
     double force = 0;                           ///< of the tissue on the tool [N]; NaN: unknown
   };
-  /// To be called ten times a second: after a second without, keys of joints count as let go, because the program hangs.
+  /// Ten times a second: after a second without it the program hangs, and keys of joints count as let go.
   View view() const;
 
  private:

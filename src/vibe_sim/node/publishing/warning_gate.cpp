@@ -7,7 +7,7 @@ namespace vibe::sim {
 namespace {
 
 /// Without numbers, and without what stands between a quotation mark after a space and the next mark.
-std::string kindOf(const std::string& sentence) {
+std::string withoutWhatVaries(const std::string& sentence) {
   std::string kind;
   bool quoted = false;
   char last = ' ';
@@ -24,7 +24,7 @@ std::string kindOf(const std::string& sentence) {
 bool WarningGate::admits(const std::string& sentence, double now) {
   for (auto each = told_.begin(); each != told_.end();)
     each = now - each->second >= kWarningPeriod ? told_.erase(each) : std::next(each);
-  return told_.size() < kMostWarnings && told_.try_emplace(kindOf(sentence), now).second;
+  return told_.size() < kMostWarnings && told_.try_emplace(withoutWhatVaries(sentence), now).second;
 }
 
 }  // namespace vibe::sim
