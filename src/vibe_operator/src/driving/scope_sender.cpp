@@ -68,6 +68,7 @@ void ScopeSender::keyUp(int key) {
   const std::lock_guard<std::mutex> lock(mutex_);
   moveTo(ros::Time::now());
   drive_.keyUp(key);
+  if (driving_ && standsStill()) drive_.begin(limits_, drive_.joints());  // a tap moves nothing then
 }
 
 void ScopeSender::releaseAll() {
@@ -127,12 +128,17 @@ bool ScopeSender::moveTo(const ros::Time& now) {
     endDriving();
     return false;
   }
-  // wall time passes too during a pause, and while a slow simulator takes no step: the joints must not run ahead
-  const bool stands = (state_ && state_->paused) || steadySeconds() - seen_at_ > kStall;
-  const double passed = stands ? 0 : (now - last_).toSec();
+  if (now > last_) passed_at_ = steadySeconds();
+  const double passed = standsStill() ? 0 : (now - last_).toSec();
   if (passed > 0) drive_.advance(std::min(passed, kLongestStep));
   last_ = now;
   return passed > 0;
+}
+
+/// Wall time passes too during a pause, and while a slow simulator takes no step: the joints must not run ahead.
+bool ScopeSender::standsStill() const {
+  const double now = steadySeconds();
+  return (state_ && state_->paused) || now - seen_at_ > kStall || now - passed_at_ > kStall;
 }
 
 bool ScopeSender::begin(const ros::Time& now) {

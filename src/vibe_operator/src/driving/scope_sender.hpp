@@ -64,6 +64,7 @@ class ScopeSender {
   double force_;
   ros::Time last_;                                                           // up to which the joints have moved
   double waiting_since_ = 0, driving_since_ = 0, wanted_ = 0, seen_at_ = 0;  // steady clock [s]
+  double passed_at_ = 0;                                                     // time; steady clock [s]
   mutable double heard_ = 0;                                                 // of the program; steady clock [s]
   SimulatorWatch simulator_;
   ControlWatch same_topic_, other_topic_;
@@ -85,6 +86,7 @@ class ScopeSender {
   std::string findLimits();
   bool begin(const ros::Time& now);
   bool moveTo(const ros::Time& now);
+  bool standsStill() const;
   void endDriving();
 };
 
