@@ -82,6 +82,7 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
   if (fit.valid && fit.misfit > kStrangeMotion && isMotionLong(fit))
     refineMotion(fit, prior, std::abs(motion.length) + kMotionDoubt);
   seen_ = fit.visible;
+  ink_known_ = ink_known_ || (fit.valid && fit.misfit < kStrangeMotion);
   if (light_.isRound() && fit.valid && std::min(fit.visible, fit.stripe_seen) > kLearnVisible) {
     useQuarter();
     fit_.learnLight(fit.x, pixels_, light_);

@@ -39,10 +39,7 @@ class MarkerFitter {
   double ink() const { return ink_; }  ///< by which black reaches beyond the designed edges [m]
   /// Takes what the last fit, of follow(), tells of the ink, if that is clear. It costs tens of milliseconds and memory
   /// then. @return false if the ink stays as it was
-  bool confirmInk(const MarkerFit& fit, const FitPrior& prior) {
-    ink_known_ = !learnInk(fit, prior);
-    return !ink_known_;
-  }
+  bool confirmInk(const MarkerFit& fit, const FitPrior& prior) { return learnInk(fit, prior); }
   /// Forgets the light on the rod.
   void forget();
 
@@ -123,7 +120,7 @@ class MarkerFitter {
   int lit_frames_ = 0;               ///< followed since forget(), the light of which was learnt
   int tries_ = 0;                    ///< by acquire() since the light was learnt
   int ink_tries_ = 0;                ///< likewise for the ink
-  bool ink_known_ = false;           ///< a frame that was followed confirmed it: a print stays as it is
+  bool ink_known_ = false;           ///< a frame that was followed fitted: a print stays as it is
   bool stripe_ = true;               ///< see useStripe()
   double gamma_ = 1;                 ///< of pixels_ and light_
   double table_gamma_ = 0;           ///< of linear_
