@@ -119,7 +119,9 @@ LostReason whyNothing(const BandLight& light, double min_contrast, const Tracker
 void stateDoubts(const CalibrationDoubts& doubts, const MotionFilter::State& state, double scale, int height,
                  const TrackerPolicy& policy, Measurement& measurement) {
   const Doubt doubt = doubts.doubt();
-  measurement.along_variance += square(doubts.shutterError(state.mean[1] * scale, height));
+  // by the speed, and by what is not known of it, as after the motion was broken off
+  const double speed = std::sqrt(square(state.mean[1]) + state.covariance(1, 1));
+  measurement.along_variance += square(doubts.shutterError(speed * scale, height));
   measurement.covariance(0, 0) = measurement.along_variance / square(scale);
   const double fastest = std::abs(state.mean[1]) + std::sqrt(state.covariance(1, 1));
   const bool known = doubts.unknownShutterError(fastest, height) < policy.unchecked_shift;

@@ -157,7 +157,11 @@ class VisionTest(unittest.TestCase):
         self.assertGreater(len(beside), 0.9 * len(tracks))
         words = [m.doubts for m in beside]
         self.assertEqual({tuple(m.instruments) for m in beside}, {("helix", "needle_driver")})
-        self.assertLessEqual({word for pair in words for word in pair}, {"", "unchecked"})
+        self.assertLessEqual({word for pair in words for word in pair}, {"", "unchecked", "copy", "rows"})
+        # where the pictures begin anew, the marker comes back elsewhere than it was lost, as no instrument moves
+        steady = [m.doubts for m in beside if self.is_steady(m.header.stamp.to_sec())]
+        self.assertGreater(len(steady), 10)
+        self.assertLessEqual({word for pair in steady for word in pair}, {"", "unchecked"})
         self.assertGreater(words.count(["", ""]), 0.8 * len(words))
 
     def check_joints(self, tracks):
