@@ -88,7 +88,10 @@ class ProtocolTest(unittest.TestCase):
 
     def test_step_result_says_what_the_topics_say(self):
         self.hash_of_session(await_recorder="true")
-        self.assertEqual([m.step for m in self.results.messages], list(range(STEPS + 1)))
+        steps = [m.step for m in self.results.messages]
+        if steps[:2] == [0, 0]:  # roscpp sends a latched message twice to who connects while it is published
+            del steps[0]
+        self.assertEqual(steps, list(range(STEPS + 1)))
         self.assertEqual(self.results.stamps(), [stamp_of(k) for k in range(STEPS + 1)])
         told = [(e.kind, e.particle, e.value, e.text) for m in self.results.messages for e in m.events]
         events = [(e.kind, e.particle, e.value, e.text) for e in self.events.messages]
