@@ -20,6 +20,7 @@ MarkerFitter::MakePattern patternsOf(const InstrumentConfig& instrument, const M
     return makePattern(printed(design, ink), scale, view);
   };
 }
+
 constexpr double kAnyTurn = M_PI * M_PI / 3;  // variance of a rotation of which nothing is known [rad^2]
 
 double bandHalfWidth(const MarkerPattern& pattern, const InstrumentConfig& config) {

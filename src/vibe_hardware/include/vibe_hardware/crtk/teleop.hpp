@@ -45,9 +45,9 @@ struct TeleopInput {
 struct TeleopState {
   std::array<double, kJointCount> joints{};                       ///< commanded [m], [rad]
   std::array<double, kHandCoordinates> hand{};                    ///< coordinates [m], [rad]
-  Eigen::Quaterniond reference = Eigen::Quaterniond::Identity();  ///< since which the rotation counts
+  Eigen::Quaterniond reference = Eigen::Quaterniond::Identity();  ///< since which the rotation counts; unit quaternion
   Eigen::Vector3d turned = Eigen::Vector3d::Zero();               ///< coordinates of the rotation there [rad]
-  Eigen::Matrix3d rates = Eigen::Matrix3d::Identity();            ///< HandRotation::rates, now
+  Eigen::Matrix3d rates = Eigen::Matrix3d::Identity();            ///< HandRotation::rates, now (ratio)
   std::array<JointScale, kJointCount> scales{};  ///< joint = offset + scale * coordinate, of those that follow
   /// Observer and limiter of each scope joint's coordinate; idle where the mapping has none.
   std::array<PortState, kScopeJointCount> ports{};

@@ -17,8 +17,8 @@ constexpr double kTrailPeriod = 0.1;  ///< so news may be that late [s]; design 
 constexpr double kTrailRest = 0.5;    ///< commands that have not moved for so long give way [s]; design choice
 
 struct ToolTrail {
-  std::array<JointTrail, kJointCount> joints;
-  double period_end = 0;  ///< [s]
+  std::array<JointTrail, kJointCount> joints;  ///< by vibe::Joint
+  double period_end = 0;                       ///< [s]
 };
 
 /// What a person does not notice when a joint goes on from elsewhere [m], [rad]; design choice.
