@@ -1,4 +1,7 @@
-// sources: src/simulation/snapshot.cpp src/simulation/state_check.cpp src/files/files.cpp
+// sources: src/simulation/snapshot.cpp src/simulation/state_check.cpp src/files/files.cpp src/scene/[!m]*.cpp
+// sources: src/geometry/stomach_knots.cpp src/geometry/surface_mesh.cpp src/program/plugins.cpp
+// sources: src/files/foreign_content.cpp src/files/number_text.cpp src/arithmetic/elementary_*.cpp
+// packages: yaml-cpp
 // includes: ../vibe_firmware/fuzz
 #include <sys/mman.h>
 #include <unistd.h>

@@ -25,7 +25,7 @@ class MovingScope:
         self.command = rospy.Publisher("scope/servo_jp", JointState, queue_size=1)
         if snapshot:
             rospy.wait_for_service("load_snapshot", 30)
-            answer = rospy.ServiceProxy("load_snapshot", Snapshot)(snapshot)
+            answer = rospy.ServiceProxy("load_snapshot", Snapshot)(file=snapshot)
             if not answer.success:
                 sys.exit("The snapshot cannot be loaded: " + answer.message)
 

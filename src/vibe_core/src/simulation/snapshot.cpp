@@ -127,7 +127,9 @@ void readHeader(const Model& model, const std::string& file, OtherScene other, R
     throw Error("Snapshot '" + file + "' belongs to another scene; load the scene it was saved with first.");
   if (other == OtherScene::Refused && scene != sceneFingerprint(model))
     throw Error("Snapshot '" + file +
-                "' is of the same organ but of a scene with other values; load the scene it was saved with first.");
+                "' is of the same organ but of a scene with other values; load the scene it was saved with first, or "
+                "take it as "
+                "one of another scene.");
 }
 
 State readSnapshot(const Model& model, std::istream& in, const std::string& file, OtherScene other) {

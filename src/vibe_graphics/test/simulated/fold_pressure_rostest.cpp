@@ -70,6 +70,7 @@ class Simulator {
   bool continueIn(const std::string& scene, const std::string& snapshot) {
     vibe_msgs::Snapshot state;
     state.request.file = snapshot;
+    state.request.other_scene = true;
     vibe_msgs::LoadScene other;
     other.request.file = scene;
     return call("save_snapshot", state) && call("load_scene", other) && call("load_snapshot", state);

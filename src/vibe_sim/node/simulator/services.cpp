@@ -57,8 +57,9 @@ Services::Services(const ros::NodeHandle& handle, SimulationThread& thread, Publ
                           [&thread](const vibe_msgs::Reset::Request& r) { return thread.reset(r.seed, r.keep_time); });
   offer<vibe_msgs::Snapshot>("save_snapshot",
                              [&thread](const vibe_msgs::Snapshot::Request& r) { return thread.saveSnapshot(r.file); });
-  offer<vibe_msgs::Snapshot>("load_snapshot",
-                             [&thread](const vibe_msgs::Snapshot::Request& r) { return thread.loadSnapshot(r.file); });
+  offer<vibe_msgs::Snapshot>("load_snapshot", [&thread](const vibe_msgs::Snapshot::Request& r) {
+    return thread.loadSnapshot(r.file, r.other_scene ? OtherScene::Taken : OtherScene::Refused);
+  });
   offer<vibe_msgs::LoadScene>("load_scene",
                               [&thread](const vibe_msgs::LoadScene::Request& r) { return thread.loadScene(r.file); });
   spinner_ = std::make_unique<ros::AsyncSpinner>(4, &queue_);

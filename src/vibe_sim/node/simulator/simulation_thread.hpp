@@ -19,6 +19,7 @@
 #include "simulator/pace.hpp"
 #include "simulator/parameters.hpp"
 #include "simulator/run_statistics.hpp"
+#include "vibe_core/simulation/snapshot.hpp"
 
 namespace vibe::sim {
 
@@ -58,7 +59,7 @@ class SimulationThread {
   Reply takeSteps(std::uint32_t n);
   Reply reset(std::uint64_t seed, bool keep_time);
   Reply saveSnapshot(const std::string& file);
-  Reply loadSnapshot(const std::string& file);
+  Reply loadSnapshot(const std::string& file, OtherScene other);
   Reply loadScene(const std::string& address);
 
   /// The last state to all listeners and the summary to standard output and file. Only when the thread has ended.

@@ -145,9 +145,9 @@ Reply SimulationThread::saveSnapshot(const std::string& file) {
   return {true, "Saved the state at " + seconds(state.time) + " to '" + file + "'."};
 }
 
-Reply SimulationThread::loadSnapshot(const std::string& file) {
-  return call([this, file]() -> Reply {
-    simulation_.replaceState(vibe::loadSnapshot(simulation_.model(), file));
+Reply SimulationThread::loadSnapshot(const std::string& file, OtherScene other) {
+  return call([this, file, other]() -> Reply {
+    simulation_.replaceState(vibe::loadSnapshot(simulation_.model(), file, other));
     afterReplacement();
     return {true, "Loaded the state at " + seconds(simulation_.state().time) + " from '" + file + "'."};
   });

@@ -124,7 +124,7 @@ class ServicesTest(unittest.TestCase):
         self.call["step"](40)
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "session.snapshot")
-            reply = self.call["save_snapshot"](file)
+            reply = self.call["save_snapshot"](file=file)
             self.assertTrue(reply.success, reply.message)
             self.assertTrue(os.path.exists(file))
             saved = self.hash()
@@ -132,7 +132,7 @@ class ServicesTest(unittest.TestCase):
             moved_on = self.hash()
             self.assertNotEqual(moved_on, saved)
             self.forget_particles()
-            reply = self.call["load_snapshot"](file)
+            reply = self.call["load_snapshot"](file=file)
             self.assertTrue(reply.success, reply.message)
             self.assertEqual(self.hash(), saved)
             # the scope had not arrived yet: tell it again where to go
@@ -146,9 +146,10 @@ class ServicesTest(unittest.TestCase):
 
     def test_bad_snapshots_are_refused_and_nothing_changes(self):
         before = self.hash()
-        self.assert_fails("load_snapshot", ["/nowhere/x.snapshot"], "/nowhere/x.snapshot")
-        self.assert_fails("save_snapshot", ["/nowhere/x.snapshot"], "/nowhere/x.snapshot")
-        self.assert_fails("load_snapshot", ["balloon.yaml"], scene("balloon.yaml"))
+        self.assert_fails("load_snapshot", ["/nowhere/x.snapshot"], file="/nowhere/x.snapshot")
+        self.assert_fails("save_snapshot", ["/nowhere/x.snapshot"], file="/nowhere/x.snapshot")
+        self.assert_fails("load_snapshot", ["balloon.yaml"], file=scene("balloon.yaml"))
+        self.assert_fails("load_snapshot", ["balloon.yaml"], file=scene("balloon.yaml"), other_scene=True)
         self.assertEqual(self.hash(), before)
 
     def test_load_scene_replaces_the_scene_and_back(self):

@@ -163,7 +163,7 @@ class Nodes:
 
     def kill_simulator(self):
         snapshot = os.path.join(self.bench.folder, "state.snapshot")
-        saved = rospy.ServiceProxy("save_snapshot", Snapshot)(snapshot)
+        saved = rospy.ServiceProxy("save_snapshot", Snapshot)(file=snapshot)
         expect(saved.success, saved.message)
         marks = {name: self.bench.mark(name) for name in self.bench.programs}
         step = self.steps.newest().step
@@ -172,7 +172,7 @@ class Nodes:
         seconds = self.bring_back("sim_node")
         fresh = self.steps.wait(begin)[1].step
         expect(fresh < step, "step {} follows step {}: it was not started anew".format(fresh, step))
-        loaded = rospy.ServiceProxy("load_snapshot", Snapshot)(snapshot)
+        loaded = rospy.ServiceProxy("load_snapshot", Snapshot)(file=snapshot)
         expect(loaded.success, loaded.message)
         expect(wait_until(lambda: self.steps.newest().step >= step), "it does not continue from step {}".format(step))
         driven = self.steps.newest().joints[0]
