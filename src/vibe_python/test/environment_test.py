@@ -12,7 +12,7 @@ import numpy as np
 import vibe
 import vibe.env
 from vibe.env import BREATHING, TASKS, Environment, Expert, Reach, VectorEnvironment, api, contract, demonstrations
-from vibe.env.episodes import tip_motion
+from vibe.env.tip import tip_motion
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../scripts"))
 import random_actions  # noqa: E402

@@ -4,6 +4,7 @@ import copy
 import gc
 import os
 import pickle
+import re
 import shutil
 import signal
 import subprocess
@@ -379,6 +380,21 @@ class RefusalTest(Worlds):
                                       stderr=subprocess.PIPE, text=True, check=False, timeout=100)
                 self.assertIn(sentence, made.stderr)
         self.assertIn("take its folder off LD_LIBRARY_PATH", vibe._unloadable(ImportError("version `GLIBCXX_3.4.30' not found")))
+
+    def test_numpy_2_is_refused_by_a_module_that_does_not_know_it(self):
+        header = "/usr/include/pybind11/detail/common.h"  # of the pybind11 that it was built with
+        with open(header, encoding="utf-8") if os.path.exists(header) else tempfile.TemporaryFile("r") as file:
+            version = [int(number) for number in re.findall(r"PYBIND11_VERSION_M(?:AJ|IN)OR (\d+)", file.read())]
+        if not version or version >= [2, 12]:
+            self.skipTest("pybind11 is not Debian 12's")
+        with tempfile.TemporaryDirectory() as place:
+            os.mkdir(os.path.join(place, "numpy"))
+            for number, found in (("2.1.0", True), ("1.26.0", False)):
+                with open(os.path.join(place, "numpy/__init__.py"), "w", encoding="utf-8") as file:
+                    file.write(f"__version__ = '{number}'\n")
+                made = subprocess.run([sys.executable, "-B", "-c", "import vibe"], stderr=subprocess.PIPE, text=True, check=False,
+                                      env={**os.environ, "PYTHONPATH": os.pathsep.join([place, *sys.path])}, timeout=100)
+                self.assertEqual("was built for numpy 1, and numpy 2.1.0 is found" in made.stderr, found, made.stderr)
 
     def test_an_interrupt_is_heard_within_some_steps(self):
         simulation = self.simulation()

@@ -173,10 +173,8 @@ const std::vector<SchemaSection>& sceneSections() {
       optionalSection<&Scene::breathing>(
           "breathing",
           "The diaphragm moves the foundation and the attached end of the oesophagus towards the feet (-z) and back, "
-          "by "
-          "amplitude (1 - cos(2 pi rate t)) / 2; the duodenum and the hand that holds the scope stay. Of model shell; "
-          "needs "
-          "`foundation`. Without this section nothing breathes.",
+          "by amplitude (1 - cos(2 pi rate t)) / 2; the duodenum and the hand that holds the scope stay. Of model "
+          "shell; needs `foundation`. Without this section nothing breathes.",
           "foundation", "which the diaphragm moves"),
       optionalSection<&Scene::scope>("scope", "The endoscope with its suturing device."),
       {"scope.base", "Pose of the root link. Without this section the scope enters at the oesophagus.",
@@ -203,8 +201,7 @@ const std::vector<SchemaSection>& sceneSections() {
       optionalSection<&Scene::marking>(
           "marking",
           "Argon plasma coagulation from a probe in the scope: marks and burns ([marking.md](marking.md)); needs "
-          "`scope`. "
-          "Without this section the pedal has no effect.",
+          "`scope`. Without this section the pedal has no effect.",
           "scope", "whose tip carries the probe"),
   };
   return sections;

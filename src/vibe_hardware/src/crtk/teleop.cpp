@@ -88,7 +88,10 @@ bool follow(const TeleopMapping& mapping, const ArmSample& sample, TeleopState& 
   const Motion motion = first ? Motion{} : motionBetween(mapping, *state.last, sample);
   const bool jumped = isJump(mapping, motion, dt);
   state.last = sample;
-  first || jumped ? refer(mapping, state) : moveHand(mapping, motion, state);
+  if (first || jumped)
+    refer(mapping, state);
+  else
+    moveHand(mapping, motion, state);
   for (std::size_t j = 0; j < state.ports.size(); ++j) {
     const HandJoint& joint = mapping.joints[j];
     if (joint.coordinate < 0) continue;

@@ -37,8 +37,7 @@ std::string refusalOfPlace(const InputSample& sample, const Model& model) {
   if (place.norm() <= kFarthest * reach) return "";
   return print(
       "%s asks for a place %.3g m from the base of the scope, which reaches %.2g m, and is ignored; the place may be "
-      "in "
-      "millimetres or in another frame: give metres in world or scope_base.",
+      "in millimetres or in another frame: give metres in world or scope_base.",
       topicOf(sample).c_str(), place.norm(), reach);
 }
 
@@ -64,8 +63,7 @@ std::string refusalOfPull(const InputSample& sample, const Model& model) {
   if (far <= kFarthest * size) return "";
   return print(
       "tissue/pull asks for a target %.3g m from its particle, in an organ of %.2g m, and is ignored; the target may "
-      "be "
-      "in millimetres: give metres in world.",
+      "be in millimetres: give metres in world.",
       far, size);
 }
 

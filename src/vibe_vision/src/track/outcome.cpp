@@ -52,29 +52,24 @@ constexpr Words kDoubts[] = {
      "is measured counts until then"},
     {"oval",
      "the sleeve is wider in one direction than in the other, which moves its rotation: it may be pressed or glued "
-     "with a "
-     "fold; glue it anew, on a round rod"},
+     "with a fold; glue it anew, on a round rod"},
     {"exposure",
      "the picture of the moving marker is blurred more or less than its speed and the exposure say: the exposure may "
-     "not "
-     "be the one that was told; set it to that of the camera"},
+     "not be the one that was told; set it to that of the camera"},
     {"light",
      "the brightness changes more than a lamp on the mains makes it: it may flicker strongly, or another light be "
      "switched; use a lamp on direct current"},
     {"rows",
-     "rows of the picture do not belong together, or the marker moved as the instrument cannot: rows may be lost or of "
-     "an "
-     "earlier picture, a thing along the axis may cover some, or the instrument has hit something; check the "
-     "connection "
-     "of the camera"},
+     "rows of the picture do not belong together, or the marker moved as the instrument cannot: rows may be lost or "
+     "of an earlier picture, a thing along the axis may cover some, or the instrument has hit something; check the "
+     "connection of the camera"},
     {"copy",
      "something else on the axis looks like the marker, or the marker came back elsewhere than it was lost, and what "
-     "is "
-     "followed has not moved since: it may be a copy or a reflection; move the instrument, and take the other away"},
+     "is followed has not moved since: it may be a copy or a reflection; move the instrument, and take the other away"},
     {"stripe",
-     "the stripe that tells the rotation is not seen where the bars are, so that the rotation is only a guess: it may "
-     "be "
-     "covered, saturated, of another print, or the picture mirrored; uncover it, or compare the print with its design"},
+     "the stripe that tells the rotation is not seen where the bars are, so that the rotation is only a guess: it "
+     "may be covered, saturated, of another print, or the picture mirrored; uncover it, or compare the print with "
+     "its design"},
 };
 
 template <class Enum, std::size_t count>

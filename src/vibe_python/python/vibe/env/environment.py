@@ -8,7 +8,8 @@ import numpy as np
 import vibe
 
 from . import api
-from .episodes import chosen, numbers, task_of, whole
+from .episodes import task_of
+from .settings import chosen, numbers, whole
 
 PICTURE = (480, 480, 1.7)  # of render(): width, height, field of view [rad]
 

@@ -13,108 +13,14 @@ import vibe
 
 from . import organs as _organs
 from .api import REAL, gymnasium, spaces
+from .settings import FAR, PICTURES, STRONG, camera_of, is_number, pairs_of, pictures_of, range_of, whole
+from .tip import TIP_SPEED, tip_motion
 
 INSUFFLATE = vibe.BUTTONS.index("insufflate")
 SUCCESS = 10.0  # reward of an episode that succeeds
 FORCE_FREE = 2.0  # force on the tool that costs nothing [N]; twice the mean of the first session of the README
 GOALS = 64  # per start, drawn once
 WALL_POINTS = 48  # places of the wall that an observation holds
-#: greatest numbers of observations, far beyond what occurs: [m], [rad]; [N], [N m]; of depths [m]
-FAR, STRONG, DEEP = 10.0, 1000.0, 10.0
-#: pictures that an observation may hold: channels, type, least and greatest value
-PICTURES = {"depth": ((), np.float32, 0, DEEP), "label": ((), np.uint8, 0, 5), "normal": ((3,), np.float32, -1, 1),
-            "colour": ((3,), np.uint8, 0, 255)}
-
-
-def whole(name, value, least, most):
-    """A whole number within a range, or vibe.Error."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
-        raise vibe.Error(f"'{name}' is {vibe._shown(value)}; give a whole number from {least} to {most}.")
-    return int(value)
-
-
-def numbers(action, shape):
-    """An action of this shape as a new array of float from -1 to 1, or vibe.Error."""
-    try:
-        given = np.asarray(action)
-        kind = given.dtype.kind
-    except (TypeError, ValueError, OverflowError):
-        kind = ""
-    if kind not in ("b", "i", "u", "f"):
-        raise vibe.Error(f"The action is {vibe._shown(action)}; give an array of numbers from -1 to 1.")
-    if given.shape != shape:
-        raise vibe.Error(f"The action has the shape {given.shape}; give one of the shape {shape}.")
-    if not np.isfinite(given).all():
-        raise vibe.Error("The action holds a value that is not finite; give numbers from -1 to 1.")
-    return np.minimum(np.maximum(given.astype(float), -1), 1)
-
-
-def _number(value):
-    return isinstance(value, (int, float, np.integer, np.floating)) and np.isfinite(float(value))
-
-
-def _pairs(organs):
-    """Pairs (shape, scale) as a tuple of tuples."""
-    pairs = tuple(organs) if isinstance(organs, (list, tuple)) else ()
-    if not pairs:
-        raise vibe.Error("'organs' is empty or no list; give pairs (shape, scale), such as vibe.env.TRAINING.")
-    for pair in pairs:
-        if not isinstance(pair, (list, tuple)) or len(pair) != 2 or pair[0] not in _organs.SHAPES or not _number(pair[1]):
-            raise vibe.Error(f"'organs' holds {vibe._shown(pair)}; give pairs of a shape ({', '.join(_organs.SHAPES)}) and a scale.")
-    return tuple(tuple(pair) for pair in pairs)
-
-
-def _camera(camera):
-    if camera is None:
-        return None
-    if not isinstance(camera, (list, tuple)) or len(camera) != 3 or not _number(camera[2]) or not 0.01 < camera[2] < 3.1:
-        raise vibe.Error(f"'camera' is {vibe._shown(camera)}; give (width, height, field of view from 0.01 to 3.1 rad), or None.")
-    return whole("camera[0]", camera[0], 1, 4096), whole("camera[1]", camera[1], 1, 4096), float(camera[2])
-
-
-def _pictures(pictures, camera):
-    """Which pictures the camera gives, as a tuple of names."""
-    if pictures is None:
-        return ("depth", "label")
-    if camera is None:
-        raise vibe.Error("'pictures' is given without a camera; add camera=(width, height, field of view).")
-    names = tuple(pictures) if isinstance(pictures, (list, tuple)) else ()
-    if not names or not all(isinstance(name, str) and name in PICTURES for name in names) or len(set(names)) < len(names):
-        raise vibe.Error(f"'pictures' is {vibe._shown(pictures)}; give a list of some of {', '.join(PICTURES)}, each once.")
-    return names
-
-
-def _range(name, pair, least, most):
-    if not isinstance(pair, (list, tuple)) or len(pair) != 2 or not all(map(_number, pair)) or not least <= pair[0] <= pair[1] <= most:
-        raise vibe.Error(f"'{name}' is {vibe._shown(pair)}; give (least, greatest), from {least:.4g} to {most:.4g}.")
-    return tuple(pair)
-
-
-#: what reset(options=...) may choose instead of drawing it
-CHOICES = {"organ": "a pair (shape, scale)", "start": f"a whole number below {_organs.STARTS}", "goal": "(along, around [rad])",
-           "phase": f"a whole number below {_organs.PHASES}, of a stomach that breathes"}
-
-
-def chosen(options, further=()):
-    """What of the next episode is not drawn: options of reset() without those that `further` names; or vibe.Error."""
-    if options is None:
-        return {}
-    if not isinstance(options, dict):
-        raise vibe.Error(f"'options' is {vibe._shown(options)}; give a dictionary, or None.")
-    wrong = [name for name in options if name not in CHOICES and name not in further]
-    if wrong:
-        raise vibe.Error(f"'options' has no {vibe._shown(wrong[0])}; it may choose {', '.join([*CHOICES, *further])}.")
-    found = {name: value for name, value in options.items() if name in CHOICES}
-    if "organ" in found:
-        found["organ"], = _pairs([found["organ"]])
-    for name, count in (("start", _organs.STARTS), ("phase", _organs.PHASES)):
-        if name in found:
-            whole(name, found[name], 0, count - 1)
-    goal = found.get("goal", (0, 0))
-    if not isinstance(goal, (list, tuple)) or len(goal) != 2 or not all(map(_number, goal)) or not 0 <= goal[0] <= 1:
-        raise vibe.Error(f"'goal' is {vibe._shown(goal)}; give (share of the axis from 0 to 1, angle around it [rad]).")
-    return found
-
 
 #: name to class, of every task that has been defined
 TASKS = {}
@@ -150,13 +56,13 @@ class Task:
             raise vibe.Error(f"'breathing' is {vibe._shown(breathing)}; use {', '.join(_organs.BREATHING)}, or None.")
         if action == "tip" and not self.moves_tip_only():
             raise vibe.Error(f"The task {self.name} moves more than the tip; use action='joints'.")
-        if not _number(self.rate) or not self.rate > 0:
+        if not is_number(self.rate) or not self.rate > 0:
             raise vibe.Error(f"'rate' of the task {self.name} is {vibe._shown(self.rate)}; give the actions per second.")
-        _range("along", self.along, 0, 1), _range("around", self.around, -2 * math.pi, 2 * math.pi)
+        range_of("along", self.along, 0, 1), range_of("around", self.around, -2 * math.pi, 2 * math.pi)
         self.count, self.particles = whole("count", count, 1, 65536), whole("particles", particles, 100, 1000000)
-        self.organs, self.breathing = _pairs(organs), breathing
-        self.mode, self.threads, self.camera = action, whole("threads", threads, 1, 1024), _camera(camera)
-        self.pictures, self.step_period = _pictures(pictures, self.camera), self._period(step_period)
+        self.organs, self.breathing = pairs_of(organs), breathing
+        self.mode, self.threads, self.camera = action, whole("threads", threads, 1, 1024), camera_of(camera)
+        self.pictures, self.step_period = pictures_of(pictures, self.camera), self._period(step_period)
         self.length = self.steps_of_episode() if max_episode_steps is None else whole("max_episode_steps", max_episode_steps, 1, 10**9)
         self.simulation = [None] * count
         self.organ = [None] * count
@@ -179,7 +85,7 @@ class Task:
         """Simulated time per step [s], of which a whole number makes up an action; None: an action, at most 1/20 s."""
         if period is None:
             return 1 / (self.rate * max(1, math.ceil(self.rate_of_steps / self.rate)))
-        steps = 1 / (self.rate * period) if _number(period) and 1e-4 <= period <= 0.1 else 0
+        steps = 1 / (self.rate * period) if is_number(period) and 1e-4 <= period <= 0.1 else 0
         if round(steps) < 1 or abs(steps - round(steps)) > 1e-6:
             raise vibe.Error(f"'step_period' is {vibe._shown(period)}; give a whole part of an action of 1/{self.rate} s, such as "
                              f"{1 / self.rate:.5g}, or None.")
@@ -469,34 +375,3 @@ def task_of(task):
     if not isinstance(name, str) or name not in TASKS:
         raise vibe.Error(f"There is no task {vibe._shown(name)}; use one of {', '.join(TASKS)}.")
     return TASKS[name]
-
-
-TIP_SPEED = 0.04  # of the tip at action 1 [m/s]
-
-
-def _dot(a, b):
-    """In one order: numpy and sum() have others, by processor and version."""
-    total = 0.0
-    for x, y in zip(a, b):
-        total += x * y
-    return total
-
-
-def _cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def tip_motion(jacobian, pose, speed, limits, damping=2e-3):
-    """Shares (4,) of the joint speeds that move the tip with a speed (3,) in its own axes [m/s]: damped least squares in
-    units of the limits, scaled down together where one would exceed its limit (Wampler 1986). The same numbers give the
-    same bits with every library of linear algebra."""
-    turn, speed, limits = pose[:3, :3].tolist(), list(map(float, speed)), list(map(float, limits))
-    wanted = [_dot(row, speed) for row in turn]
-    rows = [[x * limit for x, limit in zip(row, limits)] for row in jacobian[:3].tolist()]
-    square = [[_dot(a, b) + (damping**2 if a is b else 0.0) for b in rows] for a in rows]  # symmetric, positive
-    minors = [_cross(square[1], square[2]), _cross(square[2], square[0]), _cross(square[0], square[1])]
-    size = _dot(square[0], minors[0])
-    solved = [_dot(column, wanted) / size for column in zip(*minors)]
-    shares = [_dot(column, solved) for column in zip(*rows)]
-    most = max(1.0, *map(abs, shares))
-    return np.array([share / most for share in shares])

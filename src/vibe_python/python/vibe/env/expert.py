@@ -4,7 +4,7 @@ import numpy as np
 
 import vibe
 
-from .episodes import TIP_SPEED, tip_motion
+from .tip import TIP_SPEED, tip_motion
 
 
 class Expert:

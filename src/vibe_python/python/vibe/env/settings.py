@@ -1,0 +1,103 @@
+"""What may be given to environments: each value is checked, and what cannot be taken is refused in one sentence."""
+
+import numpy as np
+
+import vibe
+
+from . import organs as _organs
+
+#: greatest numbers of observations, far beyond what occurs: [m], [rad]; [N], [N m]; of depths [m]
+FAR, STRONG, DEEP = 10.0, 1000.0, 10.0
+#: pictures that an observation may hold: channels, type, least and greatest value
+PICTURES = {"depth": ((), np.float32, 0, DEEP), "label": ((), np.uint8, 0, 5), "normal": ((3,), np.float32, -1, 1),
+            "colour": ((3,), np.uint8, 0, 255)}
+
+
+def whole(name, value, least, most):
+    """A whole number within a range, or vibe.Error."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
+        raise vibe.Error(f"'{name}' is {vibe._shown(value)}; give a whole number from {least} to {most}.")
+    return int(value)
+
+
+def numbers(action, shape):
+    """An action of this shape as a new array of float from -1 to 1, or vibe.Error."""
+    try:
+        given = np.asarray(action)
+        kind = given.dtype.kind
+    except (TypeError, ValueError, OverflowError):
+        kind = ""
+    if kind not in ("b", "i", "u", "f"):
+        raise vibe.Error(f"The action is {vibe._shown(action)}; give an array of numbers from -1 to 1.")
+    if given.shape != shape:
+        raise vibe.Error(f"The action has the shape {given.shape}; give one of the shape {shape}.")
+    if not np.isfinite(given).all():
+        raise vibe.Error("The action holds a value that is not finite; give numbers from -1 to 1.")
+    return np.minimum(np.maximum(given.astype(float), -1), 1)
+
+
+def is_number(value):
+    return isinstance(value, (int, float, np.integer, np.floating)) and np.isfinite(float(value))
+
+
+def pairs_of(organs):
+    """Pairs (shape, scale) as a tuple of tuples."""
+    pairs = tuple(organs) if isinstance(organs, (list, tuple)) else ()
+    if not pairs:
+        raise vibe.Error("'organs' is empty or no list; give pairs (shape, scale), such as vibe.env.TRAINING.")
+    for pair in pairs:
+        if not isinstance(pair, (list, tuple)) or len(pair) != 2 or pair[0] not in _organs.SHAPES or not is_number(pair[1]):
+            raise vibe.Error(f"'organs' holds {vibe._shown(pair)}; give pairs of a shape ({', '.join(_organs.SHAPES)}) and a scale.")
+    return tuple(tuple(pair) for pair in pairs)
+
+
+def camera_of(camera):
+    if camera is None:
+        return None
+    if not isinstance(camera, (list, tuple)) or len(camera) != 3 or not is_number(camera[2]) or not 0.01 < camera[2] < 3.1:
+        raise vibe.Error(f"'camera' is {vibe._shown(camera)}; give (width, height, field of view from 0.01 to 3.1 rad), or None.")
+    return whole("camera[0]", camera[0], 1, 4096), whole("camera[1]", camera[1], 1, 4096), float(camera[2])
+
+
+def pictures_of(pictures, camera):
+    """Which pictures the camera gives, as a tuple of names."""
+    if pictures is None:
+        return ("depth", "label")
+    if camera is None:
+        raise vibe.Error("'pictures' is given without a camera; add camera=(width, height, field of view).")
+    names = tuple(pictures) if isinstance(pictures, (list, tuple)) else ()
+    if not names or not all(isinstance(name, str) and name in PICTURES for name in names) or len(set(names)) < len(names):
+        raise vibe.Error(f"'pictures' is {vibe._shown(pictures)}; give a list of some of {', '.join(PICTURES)}, each once.")
+    return names
+
+
+def range_of(name, pair, least, most):
+    if not isinstance(pair, (list, tuple)) or len(pair) != 2 or not all(map(is_number, pair)) or not least <= pair[0] <= pair[1] <= most:
+        raise vibe.Error(f"'{name}' is {vibe._shown(pair)}; give (least, greatest), from {least:.4g} to {most:.4g}.")
+    return tuple(pair)
+
+
+#: what reset(options=...) may choose instead of drawing it
+CHOICES = {"organ": "a pair (shape, scale)", "start": f"a whole number below {_organs.STARTS}", "goal": "(along, around [rad])",
+           "phase": f"a whole number below {_organs.PHASES}, of a stomach that breathes"}
+
+
+def chosen(options, further=()):
+    """What of the next episode is not drawn: options of reset() without those that `further` names; or vibe.Error."""
+    if options is None:
+        return {}
+    if not isinstance(options, dict):
+        raise vibe.Error(f"'options' is {vibe._shown(options)}; give a dictionary, or None.")
+    wrong = [name for name in options if name not in CHOICES and name not in further]
+    if wrong:
+        raise vibe.Error(f"'options' has no {vibe._shown(wrong[0])}; it may choose {', '.join([*CHOICES, *further])}.")
+    found = {name: value for name, value in options.items() if name in CHOICES}
+    if "organ" in found:
+        found["organ"], = pairs_of([found["organ"]])
+    for name, count in (("start", _organs.STARTS), ("phase", _organs.PHASES)):
+        if name in found:
+            whole(name, found[name], 0, count - 1)
+    goal = found.get("goal", (0, 0))
+    if not isinstance(goal, (list, tuple)) or len(goal) != 2 or not all(map(is_number, goal)) or not 0 <= goal[0] <= 1:
+        raise vibe.Error(f"'goal' is {vibe._shown(goal)}; give (share of the axis from 0 to 1, angle around it [rad]).")
+    return found
