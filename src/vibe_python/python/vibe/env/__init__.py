@@ -16,8 +16,9 @@ from . import tasks as _tasks  # noqa: F401 - each of its classes adds itself to
 from .environment import Environment, VectorEnvironment
 from .episodes import TASKS, Task
 from .expert import Expert
+from .goals import GoalEnvironment
 from .organs import BREATHING, HELD_OUT, TRAINING
 
 globals().update(TASKS)
-__all__ = ["BREATHING", "Environment", "Expert", "HELD_OUT", "TASKS", "TRAINING", "Task", "VectorEnvironment", *TASKS]
+__all__ = ["BREATHING", "Environment", "Expert", "GoalEnvironment", "HELD_OUT", "TASKS", "TRAINING", "Task", "VectorEnvironment", *TASKS]
 __doc__ = (__doc__ or "") + "".join(f"\n    {name:11}{task.summary()}" for name, task in TASKS.items()) + "\n"

@@ -29,7 +29,10 @@ class Expert:
     def action(self, observation):
         if not self._begun:
             raise vibe.Error("The expert has not begun; call its reset() after that of the environment.")
-        return self._policy.action(self.environment.task, observation).astype(np.float32)
+        task = self.environment.task
+        if "tip" not in observation:  # of a GoalEnvironment
+            observation = {name: value[0] for name, value in task.observe().items()}
+        return self._policy.action(task, observation).astype(np.float32)
 
 
 def _shares(task, speed):
