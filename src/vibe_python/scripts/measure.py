@@ -143,7 +143,7 @@ def memory(particles, impedance):
 
 def resets():
     """Times [ms] of restore(), of the first step after it, and of reset() with a goal that is known."""
-    organ = organs.organ("sthenic", 1.0, 1000)
+    organ = organs.organ(("sthenic", 1.0), 1000)
     simulation, spent = organ.take(), []
     restored = median(lambda: simulation.restore(organ.starts[1][0]), 50)
     for _ in range(20):

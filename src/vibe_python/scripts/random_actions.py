@@ -111,7 +111,7 @@ def one_round(number, particles, actions):
 def meet_all(particles):
     """Every stomach is prepared, and has as many simulations as a round uses at once: what is kept for the process."""
     for (shape, scale), breathing, step in itertools.product(ORGANS, BREATHS, (1 / 20, 1 / 60)):
-        organ = organs.organ(shape, scale, particles, breathing, step)
+        organ = organs.organ((shape, scale), particles, breathing, step)
         for simulation in [organ.take() for _ in range(3)]:
             simulation.run(30, insertion=0.2, tip_up_down=0.6, insufflate=True)
             organ.give(simulation)

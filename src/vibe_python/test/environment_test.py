@@ -11,7 +11,7 @@ import numpy as np
 
 import vibe
 import vibe.env
-from vibe.env import BREATHING, TASKS, Environment, Expert, Reach, VectorEnvironment, api, contract, demonstrations
+from vibe.env import BREATHING, TASKS, Environment, Expert, GoalEnvironment, Reach, VectorEnvironment, api, contract, demonstrations
 from vibe.env.tip import tip_motion
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../scripts"))
@@ -211,7 +211,8 @@ class EnvironmentTest(unittest.TestCase):
             environment.close()
 
     def test_random_actions_give_finite_numbers(self):
-        with mock.patch.object(random_actions, "ORGANS", SMALL["organs"]):
+        few = {name: TASKS[name] for name in ("Reach", "Inspect", "Mark", "Bite", "SutureSet")}
+        with mock.patch.multiple(random_actions, ORGANS=SMALL["organs"], TASKS=few):
             self.assertEqual(random_actions.one_round(0, 300, 40), (4 * 40 + 4 * 2 * 40, []))
         self.assertEqual(random_actions.faults("seen", {"a": np.ones(3), "b": np.array([1, np.nan])}), ["seen.b"])  # control
         self.assertAlmostEqual(random_actions.growth([3, 4, 5], [7, 8, 9]), 2)
@@ -265,6 +266,71 @@ class EnvironmentTest(unittest.TestCase):
             wanted = scaled.T @ np.linalg.solve(scaled @ scaled.T + 4e-6 * np.eye(3), turn[:3, :3] @ speed)
             np.testing.assert_allclose(tip_motion(jacobian, turn, speed, limits), wanted / max(1, abs(wanted).max()), rtol=1e-6, atol=1e-9)
 
+    def test_what_varies_is_drawn_by_the_seed_and_belongs_to_the_state(self):
+        vary = {"tissue.young_modulus": ("uniform", 6e4, 1.6e5), "gas.regulated_pressure": ("choice", ["8 mmHg", "12 mmHg"]),
+                "action.noise": ("uniform", 0.1, 0.2)}
+        environment = Environment("Reach", vary=vary, **SMALL)
+
+        def future(one, seed=5):
+            return [one.step(action)[0] for action in self.actions(one, seed, 4)]
+
+        first, info = environment.reset(seed=1)
+        self.assertEqual(set(info["varied"]), set(vary))
+        rows = future(environment)
+        self.assertTrue(equal(first, environment.reset(seed=1)[0]))
+        snapshot = environment.snapshot()
+        self.assertTrue(all(map(equal, rows, future(environment))))
+        again = Environment("Reach", vary=vary, **SMALL)
+        again.restore(snapshot)
+        self.assertTrue(all(map(equal, rows, future(again))))
+        self.assertEqual(environment.reset()[1], again.reset()[1])
+        self.assertNotEqual(info["varied"], environment.reset(seed=2)[1]["varied"])  # control
+        chosen = environment.reset(seed=1, options={"varied": {"gas.regulated_pressure": 900.0}})[1]["varied"]
+        self.assertEqual(chosen, {**info["varied"], "gas.regulated_pressure": 900.0})
+        self.assertAlmostEqual(environment.simulation.pressure, 900, delta=5)
+        together = VectorEnvironment("Reach", 2, threads=1, vary=vary, **SMALL)
+        self.assertTrue(equal(first, row(together.reset(seed=[3, 1])[0], 1)))
+        together.step(np.stack([self.actions(environment, 6, 1)[0], self.actions(environment, 5, 1)[0]]))
+        self.assertTrue(equal(rows[0], row(together.task.observe(), 1)))
+
+    def test_an_action_arrives_late(self):
+        moved = {}
+        for delay in (0.0, 0.1):
+            environment = Environment("Reach", vary={"action.delay": ("uniform", delay, delay)}, **SMALL)
+            joints = [environment.reset(seed=1)[0]["joints"][1]] + [environment.step([0, 1, 0, 0])[0]["joints"][1] for _ in range(4)]
+            moved[delay] = list(np.diff(joints) > 0.01)
+        self.assertEqual(moved, {0.0: [True] * 4, 0.1: [False, False, True, True]})
+
+    def test_organs_may_be_scene_files_and_goals_have_settings(self):
+        environment = Environment("Reach", particles=300, organs=["package://vibe_core/scenes/stomach_j.yaml"], tolerance=0.05,
+                                  scene={"gas": {"regulated_pressure": 900}}, along=(0.5, 0.5), around=(0, 0))
+        environment.reset(seed=1)
+        self.assertAlmostEqual(environment.simulation.pressure, 900, delta=5)
+        self.assertEqual(environment.task.place[0], (0.5, 0))
+        self.assertEqual(environment.task.tolerance, 0.05)
+
+    def test_goals_in_the_form_of_hindsight(self):
+        environment, plain = GoalEnvironment(**SMALL), Environment(**SMALL)
+        environment.reset(seed=3), plain.reset(seed=3)
+        expert, achieved, desired, rewards, over = Expert(environment), [], [], [], False
+        expert.reset()
+        seen = environment.task.observe()
+        while not over:
+            action = expert.action(row(seen, 0))
+            found, reward, over, truncated, _ = environment.step(action)
+            self.assertEqual(over, plain.step(action)[2])
+            self.assertIn(found, environment.observation_space)
+            seen, over = environment.task.observe(), over or truncated
+            achieved.append(found["achieved_goal"]), desired.append(found["desired_goal"]), rewards.append(reward)
+        self.assertEqual(rewards, [-1] * (len(rewards) - 1) + [0])
+        np.testing.assert_array_equal(environment.compute_reward(achieved, desired, {}), rewards)
+        np.testing.assert_array_equal(environment.compute_reward(achieved[-3:], achieved[-1], {})[-1], 0)  # in hindsight
+        self.assertEqual(environment.compute_reward(achieved[0], desired[0], {}).shape, ())
+        self.assertEqual(list(environment.compute_truncated(achieved, desired, {})), [False] * len(rewards))
+        np.testing.assert_array_equal(found["observation"][:10], np.concatenate([seen["joints"][0], seen["tip"][0]]))
+        with self.assertRaisesRegex(vibe.Error, "The task Mark does not end at a place"):
+            GoalEnvironment("Mark", **SMALL)
+
     def test_experts_reach(self):
         for mode in ("joints", "tip"):
             environment = Environment("Reach", action=mode, **SMALL)
@@ -280,9 +346,10 @@ class EnvironmentTest(unittest.TestCase):
         with self.assertRaisesRegex(vibe.Error, "no expert for the task Inspect with action='tip'"):
             Expert(Environment("Inspect", action="tip", **SMALL))
 
-    def test_trainees_mark(self):
-        environment = Environment("Mark", **SMALL)
-        self.assertTrue(demonstrations.episode(environment, Expert(environment), 1)[1])
+    def test_trainees_mark_and_experts_retract_cinch_and_stop_bleeding(self):
+        for task in ("Mark", "Retract", "Cinch", "StopBleeding"):
+            environment = Environment(task, **SMALL)
+            self.assertTrue(demonstrations.episode(environment, Expert(environment), 1)[1], task)
 
     def test_demonstrations_are_laid_out_as_robomimic_reads_them(self):
         try:
@@ -328,6 +395,18 @@ class EnvironmentTest(unittest.TestCase):
                                ("without render_mode", other.render),
                                ("acts in an Environment", lambda: Expert(VectorEnvironment("Reach", 2, **SMALL))),
                                ("expert has not begun", lambda: Expert(environment).action({})),
+                               ("tissue.young: is not a known key", lambda: Environment("Reach", vary={"tissue.young": ("uniform", 1, 2)})),
+                               ("'-1' is out of range", lambda: Environment("Reach", vary={"tissue.density": ("uniform", -1, 900)})),
+                               ("use 'organs'", lambda: Environment("Reach", vary={"geometry.scale": ("uniform", 1, 2)})),
+                               ("use 'breathing'", lambda: Environment("Reach", scene={"breathing": {}}, breathing="slight")),
+                               ("'vary' has 'action.dealy'", lambda: Environment("Reach", vary={"action.dealy": ("uniform", 0, 1)})),
+                               ("'vary' is 7", lambda: Environment("Reach", vary=7)),
+                               ("'action.delay' of 'vary' is", lambda: Environment("Reach", vary={"action.delay": ("normal", 0, 1)})),
+                               ("'scene' is 'a.yaml'", lambda: Environment("Reach", scene="a.yaml")),
+                               ("has no tolerance", lambda: Environment("Inspect", tolerance=1e-3)),
+                               ("'tolerance' is 1", lambda: Environment("Reach", tolerance=1)),
+                               ("which does not vary", lambda: environment.reset(options={"varied": {"a.b": 1}})),
+                               ("'varied' is 3", lambda: environment.reset(options={"varied": 3})),
                                ("'rate' of the task", lambda: Environment(type("Mine", (Reach,), {"rate": 0}))),
                                ("'along' is", lambda: Environment(type("Mine", (Reach,), {"along": (0.6, 0.4)})))):
             with self.assertRaisesRegex(vibe.Error, sentence):

@@ -84,7 +84,8 @@ class Environment(_Episodes, api.Env):
 
     task       a name in vibe.env.TASKS, MODULE:NAME of one that a module of yours defines, or a class
     particles  of the wall: 1,000 by default (docs/python.md says what that costs in accuracy)
-    organs     (shape, scale) of the stomachs that reset() draws from, uniformly; vibe.env.TRAINING, vibe.env.HELD_OUT
+    organs     (shape, scale) of the stomachs, and scene files, that reset() draws from, uniformly; vibe.env.TRAINING,
+               vibe.env.HELD_OUT
     action     'joints': shares of the greatest joint speeds, then the buttons; 'tip': of the tip's velocity, in tasks
                that move nothing else
     camera     (width, height, field of view [rad]): adds pictures to the observation, (height, width) each, 0 where
@@ -95,13 +96,20 @@ class Environment(_Episodes, api.Env):
                simulated time per step [s], a whole part of that of an action; None: one step per action. Shorter steps
                are slower and more accurate (docs/python.md)
     breathing  None (still), 'slight', 'moderate' or 'strong': the diaphragm moves the stomach (vibe.env.BREATHING)
+    scene      other values of keys of the scene, by section, as vibe.load() takes them
+    vary       what reset() draws anew, by SECTION.KEY of the scene, 'action.delay' [s] and 'action.noise' (standard
+               deviation of the shares): ('uniform', least, greatest), ('normal', mean, standard deviation) or
+               ('choice', values); info['varied'] says what was drawn. A scene with new values takes a second to prepare
+    tolerance, along, around
+               of the goal, instead of the task's
     max_episode_steps
                actions until an episode is truncated, instead of the task's
     render_mode
                None, or 'rgb_array': render() gives a picture of the wall, without tool and thread
 
     reset(seed) draws stomach, start and goal; the same seed gives the same episode, to the bit. reset(options=...) chooses
-    instead: {'organ': (shape, scale), 'start': 0 to 3, 'goal': (along, around [rad]), 'phase': 0 to 7}. Steps after an
+    instead: {'organ': (shape, scale) or a scene file, 'start': 0 to 3, 'goal': (along, around [rad]), 'phase': 0 to 7,
+    'varied': {name: value}}, which a curriculum can use. Steps after an
     episode has ended raise vibe.Error. snapshot(), restore(), copy.deepcopy() and pickle take a begun episode with them.
     """
 
@@ -134,6 +142,7 @@ class Environment(_Episodes, api.Env):
         if seed is not None or self._random is None:
             self._random = _generator(seed)
         super().reset(seed=None if seed is None else int(seed))
+        self._ended = True  # until there is another episode
         self.task.begin(0, self._random, choices)
         self._ended = False
         return self._seen()
@@ -207,6 +216,7 @@ class VectorEnvironment(_Episodes, api.VectorEnv):
         return self._seen()
 
     def _begin(self, slot, choices=None):
+        self._ended[slot] = True  # until there is another episode
         self.task.begin(slot, self._random[slot], choices)
         self._ended[slot] = False
 

@@ -13,8 +13,9 @@ import vibe
 
 from . import organs as _organs
 from .api import REAL, gymnasium, spaces
-from .settings import FAR, PICTURES, STRONG, camera_of, is_number, pairs_of, pictures_of, range_of, whole
+from .settings import FAR, PICTURES, STRONG, camera_of, is_number, organs_of, pictures_of, range_of, whole
 from .tip import TIP_SPEED, tip_motion
+from .variation import Variation
 
 INSUFFLATE = vibe.BUTTONS.index("insufflate")
 SUCCESS = 10.0  # reward of an episode that succeeds
@@ -41,6 +42,7 @@ class Task:
     joints = vibe.JOINTS[:4]  #: that actions move
     speeds = np.array([0.05, 1.0, 1.0, 1.0])  #: of the joints at action 1 [m/s], [rad/s]
     buttons = False  #: whether the action ends with the six buttons, pressed above 0
+    sections = {}  #: values of the scene, by section, beside those that environments are given
     along, around = (0.3, 0.72), (-1.2, 1.2)  #: uniform distribution of the goal: share of the axis, angle around it [rad]
 
     def __init_subclass__(cls, **keywords):
@@ -49,7 +51,8 @@ class Task:
             _register(cls)
 
     def __init__(self, count=1, *, particles=1000, organs=_organs.TRAINING, action="joints", threads=1, camera=None,
-                 pictures=None, breathing=None, step_period=None, max_episode_steps=None):
+                 pictures=None, breathing=None, step_period=None, max_episode_steps=None, scene=None, vary=None, tolerance=None,
+                 along=None, around=None):
         if not isinstance(action, str) or action not in ("joints", "tip"):
             raise vibe.Error(f"'action' is {vibe._shown(action)}; use 'joints' or 'tip'.")
         if breathing is not None and (not isinstance(breathing, str) or breathing not in _organs.BREATHING):
@@ -58,12 +61,17 @@ class Task:
             raise vibe.Error(f"The task {self.name} moves more than the tip; use action='joints'.")
         if not is_number(self.rate) or not self.rate > 0:
             raise vibe.Error(f"'rate' of the task {self.name} is {vibe._shown(self.rate)}; give the actions per second.")
-        range_of("along", self.along, 0, 1), range_of("around", self.around, -2 * math.pi, 2 * math.pi)
+        self.along = range_of("along", self.along if along is None else along, 0, 1)
+        self.around = range_of("around", self.around if around is None else around, -2 * math.pi, 2 * math.pi)
+        self.tolerance = self._tolerance(tolerance)
         self.count, self.particles = whole("count", count, 1, 65536), whole("particles", particles, 100, 1000000)
-        self.organs, self.breathing = pairs_of(organs), breathing
+        self.organs, self.breathing = organs_of(organs), breathing
         self.mode, self.threads, self.camera = action, whole("threads", threads, 1, 1024), camera_of(camera)
         self.pictures, self.step_period = pictures_of(pictures, self.camera), self._period(step_period)
         self.length = self.steps_of_episode() if max_episode_steps is None else whole("max_episode_steps", max_episode_steps, 1, 10**9)
+        self.variation = Variation(count, scene, vary, breathing, self.sections)
+        for sections in self.variation.scenes():  # what no scene has is refused before any episode
+            _organs.load(self.organs[0], 100, self.step_period, sections)
         self.simulation = [None] * count
         self.organ = [None] * count
         self.random = [np.random.default_rng(k) for k in range(count)]
@@ -75,6 +83,17 @@ class Task:
         self.events = [[] for _ in range(count)]
         self.best_force = np.zeros(count)
         self.closed = False
+
+    def _tolerance(self, tolerance):
+        """The task's, or that of the setting [m]."""
+        known = getattr(self, "tolerance", None)
+        if tolerance is None:
+            return known
+        if known is None:
+            raise vibe.Error(f"The task {self.name} has no tolerance; leave it out.")
+        if not is_number(tolerance) or not 1e-4 <= tolerance <= 0.1:
+            raise vibe.Error(f"'tolerance' is {vibe._shown(tolerance)}; give a distance from 0.0001 to 0.1 m.")
+        return float(tolerance)
 
     @property
     def time(self):
@@ -154,8 +173,9 @@ class Task:
         if "phase" in choices and not self.breathing:
             raise vibe.Error("'phase' is chosen for a stomach that does not breathe; leave it out, or name a 'breathing'.")
         self.random[slot] = random
-        drawn = self.organs[random.integers(len(self.organs))]
-        organ = _organs.organ(*choices.get("organ", drawn), self.particles, self.breathing, self.step_period)
+        stomach = self.organs[random.integers(len(self.organs))]
+        scene = vibe._overrides(self.variation.begin(slot, random, choices.get("varied", {}))) or "{}"
+        organ = _organs.organ(choices.get("organ", stomach), self.particles, self.breathing, self.step_period, scene)
         self._use(slot, organ)
         start = choices.get("start", int(random.integers(len(organ.starts))))
         phases = organ.starts[start]
@@ -208,8 +228,8 @@ class Task:
         """For subclasses: what begins with an episode."""
 
     #: what no episode changes; everything else that an instance holds is the state of its episodes
-    _constant = {"count", "particles", "organs", "breathing", "mode", "threads", "camera", "pictures", "step_period", "length",
-                 "closed", "action_space", "observation_space", "seen", "events"}
+    _constant = {"count", "particles", "organs", "tolerance", "along", "around", "breathing", "mode", "threads", "camera",
+                 "pictures", "step_period", "length", "closed", "action_space", "observation_space", "seen", "events"}
 
     def state(self):
         """Everything that the episodes are in the midst of, as a dictionary that can be pickled; but the events of the last action."""
@@ -239,6 +259,8 @@ class Task:
             raise vibe.Error("The environment has not begun; call reset() first.")
         self.seen = None  # whoever has the simulation may have restored it
         before = self.current()
+        if self.variation.vary:
+            actions = self.variation.arrived(actions, self.rate, 3 if self.mode == "tip" else len(self.joints))
         joints = before["joints"].copy()
         joints[:, : len(self.joints)] += self._speed(actions) * (self.speeds / self.rate)
         buttons = np.zeros((self.count, len(vibe.BUTTONS)))
@@ -331,7 +353,8 @@ class Task:
     def measures(self, slot):
         """What `info` says of a slot."""
         return {"organ": self.organ[slot].name, "time": float(self.time[slot]),
-                "max_force": float(self.best_force[slot]), "events": [event.kind for event in self.events[slot]]}
+                "max_force": float(self.best_force[slot]), "events": [event.kind for event in self.events[slot]],
+                **({"varied": dict(self.variation.values[slot])} if self.variation.vary else {})}
 
     def expert(self, seed):
         """For subclasses: a policy with reset(task) and action(task, observation) that shows how it is done, or None."""

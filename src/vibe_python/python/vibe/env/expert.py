@@ -138,3 +138,44 @@ class Pursuing:
         shares = (joints - simulation.joints) * task.rate / task.speeds
         buttons = [1.0 if wanted[name] else -1.0 for name in vibe.BUTTONS]
         return np.clip(np.concatenate([shares, buttons]), -1, 1)
+
+
+class Retracting(Pursuing):
+    """The trainee until the helix holds as well as it can; then the scope is drawn back until the force is in the middle of
+    the band. The gain is a design choice."""
+
+    gain = 0.01  # [m/s/N]
+
+    def reset(self, task):
+        super().reset(task)
+        self.turned = False
+
+    def action(self, task, observation):
+        self.turned = self.turned or any(event.kind == "helix turned" for event in task.events[0])
+        if not self.turned:
+            return super().action(task, observation)
+        pull = np.mean(task.band) - np.linalg.norm(observation["wrench"][:3])
+        action = np.concatenate([np.zeros(len(vibe.JOINTS)), -np.ones(len(vibe.BUTTONS))])
+        action[0] = np.clip(-self.gain * pull / task.speeds[0], -1, 1)
+        action[len(vibe.JOINTS) + vibe.BUTTONS.index("helix_grab")] = 1
+        return action
+
+
+class Cinching:
+    """T-tag; then the thread is drawn until its tension is what `wanted` says of a task [N], or as far as it goes."""
+
+    patience = 20.0  # for the tension [s]
+
+    def __init__(self, wanted):
+        self.wanted = wanted
+
+    def reset(self, task):
+        self.tagged, self.drawn = False, False
+
+    def action(self, task, observation):
+        action = np.concatenate([np.zeros(len(vibe.JOINTS)), -np.ones(len(vibe.BUTTONS))])
+        self.drawn = self.drawn or task.tensions()[0] >= self.wanted(task) or task.time[0] > self.patience
+        if not self.drawn:
+            action[len(vibe.JOINTS) + vibe.BUTTONS.index("cinch" if self.tagged else "t_tag")] = 1
+        self.tagged = True
+        return action

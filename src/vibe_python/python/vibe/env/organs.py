@@ -2,6 +2,7 @@
 then kept for the process; all environments share them."""
 
 import functools
+import json
 import os
 import threading
 
@@ -25,23 +26,33 @@ _SETTLING = 3.0  # simulated time from the entry to the place [s]
 _INSUFFLATION = 60.0  # at most [s]
 
 
+def load(stomach, particles, step_period, sections):
+    """The model of (shape, scale), or of a scene file, with other values of its keys."""
+    sections = {**sections, "geometry": {**sections.get("geometry", {}), "particles": particles}}
+    if isinstance(stomach, str):
+        return vibe.load(stomach, render_surface=False, step_period=step_period, **sections)
+    sections["geometry"].update(zip(("shape", "scale"), stomach))
+    return vibe.load(render_surface=False, step_period=step_period, **sections)
+
+
 class Organ:
     """One stomach: its model, the states that episodes begin with (by place of the scope and phase of the breath), and
-    simulations that are free at present."""
+    simulations that are free at present. `stomach` is (shape, scale), or a scene file; `scene` a text of JSON: other
+    values of its keys."""
 
-    def __init__(self, shape, scale, particles, breathing, step_period):
-        self.name = f"{shape} {scale:g}" + (f", {breathing} breathing" if breathing else "")
+    def __init__(self, stomach, particles, breathing, step_period, scene):
         self._breath = None
-        sections = {"step_period": step_period}
+        sections = json.loads(scene)
         if breathing:
             rate, amplitude = BREATHING[breathing]
             self._breath = 1 / rate  # [s]
             sections["breathing"] = {"rate": rate, "amplitude": amplitude}
-        geometry = {"particles": particles, "shape": shape, "scale": scale}
-        self.model = vibe.load(geometry=geometry, render_surface=False, **sections)
+        self.model = load(stomach, particles, step_period, sections)
+        self.name = stomach if isinstance(stomach, str) else "{} {:g}".format(*stomach)
+        self.name += f", {breathing} breathing" if breathing else ""
         self.joint_speeds = np.array([speed for _, _, speed in self.model.joint_limits.values()])  # greatest [m/s], [rad/s]
         self.goals = {}  # of tasks, by what they are drawn from; see Task
-        self._key = shape, scale, particles, breathing, step_period
+        self._key = stomach, particles, breathing, step_period, scene
         self._begin_pool()
         simulation = self.take()
         self._insufflate(simulation)
@@ -110,6 +121,6 @@ class Organ:
         return triangle, weight, inside - self.model.particle_radius * self.anatomy.outward(triangle, weight)
 
 
-@functools.lru_cache(maxsize=None)
-def organ(shape, scale, particles, breathing=None, step_period=1 / 20):
-    return Organ(shape, scale, particles, breathing, step_period)
+@functools.lru_cache(maxsize=32)  # values that are drawn make ever new ones
+def organ(stomach, particles, breathing=None, step_period=1 / 20, scene="{}"):
+    return Organ(stomach, particles, breathing, step_period, scene)

@@ -40,15 +40,18 @@ def is_number(value):
     return isinstance(value, (int, float, np.integer, np.floating)) and np.isfinite(float(value))
 
 
-def pairs_of(organs):
-    """Pairs (shape, scale) as a tuple of tuples."""
+def organs_of(organs):
+    """Pairs (shape, scale) and scene files as a tuple."""
     pairs = tuple(organs) if isinstance(organs, (list, tuple)) else ()
     if not pairs:
-        raise vibe.Error("'organs' is empty or no list; give pairs (shape, scale), such as vibe.env.TRAINING.")
+        raise vibe.Error("'organs' is empty or no list; give pairs (shape, scale), such as vibe.env.TRAINING, or scene files.")
     for pair in pairs:
+        if isinstance(pair, str) and pair:
+            continue
         if not isinstance(pair, (list, tuple)) or len(pair) != 2 or pair[0] not in _organs.SHAPES or not is_number(pair[1]):
-            raise vibe.Error(f"'organs' holds {vibe._shown(pair)}; give pairs of a shape ({', '.join(_organs.SHAPES)}) and a scale.")
-    return tuple(tuple(pair) for pair in pairs)
+            raise vibe.Error(f"'organs' holds {vibe._shown(pair)}; give pairs of a shape ({', '.join(_organs.SHAPES)}) and a scale, "
+                             "or scene files.")
+    return tuple(pair if isinstance(pair, str) else tuple(pair) for pair in pairs)
 
 
 def camera_of(camera):
@@ -78,7 +81,7 @@ def range_of(name, pair, least, most):
 
 
 #: what reset(options=...) may choose instead of drawing it
-CHOICES = {"organ": "a pair (shape, scale)", "start": f"a whole number below {_organs.STARTS}", "goal": "(along, around [rad])",
+CHOICES = {"organ": "a pair (shape, scale), or a scene file", "varied": "a dictionary of values of what 'vary' names", "start": f"a whole number below {_organs.STARTS}", "goal": "(along, around [rad])",
            "phase": f"a whole number below {_organs.PHASES}, of a stomach that breathes"}
 
 
@@ -93,10 +96,12 @@ def chosen(options, further=()):
         raise vibe.Error(f"'options' has no {vibe._shown(wrong[0])}; it may choose {', '.join([*CHOICES, *further])}.")
     found = {name: value for name, value in options.items() if name in CHOICES}
     if "organ" in found:
-        found["organ"], = pairs_of([found["organ"]])
+        found["organ"], = organs_of([found["organ"]])
     for name, count in (("start", _organs.STARTS), ("phase", _organs.PHASES)):
         if name in found:
             whole(name, found[name], 0, count - 1)
+    if not isinstance(found.get("varied", {}), dict):
+        raise vibe.Error(f"'varied' is {vibe._shown(found['varied'])}; give a dictionary of values of what 'vary' names.")
     goal = found.get("goal", (0, 0))
     if not isinstance(goal, (list, tuple)) or len(goal) != 2 or not all(map(is_number, goal)) or not 0 <= goal[0] <= 1:
         raise vibe.Error(f"'goal' is {vibe._shown(goal)}; give (share of the axis from 0 to 1, angle around it [rad]).")

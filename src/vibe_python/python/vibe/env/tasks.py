@@ -6,7 +6,7 @@ import numpy as np
 import vibe
 
 from .episodes import Task
-from .expert import Inspecting, Pursuing, Reaching
+from .expert import Cinching, Inspecting, Pursuing, Reaching, Retracting
 
 
 class Reach(Task):
@@ -167,3 +167,145 @@ class SutureSet(_Procedure):
         for slot in np.flatnonzero(success):
             success[slot] = any(t["stage"] == "cinched" and t["technique"] == "u" for t in self.simulation[slot].threads())
         return self.approach(before, after) + bites, success
+
+
+class Sleeve(_Procedure):
+    """Six sets along the body as the trainee plans them, each of seven bites, cinched and recognised as U. The goal of the
+    observation has no meaning here."""
+
+    name = "Sleeve"
+    reward = "1 for every bite, 10 for every set"
+    seconds = 1200.0
+    sets = 6
+    protocol = "goals:\n  - sleeve: {{sets: 6}}\n"
+
+    def judge(self, before, after):
+        bites, cinched = (np.array([sum(event.kind == kind for event in events) for events in self.events]) for kind in ("bite", "cinched"))
+        success = np.zeros(self.count, bool)
+        for slot in np.flatnonzero(cinched):
+            done = [t["technique"] for t in self.simulation[slot].threads() if t["stage"] == "cinched"]
+            success[slot] = done.count("u") >= self.sets
+        return bites + 10.0 * cinched, success
+
+
+class Retract(_Procedure):
+    """A fold of the wall that the helix holds within 20 mm of a place, drawn with a force of 1 to 2 N on the tool for 3 s."""
+
+    name = "Retract"
+    reward = f"{APPROACH}; 1 when the helix takes hold there, 1 per second within the band; -1 for every slip and every bite"
+    seconds = 40.0
+    tolerance = 20e-3  # with which the helix takes hold 10 to 15 mm beside where the trainee wants the needle
+    band = (1.0, 2.0)  # [N]
+    hold = 3.0  # [s]
+    further = {**_Procedure.further, "held": ((1,), "how long the force has been within the band [s]")}
+    protocol = Bite.protocol
+
+    def begun(self, slot):
+        self.held = getattr(self, "held", np.zeros(self.count))
+        self.there = getattr(self, "there", np.zeros(self.count, bool))  # the grip is near the place
+        self.held[slot], self.there[slot] = 0, False
+
+    def judge(self, before, after):
+        takes = np.array([self.near_goal(slot, "grab", after) for slot in range(self.count)])
+        faults = np.array([sum(event.kind in ("slip", "bite") for event in events) for events in self.events])
+        self.there = (self.there | takes) & after["grips"]
+        force = np.linalg.norm(after["wrench"][:, :3], axis=1)
+        within = self.there & (force >= self.band[0]) & (force <= self.band[1])
+        self.held = np.where(within, self.held + 1 / self.rate, 0)
+        return self.approach(before, after) + takes + within / self.rate - faults, self.held >= self.hold - 1e-9
+
+    def observe_further(self, seen):
+        return {**super().observe_further(seen), "held": self.held[:, None]}
+
+    def expert(self, seed):
+        return Retracting(seed)
+
+
+class _Sewn(_Procedure):
+    """Tasks that begin with bites, which the trainee has made before: `sewing` is its protocol."""
+
+    seconds = 30.0
+    places = 2  # sets per start of a stomach; each takes seconds when it is first asked for
+
+    def _set_goal(self, slot, organ, start, number, place):
+        super()._set_goal(slot, organ, start, number % self.places, place)
+
+    def begun(self, slot):
+        simulation, made = self.simulation[slot], self.organ[slot].goals
+        along, around = self.place[slot]
+        key = type(self), simulation.hash(), along, around
+        if key not in made:
+            text = "name: sewing\nskill: {like: expert, look_time: 0 s}\n" + self.sewing.format(along=along, around=around)
+            simulation.follow(vibe.Trainee(self.organ[slot].model, text, seed=1))
+            made[key] = simulation.snapshot()
+        simulation.restore(made[key])
+
+    def tensions(self):
+        """Of the thread, the greatest (count,) [N]."""
+        return np.array([max([0.0, *(simulation.threads() or [{"tension": []}])[-1]["tension"]]) for simulation in self.simulation])
+
+
+class Cinch(_Sewn):
+    """The thread of a set of seven bites, after its T-tag, drawn to the tension that is asked for within 20 %, and cinched
+    there. The goal of the observation is the middle of the set."""
+
+    name = "Cinch"
+    reward = "1 per newton that the tension comes nearer; -5 for every tear-out"
+    around = SutureSet.around
+    further = {**_Procedure.further, "tension": ((2,), "of the thread, and the one that is asked for [N]")}
+    asked = (1.0, 2.5)  # uniform distribution [N]
+    share = 0.2
+    sewing = SutureSet.protocol.replace("width: 60 mm", "width: 60 mm, cinched: false")
+
+    def begun(self, slot):
+        super().begun(slot)
+        self.wanted = getattr(self, "wanted", np.zeros(self.count))
+        self.tension = getattr(self, "tension", np.zeros(self.count))
+        self.wanted[slot], self.tension[slot] = self.random[slot].uniform(*self.asked), 0
+
+    def judge(self, before, after):
+        tension = self.tensions()
+        nearer = np.abs(self.tension - self.wanted) - np.abs(tension - self.wanted)
+        self.tension = tension
+        torn = np.array([sum(event.kind == "tear-out" for event in events) for events in self.events])
+        success = np.array([any(event.kind == "cinched" for event in events) for events in self.events])
+        for slot in np.flatnonzero(success):
+            drawn = self.simulation[slot].threads()[-1]["cinch_tension"]
+            success[slot] = abs(drawn - self.wanted[slot]) <= self.share * self.wanted[slot]
+        return nearer - 5.0 * torn, success
+
+    def observe_further(self, seen):
+        return {**super().observe_further(seen), "tension": np.stack([self.tension, self.wanted], axis=1)}
+
+    def expert(self, seed):
+        return Cinching(lambda task: 0.97 * task.wanted[0])
+
+
+class StopBleeding(_Sewn):
+    """A bleeding stopped: every one of four bites bleeds briskly, which T-tag and cinch end."""
+
+    name = "StopBleeding"
+    reward = "-1 per millilitre of blood"
+    around = SutureSet.around
+    sections = {"bleeding": {"mild_probability": 0.0, "brisk_probability": 1.0}}
+    further = {**_Procedure.further, "blood": ((1,), "that was lost in the episode [mL]")}
+    sewing = Cinch.sewing.replace("bites: 7", "bites: 4")
+
+    def begun(self, slot):
+        super().begun(slot)
+        self.blood = getattr(self, "blood", np.zeros((self.count, 2)))  # lost in the episode; before it [mL]
+        self.blood[slot] = 0, self._lost(slot)
+
+    def _lost(self, slot):
+        return 1e6 * self.simulation[slot].procedure()["blood_lost"]
+
+    def judge(self, before, after):
+        lost = self.blood[:, 0].copy()
+        self.blood[:, 0] = [self._lost(slot) - self.blood[slot, 1] for slot in range(self.count)]
+        return lost - self.blood[:, 0], np.array([any(event.kind == "cinched" for event in events) for events in self.events])
+
+    def observe_further(self, seen):
+        return {**super().observe_further(seen), "blood": self.blood[:, :1]}
+
+    def expert(self, seed):
+        return Cinching(lambda task: 1.0)

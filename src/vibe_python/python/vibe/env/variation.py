@@ -1,0 +1,96 @@
+"""What reset() draws anew besides stomach, start and goal: values of the scene, and what happens to actions on their way."""
+
+import copy
+
+import numpy as np
+
+import vibe
+
+from .settings import is_number
+
+OF_ACTIONS = ("action.delay", "action.noise")  # of actions [s]; standard deviation of the noise on their shares
+#: keys of the scene for which environments have settings of their own
+_SETTINGS = {"geometry.particles": "particles", "geometry.shape": "organs", "geometry.scale": "organs", "step_period": "step_period"}
+
+
+class Variation:
+    """Other values of a scene, of which some are drawn: `scene` are sections as vibe.load() takes them, `vary` is a
+    dictionary from SECTION.KEY or one of OF_ACTIONS to a distribution in SI units, ('uniform', least, greatest), ('normal',
+    mean, standard deviation) or ('choice', values). `of_task` are sections that the task has, unless others are given. Raises vibe.Error for what is none of these."""
+
+    def __init__(self, count, scene, vary, breathing, of_task):
+        if scene is not None and not isinstance(scene, dict):
+            raise vibe.Error(f"'scene' is {vibe._shown(scene)}; give a dictionary of sections, such as {{'gas': {{'regulated_pressure': 900}}}}, "
+                             "and scene files as 'organs'.")
+        self.scene, self.vary = {**of_task, **(scene or {})}, _distributions(vary)
+        for name in (*self.vary, *self.scene, *(f"geometry.{key}" for key in self.scene.get("geometry") or {})):
+            if name in _SETTINGS or breathing and name.split(".")[0] == "breathing":
+                raise vibe.Error(f"The environment has a setting of its own for '{name}'; use '{_SETTINGS.get(name, 'breathing')}'.")
+        self.values = [{} for _ in range(count)]  # that were drawn
+        self._sent = [[] for _ in range(count)]  # actions that have not arrived
+        self._noise = [None] * count  # its generators
+
+    def scenes(self):
+        """Sections to try before any episode: with the ends of each distribution, its mean, all of its choices."""
+        tried = [{name: value} for name, given in self.vary.items() if name not in OF_ACTIONS
+                 for value in {"uniform": given[1:], "normal": given[1:2], "choice": given[-1]}[given[0]]]
+        return [self._scene(values) for values in tried or [{}] * bool(self.scene)]
+
+    def begin(self, slot, random, chosen):
+        """Draws the values of an episode, but for those that are chosen. Returns the sections of its scene."""
+        for name in chosen:
+            if name not in self.vary:
+                raise vibe.Error(f"'varied' of 'options' has {vibe._shown(name)}, which does not vary; give some of "
+                                 f"{', '.join(self.vary) or 'nothing'}.")
+        drawn = {name: _drawn(given, random) for name, given in self.vary.items()}
+        self.values[slot], self._sent[slot] = {**drawn, **chosen}, []
+        self._noise[slot] = np.random.default_rng(random.integers(2**62)) if "action.noise" in self.vary else None
+        return self._scene(self.values[slot])
+
+    def arrived(self, actions, rate, shares):
+        """What the joints get of actions (count, numbers), of which the first are shares of speeds: late, and with noise."""
+        found = actions.copy()
+        for slot, values in enumerate(self.values):
+            late = round(values.get("action.delay", 0.0) * rate)
+            self._sent[slot] = (self._sent[slot] + [actions[slot].copy()])[-1 - late:]
+            found[slot] = self._sent[slot][0] if len(self._sent[slot]) > late else 0
+            if values.get("action.noise"):
+                found[slot, :shares] += values["action.noise"] * self._noise[slot].standard_normal(shares)
+        return np.clip(found, -1, 1)
+
+    def _scene(self, values):
+        found = copy.deepcopy(self.scene)
+        for name, value in values.items():
+            if name not in OF_ACTIONS:
+                *sections, key = name.split(".")
+                place = found
+                for section in sections:
+                    place = place.setdefault(section, {})
+                place[key] = value
+        return found
+
+
+def _distributions(vary):
+    if vary is None:
+        return {}
+    if not isinstance(vary, dict) or not all(isinstance(name, str) and "." in name for name in vary):
+        raise vibe.Error(f"'vary' is {vibe._shown(vary)}; give a dictionary from SECTION.KEY to a distribution, such as "
+                         "{'tissue.young_modulus': ('uniform', 8e4, 1.4e5)}.")
+    for name, given in vary.items():
+        if name.startswith("action.") and name not in OF_ACTIONS:
+            raise vibe.Error(f"'vary' has {vibe._shown(name)}; of actions it may have {', '.join(OF_ACTIONS)}.")
+        kind, of = (given[0], list(given[1:])) if isinstance(given, (list, tuple)) and given else (None, [])
+        if kind == "choice" and len(of) == 1 and isinstance(of[0], (list, tuple)) and len(of[0]) > 0 and name not in OF_ACTIONS:
+            continue
+        if kind not in ("uniform", "normal") or len(of) != 2 or not all(map(is_number, of)) or of[1] < (of[0] if kind == "uniform" else 0):
+            raise vibe.Error(f"'{name}' of 'vary' is {vibe._shown(given)}; give ('uniform', least, greatest), ('normal', mean, standard "
+                             "deviation) or ('choice', [values]).")
+        if name in OF_ACTIONS and (kind != "uniform" or of[0] < 0):
+            raise vibe.Error(f"'{name}' of 'vary' is {vibe._shown(given)}; give ('uniform', least, greatest) of numbers from 0 on.")
+    return {name: tuple(given) for name, given in vary.items()}
+
+
+def _drawn(given, random):
+    if given[0] == "choice":
+        return given[1][random.integers(len(given[1]))]
+    return float(getattr(random, given[0])(*given[1:]))
