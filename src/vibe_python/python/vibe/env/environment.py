@@ -1,14 +1,17 @@
 """The environments: one episode at a time, and many at once."""
 
+from __future__ import annotations
+
 import copy
 import os
+from typing import Any, Optional, Union
 
 import numpy as np
 
 import vibe
 
 from . import api
-from .episodes import task_of
+from .episodes import Task, task_of
 from .settings import chosen, numbers, whole
 
 PICTURE = (480, 480, 1.7)  # of render(): width, height, field of view [rad]
@@ -41,14 +44,14 @@ class _Episodes:
         self.task, self.render_mode = kind(**further, **settings), render_mode
         self.metadata = {**self.metadata, "render_fps": kind.rate}
 
-    def snapshot(self):
+    def snapshot(self) -> dict[str, Any]:
         """Everything that decides the future: episodes, clocks, goals, what was seen of the wall, random generators. It can be
         pickled, and restored any number of times; the futures are equal to the bit."""
         kind = type(self.task)
         return {"task": f"{kind.__module__}.{kind.__qualname__}", "settings": repr(self._settings), "episodes": self.task.state(),
                 **copy.deepcopy({name: getattr(self, name) for name in ("_random", "_ended")})}
 
-    def restore(self, snapshot):
+    def restore(self, snapshot: dict[str, Any]) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
         """Back to a snapshot() of an environment of the same task and settings. Returns the observation and info, as reset()
         does, without events."""
         kind = type(self.task)
@@ -113,7 +116,7 @@ class Environment(_Episodes, api.Env):
     episode has ended raise vibe.Error. snapshot(), restore(), copy.deepcopy() and pickle take a begun episode with them.
     """
 
-    def __init__(self, task="Reach", *, render_mode=None, **settings):
+    def __init__(self, task: Union[str, type[Task]] = "Reach", *, render_mode: Optional[str] = None, **settings: Any) -> None:
         self._prepare(task, settings, render_mode)
         self._made_of, self._settings = task, settings
         self.observation_space, self.action_space = self.task.observation_space, self.task.action_space
@@ -128,7 +131,7 @@ class Environment(_Episodes, api.Env):
         return f"<vibe.env.Environment of {self.task.name or type(self.task).__name__}, {self.task.particles} particles>"
 
     @property
-    def simulation(self):
+    def simulation(self) -> vibe.Simulation:
         """The vibe.Simulation of the episode."""
         if not self._has_begun():
             raise vibe.Error("No episode has begun; call reset() first.")
@@ -137,7 +140,7 @@ class Environment(_Episodes, api.Env):
     def _seen(self):
         return {name: value[0] for name, value in self.task.observe().items()}, self.task.measures(0)
 
-    def reset(self, *, seed=None, options=None):
+    def reset(self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
         choices = chosen(options)
         if seed is not None or self._random is None:
             self._random = _generator(seed)
@@ -147,11 +150,11 @@ class Environment(_Episodes, api.Env):
         self._ended = False
         return self._seen()
 
-    def render(self):
+    def render(self) -> np.ndarray:
         """The wall as the endoscope sees it (480, 480, 3) uint8, without tool and thread."""
         return self._pictures()[0]
 
-    def step(self, action):
+    def step(self, action: Any) -> tuple[dict[str, np.ndarray], float, bool, bool, dict[str, Any]]:
         if self.task.closed:
             raise vibe.Error("The environment is closed; make another one.")
         if self._ended:
@@ -161,7 +164,7 @@ class Environment(_Episodes, api.Env):
         seen, info = self._seen()
         return seen, float(reward[0]), bool(success[0]), bool(truncated[0]), {**info, "is_success": bool(success[0])}
 
-    def close(self):
+    def close(self) -> None:
         self.task.close()
 
 
@@ -176,7 +179,8 @@ class VectorEnvironment(_Episodes, api.VectorEnv):
                'disabled': reset(options={'reset_mask': ...}) resets it
     """
 
-    def __init__(self, task="Reach", count=8, *, num_envs=None, threads=None, autoreset="next_step", render_mode=None, **settings):
+    def __init__(self, task: Union[str, type[Task]] = "Reach", count: int = 8, *, num_envs: Optional[int] = None, threads: Optional[int] = None,
+                 autoreset: str = "next_step", render_mode: Optional[str] = None, **settings: Any) -> None:
         if not isinstance(autoreset, str) or autoreset not in ("next_step", "same_step", "disabled"):
             raise vibe.Error(f"'autoreset' is {vibe._shown(autoreset)}; use 'next_step', 'same_step' or 'disabled'.")
         count = count if num_envs is None else num_envs
@@ -196,7 +200,7 @@ class VectorEnvironment(_Episodes, api.VectorEnv):
                     "render_mode": self.render_mode}
         return _made, (type(self), self._made_of, settings, self.snapshot() if self._has_begun() else None)
 
-    def reset(self, *, seed=None, options=None):
+    def reset(self, *, seed: Any = None, options: Optional[dict[str, Any]] = None) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
         """seed: one number, from which slot k gets seed + k; a list of one per slot; None. options: as those of Environment,
         for every slot, and 'reset_mask': which slots (count,) bool."""
         seeds = [None] * self.num_envs if seed is None else \
@@ -230,11 +234,11 @@ class VectorEnvironment(_Episodes, api.VectorEnv):
             info = self._add_info(info, row, slot)
         return info
 
-    def render(self):
+    def render(self) -> tuple[np.ndarray, ...]:
         """A picture per slot, as Environment.render()."""
         return self._pictures()
 
-    def step(self, actions):
+    def step(self, actions: Any) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         ended = self._ended.copy()
         if ended.any() and self.autoreset != "next_step":
             raise vibe.Error("An episode has ended, or none has begun; call reset() first.")

@@ -1,5 +1,9 @@
 """Policies that show how the tasks are done, for demonstrations and as a reference."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 
 import vibe
@@ -11,7 +15,7 @@ class Expert:
     """Actions for an Environment, by the policy that its task has for itself: Task.expert(). Call reset() after every reset
     of the environment."""
 
-    def __init__(self, environment, seed=1):
+    def __init__(self, environment: Any, seed: int = 1) -> None:
         environment = getattr(environment, "unwrapped", environment)
         task = getattr(environment, "task", None)
         if getattr(task, "count", None) != 1:
@@ -22,11 +26,11 @@ class Expert:
             raise vibe.Error(f"There is no expert for the task {task.name} with action={task.mode!r}.")
         self.environment = environment
 
-    def reset(self):
+    def reset(self) -> None:
         self._policy.reset(self.environment.task)
         self._begun = True
 
-    def action(self, observation):
+    def action(self, observation: dict[str, np.ndarray]) -> np.ndarray:
         if not self._begun:
             raise vibe.Error("The expert has not begun; call its reset() after that of the environment.")
         task = self.environment.task

@@ -1,5 +1,9 @@
 """Reaching as libraries of hindsight replay want it: what was achieved, what is desired, and a reward that follows from both."""
 
+from __future__ import annotations
+
+from typing import Any, Optional, Union
+
 import numpy as np
 
 import vibe
@@ -19,7 +23,7 @@ class GoalEnvironment(Environment):
     within the task's tolerance of the inside of the wall, otherwise -1; the episode then ends.
     """
 
-    def __init__(self, task="Reach", *, render_mode=None, **settings):
+    def __init__(self, task: Union[str, type[Reach]] = "Reach", *, render_mode: Optional[str] = None, **settings: Any) -> None:
         super().__init__(task, render_mode=render_mode, **settings)
         if not isinstance(self.task, Reach):
             raise vibe.Error(f"The task {self.task.name} does not end at a place that the tip reaches; give Reach, or one that derives from it.")
@@ -37,21 +41,21 @@ class GoalEnvironment(Environment):
         return {"observation": np.concatenate([seen[name].ravel() for name in self.parts]), "achieved_goal": seen["tip"],
                 "desired_goal": seen["goal"], **{name: value for name, value in seen.items() if name in PICTURES}}, info
 
-    def step(self, action):
+    def step(self, action: Any) -> tuple[dict[str, np.ndarray], float, bool, bool, dict[str, Any]]:
         seen, _, terminated, truncated, info = super().step(action)
         return seen, 0.0 if terminated else -1.0, terminated, truncated, info
 
-    def compute_terminated(self, achieved_goal, desired_goal, info=None):
+    def compute_terminated(self, achieved_goal: Any, desired_goal: Any, info: Any = None) -> np.ndarray:
         """Whether the goals are reached: arrays (..., 3) of places, of which the radius of the present organ's wall, 1.2 mm
         within 1 %, is taken off. Returns bool (...)."""
         apart = np.linalg.norm(np.subtract(achieved_goal, desired_goal, dtype=float), axis=-1)
         return apart - self.task.organ[0].model.particle_radius <= self.task.tolerance
 
-    def compute_truncated(self, achieved_goal, desired_goal, info=None):
+    def compute_truncated(self, achieved_goal: Any, desired_goal: Any, info: Any = None) -> np.ndarray:
         """False (...): what an episode has achieved does not cut it off."""
         return np.zeros(np.shape(achieved_goal)[:-1], bool)
 
-    def compute_reward(self, achieved_goal, desired_goal, info=None):
+    def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: Any = None) -> np.ndarray:
         """0 where compute_terminated(), otherwise -1: float (...)."""
         return np.where(self.compute_terminated(achieved_goal, desired_goal), 0.0, -1.0)
 

@@ -1,0 +1,27 @@
+# Stable-Baselines3 takes the environments as they are: checker, PPO, SAC with hindsight, some hundred actions each.
+# kind: computing
+# timeout: 1800
+# packages: vibe_core vibe_python
+source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
+
+if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ]; then
+  echo 'skipped Stable-Baselines3 (scripts/test --slow lets it learn)'
+  exit 0
+fi
+if ! /usr/bin/python3 -c 'import torch, venv' 2>/dev/null; then
+  echo 'skipped Stable-Baselines3 (python3-torch or python3-venv is not installed)'
+  exit 0
+fi
+/usr/bin/python3 -m venv --system-site-packages "$scratch/venv"
+if ! "$scratch/venv/bin/pip" install -q --no-deps stable-baselines3==2.4.1 gymnasium==1.0.0 cloudpickle==3.1.1 \
+  farama-notifications==0.0.4 >"$scratch/pip" 2>&1; then
+  echo 'skipped Stable-Baselines3 (it cannot be downloaded)'
+  exit 0
+fi
+
+learns() {
+  set +u && source "$root/devel/setup.bash"
+  "$scratch/venv/bin/python" -B "$root/src/vibe_python/scripts/learners.py" --actions 1000 --episodes 2 >"$scratch/said" &&
+    cat "$scratch/said" && [ "$(grep -c 'episodes succeed$' "$scratch/said")" -eq 2 ]
+}
+check 'PPO and SAC with hindsight of Stable-Baselines3' learns
