@@ -74,7 +74,7 @@ setup(
     python_requires=">=3.9",
     install_requires=["numpy"],
     extras_require={"gymnasium": ["gymnasium"], "demonstrations": ["h5py"]},
-    packages=["vibe", "vibe.env"],
+    packages=["vibe", "vibe.data", "vibe.env"],
     package_dir={"": "python"},
     package_data={"vibe": ["py.typed", "*.pyi"]},
     ext_modules=[Extension("vibe._core", sources=[])],

@@ -1,0 +1,293 @@
+"""LeRobot data sets, codebase versions v2.1 and v3.0: tables as Parquet, pictures as video, metadata beside them.
+
+    from vibe.data import lerobot
+
+    features = {"observation.state": {"dtype": "float32", "shape": [4], "names": ["insertion", "rotation", "up", "left"]},
+                "action": {"dtype": "float32", "shape": [4], "names": None},
+                "observation.images.endoscope": {"dtype": "video", "shape": [480, 640, 3], "names": ["height", "width", "channels"]}}
+    with lerobot.Writer("reach", version="v3.0", fps=20, features=features) as writer:
+        writer.add({"observation.state": states, "action": actions}, task="Reach the mark",
+                   videos={"observation.images.endoscope": pictures})
+"""
+
+import json
+import os
+
+import numpy as np
+
+import vibe
+
+from . import files, statistics, video
+
+CHUNK = 1000  # files in a folder
+DTYPES = ("float32", "float64", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64", "bool", "string")
+INDICES = {"timestamp": "float32", "frame_index": "int64", "episode_index": "int64", "index": "int64", "task_index": "int64"}
+LAYOUT = {"v3.0": {"data_path": "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet",
+                   "video_path": "videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4",
+                   "data_files_size_in_mb": 100, "video_files_size_in_mb": 200},
+          "v2.1": {"data_path": "data/chunk-{episode_chunk:03d}/episode_{episode_index:06d}.parquet",
+                   "video_path": "videos/chunk-{episode_chunk:03d}/{video_key}/episode_{episode_index:06d}.mp4"}}
+EPISODES = "meta/episodes/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"  # of v3.0
+PANDAS = {"pandas": json.dumps({"index_columns": ["task"], "column_indexes": [], "columns": [
+    {"name": "task_index", "field_name": "task_index", "pandas_type": "int64", "numpy_type": "int64", "metadata": None},
+    {"name": "task", "field_name": "task", "pandas_type": "unicode", "numpy_type": "object", "metadata": None}]})}  # task is the index
+CARD = """# {robot}: {total_episodes} episodes
+
+## Dataset description
+{about}
+
+## Robot
+`{robot}`; what its state and actions are is in `info.json`, by feature, in SI units.
+
+## Sensors and cameras
+{sensors}
+
+## Synchronization
+Row k of an episode is the moment k / {fps} s after its first row, and picture k of a video is of the same moment.
+
+## Collection procedure
+An episode is whole or not there. `success` and `split` of each are in the table of episodes.
+"""
+
+
+class Writer:
+    """Adds episodes to a data set in `folder`, which is new or was begun with the same arguments.
+
+    version   "v3.0" (LeRobot from 0.4 on) or "v2.1" (Open-H-Embodiment, GR00T)
+    fps       rows per second, a whole number
+    features  by name: {"dtype": "float32", "shape": [4], "names": [...] or None}. dtype is one of numpy's, "string" (shape
+              [1]) or "video" (shape [height, width, 3], both even). LeRobot's own (timestamp, frame_index, episode_index,
+              index, task_index) are added
+    robot     robot_type of the data set
+    about     a sentence for its card, meta/README.md: where it comes from, how it was collected
+
+    An episode is a file of each kind, which is written under another name, synchronised and renamed; info.json, which counts
+    episodes, comes last. So a kill or a full disk leaves all finished episodes, and a new Writer goes on after them. `episodes`
+    says how many there are. The same input gives the same bytes. An episode's videos are in memory while they are encoded.
+    Needs pyarrow, and av for videos. Raises vibe.Error, also where the folder was begun with other arguments."""
+
+    def __init__(self, folder, version="v3.0", fps=30, features=None, robot="vibe_endoscope", about="Made with the simulator ViBE for ROS."):
+        self._arrow, self._parquet = (files.needed(name, "pip install pyarrow") for name in ("pyarrow", "pyarrow.parquet"))
+        self.folder, self.about = os.fspath(folder), about
+        self.info = _begun(version, fps, features, robot)
+        self._videos = [name for name, feature in self.info["features"].items() if feature["dtype"] == "video"]
+        self._rows, self._stats, self._tasks = [], {}, []  # (row, statistics) of each episode; statistics of all; tasks
+        path = self._path("meta/info.json")
+        if os.path.exists(path):
+            with open(path, encoding="utf-8") as file:
+                there = json.load(file)
+            fixed = ("codebase_version", "fps", "robot_type", "features")
+            files.compare(self.folder, *({name: info.get(name) for name in fixed} for info in (there, self.info)))
+            self._take_up(there)
+        else:
+            files.refuse_strange(self.folder, "data set of LeRobot")
+            self._write_json("meta/info.json", self.info)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass  # every episode is whole already
+
+    @property
+    def episodes(self):
+        """How many are finished."""
+        return self.info["total_episodes"]
+
+    def add(self, columns, task, videos=None, split="train", success=True):
+        """An episode.
+
+        columns   name of a feature to its array (rows, *shape); all of them but the videos, all with as many rows
+        task      the goal in words
+        videos    name of a video to its frames, as many as rows: any iterable of (height, width, 3) uint8
+        split     of info.json: "train", "val", "test", "recovery", "failure", ...; one whose episodes are not in a row has
+                  several ranges there, as in "0:8,9:12"
+        """
+        features, videos = self.info["features"], dict(videos or {})
+        tasks = self._tasks if task in self._tasks else [*self._tasks, task]
+        columns = self._columns(columns)
+        count = len(next(iter(columns.values())))
+        columns.update(timestamp=(np.arange(count) / self.info["fps"]).astype(np.float32), frame_index=np.arange(count),
+                       episode_index=np.full(count, self.episodes), index=self.info["total_frames"] + np.arange(count),
+                       task_index=np.full(count, tasks.index(task)))
+        stats = {name: statistics.of_rows(value.reshape(count, *features[name]["shape"]))
+                 for name, value in columns.items() if features[name]["dtype"] != "string"}
+        files.same_names("videos", videos, self._videos)
+        for name, frames in videos.items():
+            frames = video.Frames(name, frames, count, features[name]["shape"])
+            files.write(self._file("video_path", self.episodes, name), video.encode(frames, self.info["fps"], *features[name]["shape"][:2]))
+            stats[name] = statistics.of_pictures(frames.samples)
+        table = {name: _array(self._arrow, columns[name], feature) for name, feature in features.items() if name in columns}
+        files.write(self._file("data_path", self.episodes), self._bytes(table))
+        self._finish({"episode_index": self.episodes, "tasks": [task], "length": count, "split": split, "success": bool(success)}, stats, tasks)
+
+    def _columns(self, columns):
+        wanted = {name: feature for name, feature in self.info["features"].items() if name not in INDICES and name not in self._videos}
+        files.same_names("columns", columns, wanted)
+        found = {name: _column(name, columns[name], feature) for name, feature in wanted.items()}
+        counts = {name: len(value) for name, value in found.items()}
+        if len(set(counts.values())) != 1 or 0 in counts.values():
+            raise vibe.Error(f"The columns have the rows {counts}; give as many of each, at least one.")
+        return found
+
+    # --- what is said of the episodes
+
+    def _finish(self, row, stats, tasks):
+        """The metadata with one more episode; info.json last, and only then does the writer itself know of it."""
+        number = row["episode_index"]
+        info = {**self.info, "total_episodes": number + 1, "total_frames": self.info["total_frames"] + row["length"],
+                "total_tasks": len(tasks), "splits": _extended(self.info["splits"], row["split"], number)}
+        total = {name: statistics.together(self._stats[name], stats[name]) if self._stats else stats[name] for name in stats}
+        rows = [*self._rows, (row, stats)]
+        if info["codebase_version"] == "v2.1":
+            info.update(total_videos=len(rows) * len(self._videos), total_chunks=1 + number // CHUNK)
+        else:
+            files.write(self._file("episodes", number), self._bytes(self._episode(row, stats, self.info["total_frames"])))
+        self._describe(info, rows, total, tasks)
+        self.info, self._rows, self._stats, self._tasks = info, rows, total, tasks
+
+    def _describe(self, info, rows, stats, tasks):
+        """Writes what is of all episodes together."""
+        if info["codebase_version"] == "v2.1":
+            self._write_lines("episodes", [row for row, _ in rows])
+            self._write_lines("episodes_stats", [{"episode_index": row["episode_index"], "stats": part} for row, part in rows])
+            self._write_lines("tasks", [{"task_index": k, "task": task} for k, task in enumerate(tasks)])
+        else:
+            files.write(self._path("meta/tasks.parquet"), self._bytes({"task_index": list(range(len(tasks))), "task": tasks}, PANDAS))
+        self._write_json("meta/stats.json", stats)
+        observed = (f"* `{name}`: {feature['dtype']}, shape {feature['shape']}" for name, feature in info["features"].items()
+                    if name.startswith("observation"))
+        card = CARD.format(robot=info["robot_type"], about=self.about, sensors="\n".join(observed), **info)
+        files.write(self._path("meta/README.md"), card.encode())
+        self._write_json("meta/info.json", info)
+
+    def _take_up(self, info):
+        """The state after the last episode that info.json counts; what is left of another one is removed."""
+        count = info["total_episodes"]
+        if info["codebase_version"] == "v2.1" and count:
+            rows, parts = (self._lines(name)[:count] for name in ("episodes", "episodes_stats"))
+            self._rows = [(row, part["stats"]) for row, part in zip(rows, parts)]
+        else:
+            self._rows = [self._episode_of(number) for number in range(count)]
+        for row, stats in self._rows:
+            self._tasks += [task for task in row["tasks"] if task not in self._tasks]
+            self._stats = {name: statistics.together(self._stats[name], stats[name]) if self._stats else stats[name] for name in stats}
+        self.info = info
+        for path in [self._file("data_path", count), self._file("episodes", count), *(self._file("video_path", count, name) for name in self._videos)]:
+            files.remove(path)
+        if count:
+            self._describe(info, self._rows, self._stats, self._tasks)
+
+    def _episode(self, row, stats, first):
+        """As the table of v3.0 has it: where its files are, and its statistics, one column each."""
+        chunk, file = divmod(row["episode_index"], CHUNK)
+        place = {"chunk_index": chunk, "file_index": file}
+        found = {**row, "dataset_from_index": first, "dataset_to_index": first + row["length"]}
+        for where in ("data", "meta/episodes", *(f"videos/{name}" for name in self._videos)):
+            found.update({f"{where}/{key}": value for key, value in place.items()})
+        for name in self._videos:
+            found.update({f"videos/{name}/from_timestamp": 0.0, f"videos/{name}/to_timestamp": row["length"] / self.info["fps"]})
+        found.update({f"stats/{name}/{key}": value for name, part in stats.items() for key, value in part.items()})
+        return {name: [value] for name, value in found.items()}
+
+    def _episode_of(self, number):
+        found = {name: value[0] for name, value in self._parquet.read_table(self._file("episodes", number)).to_pydict().items()}
+        stats = {}
+        for name, value in found.items():
+            if name.startswith("stats/"):
+                feature, key = name[len("stats/"):].rsplit("/", 1)
+                stats.setdefault(feature, {})[key] = value
+        return {name: found[name] for name in ("episode_index", "tasks", "length", "split", "success")}, stats
+
+    # --- files
+
+    def _path(self, name):
+        return os.path.join(self.folder, name)
+
+    def _file(self, kind, number, video_key=None):
+        pattern = EPISODES if kind == "episodes" else LAYOUT[self.info["codebase_version"]][kind]
+        chunk, file = divmod(number, CHUNK)
+        return self._path(pattern.format(chunk_index=chunk, file_index=file, episode_chunk=chunk, episode_index=number, video_key=video_key))
+
+    def _bytes(self, columns, metadata=None):
+        out = self._arrow.BufferOutputStream()
+        self._parquet.write_table(self._arrow.table(columns).replace_schema_metadata(metadata), out)
+        return out.getvalue()
+
+    def _write_json(self, name, value):
+        files.write(self._path(name), json.dumps(value, indent=4).encode())
+
+    def _write_lines(self, name, values):
+        files.write(self._path(f"meta/{name}.jsonl"), "".join(json.dumps(value) + "\n" for value in values).encode())
+
+    def _lines(self, name):
+        with open(self._path(f"meta/{name}.jsonl"), encoding="utf-8") as file:
+            return [json.loads(line) for line in file]
+
+
+def _begun(version, fps, features, robot):
+    """info.json of no episodes, or vibe.Error."""
+    if version not in LAYOUT:
+        raise vibe.Error(f"There is no version {version!r} of LeRobot here; use one of {', '.join(LAYOUT)}.")
+    if not isinstance(fps, int) or fps < 1:
+        raise vibe.Error(f"'fps' is {fps!r}; give a whole number of rows per second.")
+    if not isinstance(features, dict) or not features:
+        raise vibe.Error(f"'features' is {vibe._shown(features)}; give a dictionary of name to dtype, shape and names.")
+    features = {name: _feature(name, feature, fps) for name, feature in features.items()}
+    features.update({name: {"dtype": dtype, "shape": [1], "names": None} for name, dtype in INDICES.items()})
+    info = {"codebase_version": version, "robot_type": robot, "total_episodes": 0, "total_frames": 0, "total_tasks": 0,
+            "chunks_size": CHUNK, "fps": fps, "splits": {}, **LAYOUT[version], "features": features}
+    if not any(feature["dtype"] == "video" for feature in features.values()):
+        info["video_path"] = None
+    return info
+
+
+def _feature(name, feature, fps):
+    """One that can be written, with lists as JSON has them."""
+    dtype, shape = (feature.get("dtype"), list(feature.get("shape", ()))) if isinstance(feature, dict) else (None, [])
+    if dtype == "video":
+        good = len(shape) == 3 and shape[2] == 3 and all(isinstance(size, int) and size > 0 and size % 2 == 0 for size in shape[:2])
+    else:
+        good = dtype in DTYPES and 1 <= len(shape) <= 5 and all(isinstance(size, int) and size > 0 for size in shape)
+    if not good or name in INDICES or "/" in name:
+        raise vibe.Error(f"The feature {name!r} is {vibe._shown(feature)}; give a dtype of {', '.join(DTYPES)} with its shape, or 'video' with "
+                         "[height, width, 3], both even, under a name without '/' that LeRobot itself does not use.")
+    found = {"dtype": dtype, "shape": shape, "names": feature.get("names")}
+    if dtype == "video":
+        found["info"] = {"video.height": shape[0], "video.width": shape[1], "video.codec": "h264", "video.pix_fmt": "yuv420p",
+                         "video.is_depth_map": False, "video.fps": fps, "video.channels": 3, "has_audio": False}
+    return found
+
+
+def _column(name, value, feature):
+    """The rows of a feature as they are stored: (rows, *shape), without the axis of shape [1]."""
+    shape, text = feature["shape"], feature["dtype"] == "string"
+    rows = np.asarray(value, object if text else None)
+    if rows.ndim == len(shape) and shape == [1]:
+        rows = rows[..., None]
+    good = all(isinstance(one, str) for one in rows.flat) if text else \
+        rows.dtype.kind in "biuf" and np.can_cast(rows.dtype, feature["dtype"], "same_kind")
+    if not good or rows.ndim == 0 or list(rows.shape[1:]) != shape:
+        raise vibe.Error(f"The column {name!r} is {rows.dtype} of the shape {rows.shape}; give {feature['dtype']} of the shape "
+                         f"(rows, {', '.join(map(str, shape))}).")
+    if rows.dtype.kind == "f" and not np.isfinite(rows).all():
+        raise vibe.Error(f"The column {name!r} is not finite in row {np.argwhere(~np.isfinite(rows))[0][0]}; leave such rows out, or fill them.")
+    return (rows if text else rows.astype(feature["dtype"])).reshape(len(rows), *([] if shape == [1] else shape))
+
+
+def _array(arrow, rows, feature):
+    if rows.ndim == 1:
+        return arrow.array(rows)
+    if rows.ndim == 2 and feature["dtype"] != "string":
+        return arrow.FixedSizeListArray.from_arrays(arrow.array(rows.reshape(-1)), rows.shape[1])
+    return arrow.array(rows.tolist())
+
+
+def _extended(splits, name, number):
+    """Ranges of episodes by split, with one more episode."""
+    ranges = splits.get(name, "").split(",") if name in splits else []
+    if ranges and ranges[-1].endswith(f":{number}"):
+        ranges[-1] = f"{ranges[-1].split(':')[0]}:{number + 1}"
+    else:
+        ranges.append(f"{number}:{number + 1}")
+    return {**splits, name: ",".join(ranges)}
