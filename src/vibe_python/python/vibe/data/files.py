@@ -50,7 +50,7 @@ def compare(place, there, here):
             old, new = there.get(name), here.get(name)
             if isinstance(old, dict) and isinstance(new, dict):
                 compare(place, {f"{name} {key}": old[key] for key in old}, {f"{name} {key}": new[key] for key in new})
-            raise vibe.Error(f"{place} was begun with the {name} {old!r}, and here it is {new!r}; go on with the same, or name another place.")
+            raise vibe.Error(f"{place} is of other settings: its {name} is {old!r}, and here it is {new!r}; go on with the same, or name another place.")
 
 
 def same_names(what, given, wanted):

@@ -60,27 +60,29 @@ class Writer:
               index, task_index) are added
     robot     robot_type of the data set
     about     a sentence for its card, meta/README.md: where it comes from, how it was collected
+    begun     a dictionary of what else has to be the same when it goes on; kept as meta/begun.json
 
     An episode is a file of each kind, which is written under another name, synchronised and renamed; info.json, which counts
     episodes, comes last. So a kill or a full disk leaves all finished episodes, and a new Writer goes on after them. `episodes`
     says how many there are. The same input gives the same bytes. An episode's videos are in memory while they are encoded.
     Needs pyarrow, and av for videos. Raises vibe.Error, also where the folder was begun with other arguments."""
 
-    def __init__(self, folder, version="v3.0", fps=30, features=None, robot="vibe_endoscope", about="Made with the simulator ViBE for ROS."):
+    def __init__(self, folder, version="v3.0", fps=30, features=None, robot="vibe_endoscope", about="Made with the simulator ViBE for ROS.",
+                 begun=None):
         self._arrow, self._parquet = (files.needed(name, "pip install pyarrow") for name in ("pyarrow", "pyarrow.parquet"))
         self.folder, self.about = os.fspath(folder), about
         self.info = _begun(version, fps, features, robot)
         self._videos = [name for name, feature in self.info["features"].items() if feature["dtype"] == "video"]
         self._rows, self._stats, self._tasks = [], {}, []  # (row, statistics) of each episode; statistics of all; tasks
-        path = self._path("meta/info.json")
-        if os.path.exists(path):
-            with open(path, encoding="utf-8") as file:
-                there = json.load(file)
+        if os.path.exists(self._path("meta/info.json")):
+            there = self._json("meta/info.json")
             fixed = ("codebase_version", "fps", "robot_type", "features")
             files.compare(self.folder, *({name: info.get(name) for name in fixed} for info in (there, self.info)))
+            files.compare(self.folder, self._json("meta/begun.json"), json.loads(json.dumps(begun or {})))
             self._take_up(there)
         else:
             files.refuse_strange(self.folder, "data set of LeRobot")
+            self._write_json("meta/begun.json", begun or {})
             self._write_json("meta/info.json", self.info)
 
     def __enter__(self):
@@ -94,7 +96,12 @@ class Writer:
         """How many are finished."""
         return self.info["total_episodes"]
 
-    def add(self, columns, task, videos=None, split="train", success=True):
+    @property
+    def rows(self):
+        """The table of episodes, a dictionary each."""
+        return [row for row, _ in self._rows]
+
+    def add(self, columns, task, videos=None, split="train", success=True, **further):
         """An episode.
 
         columns   name of a feature to its array (rows, *shape); all of them but the videos, all with as many rows
@@ -102,6 +109,7 @@ class Writer:
         videos    name of a video to its frames, as many as rows: any iterable of (height, width, 3) uint8
         split     of info.json: "train", "val", "test", "recovery", "failure", ...; one whose episodes are not in a row has
                   several ranges there, as in "0:8,9:12"
+        further   numbers and texts that the table of episodes has besides, the same of each episode
         """
         features, videos = self.info["features"], dict(videos or {})
         tasks = self._tasks if task in self._tasks else [*self._tasks, task]
@@ -119,7 +127,7 @@ class Writer:
             stats[name] = statistics.of_pictures(frames.samples)
         table = {name: _array(self._arrow, columns[name], feature) for name, feature in features.items() if name in columns}
         files.write(self._file("data_path", self.episodes), self._bytes(table))
-        self._finish({"episode_index": self.episodes, "tasks": [task], "length": count, "split": split, "success": bool(success)}, stats, tasks)
+        self._finish({"episode_index": self.episodes, "tasks": [task], "length": count, "split": split, "success": bool(success), **further}, stats, tasks)
 
     def _columns(self, columns):
         wanted = {name: feature for name, feature in self.info["features"].items() if name not in INDICES and name not in self._videos}
@@ -197,7 +205,7 @@ class Writer:
             if name.startswith("stats/"):
                 feature, key = name[len("stats/"):].rsplit("/", 1)
                 stats.setdefault(feature, {})[key] = value
-        return {name: found[name] for name in ("episode_index", "tasks", "length", "split", "success")}, stats
+        return {name: value for name, value in found.items() if "/" not in name and not name.startswith("dataset_")}, stats
 
     # --- files
 
@@ -216,6 +224,10 @@ class Writer:
 
     def _write_json(self, name, value):
         files.write(self._path(name), json.dumps(value, indent=4).encode())
+
+    def _json(self, name):
+        with open(self._path(name), encoding="utf-8") as file:
+            return json.load(file)
 
     def _write_lines(self, name, values):
         files.write(self._path(f"meta/{name}.jsonl"), "".join(json.dumps(value) + "\n" for value in values).encode())

@@ -1,50 +1,46 @@
-"""Demonstrations as HDF5 in the layout of robomimic: data/demo_K with obs, next_obs, actions, rewards, dones."""
+"""Demonstrations as training sets: robomimic's HDF5, Minari's, or LeRobot's folder; and the environment back from a file."""
 
+import contextlib
+import hashlib
+import inspect
 import json
+import os
+import re
 
 import numpy as np
 
 import vibe
 
+from ..data import files, hdf5, lerobot
+from .environment import Environment
+from .episodes import Task
+from .settings import PICTURES
 
-def record(environment, policy, file, episodes, seed=0, progress=None):
+VALID = 10  # one in so many demonstrations, the second of them, is for validation
+STATE = ("joints", "tip", "direction", "wrench")  # of the robot; what else is observed is of its surroundings
+
+
+def record(environment, policy, file, episodes, seed=0, progress=None, format="robomimic"):
     """Runs episodes with a policy (reset(), action(observation)) and writes those that succeed; they have the seeds
-    seed, seed + 1, ... A file that was begun in the same way is gone on with. Returns how many of how many succeeded.
-    Needs h5py (Debian: python3-h5py)."""
-    try:
-        import h5py
-    except ImportError:
-        raise vibe.Error("Demonstrations need h5py; install python3-h5py.") from None
-    try:
-        out = h5py.File(file, "a")
-    except OSError as error:
-        raise vibe.Error(f"{file} cannot be written as HDF5 ({error}); name another file.") from None
-    with out:
-        data = out.require_group("data")
-        _begin(data, environment.task, seed, file)
-        kept, tried, total = (int(data.attrs[name]) for name in ("kept", "tried", "total"))
+    seed, seed + 1, ... Returns how many of how many succeeded.
+
+    format  "robomimic": `file` is an HDF5 file, from which environment_of() and replay() make everything again (h5py);
+            "minari": the folder of a data set, named such as reach-v0 (h5py);
+            "lerobot": the folder of a data set of version 3.0, with `colour` pictures as video (pyarrow, av)
+
+    Each episode is written whole as it ends. A set that was begun with the same task, settings, policy and version of vibe is
+    gone on with after its last episode, whatever stopped it."""
+    if format not in FORMATS:
+        raise vibe.Error(f"'format' is {vibe._shown(format)}; use {', '.join(FORMATS)}.")
+    with FORMATS[format](environment.unwrapped, os.fspath(file), _begun(environment.unwrapped, policy, seed)) as out:
+        tried = out.seeds[-1] + 1 - seed if out.seeds else 0
         for number in range(seed + tried, seed + episodes):
             rows, success = episode(environment, policy, number)
             if success:
-                data.pop(f"demo_{kept}", None)  # of a run that was killed while it wrote
-                total += _write(data.create_group(f"demo_{kept}"), rows, number)
-                kept += 1
-            data.attrs.update({"kept": kept, "tried": number - seed + 1, "total": total})
-            out.flush()
+                out.add(rows, number, _hash(environment))
             if progress:
-                progress(number - seed + 1, episodes, kept)
-    return kept, max(tried, episodes)
-
-
-def _begin(data, task, seed, file):
-    """Writes what the episodes are of, or sees that it is the same as when the file was begun."""
-    args = json.dumps({"env_name": task.name, "type": 2,
-                       "env_kwargs": {"particles": task.particles, "action": task.mode, "organs": task.organs,
-                                      "breathing": task.breathing, "step_period": task.step_period}})
-    if data.attrs.setdefault("env_args", args) != args or data.attrs.setdefault("seed", seed) != seed:
-        raise vibe.Error(f"{file} holds demonstrations of other settings, {data.attrs['env_args']}; name another file.")
-    for name in ("kept", "tried", "total"):
-        data.attrs.setdefault(name, 0)
+                progress(number - seed + 1, episodes, len(out.seeds))
+        return len(out.seeds), max(tried, episodes)
 
 
 def episode(environment, policy, seed):
@@ -61,12 +57,182 @@ def episode(environment, policy, seed):
     return rows, info["is_success"]
 
 
-def _write(group, rows, seed):
-    group.attrs["num_samples"], group.attrs["seed"] = len(rows), seed
-    for name, column in (("obs", 0), ("next_obs", 4)):
-        for key in rows[0][column]:
-            group.create_dataset(f"{name}/{key}", data=np.stack([row[column][key] for row in rows]), compression=1)
-    group.create_dataset("actions", data=np.stack([row[1] for row in rows]))
-    group.create_dataset("rewards", data=np.array([row[2] for row in rows], np.float32))
-    group.create_dataset("dones", data=np.array([row[3] for row in rows], np.int64))
-    return len(rows)
+def environment_of(file):
+    """The environment that the demonstrations of a robomimic file are of, from the file alone."""
+    with _opened(file) as found:
+        begun = json.loads(found.attrs["begun"])
+    made, version = begun["environment"], begun["vibe"]
+    if version != vibe.__version__:
+        raise vibe.Error(f"{file} was made by version {version}, and this is {vibe.__version__}, whose episodes may differ; install that version.")
+    environment = Environment(_task(made), **made["env_kwargs"])
+    files.compare(file, begun["task"], _said(environment.task))
+    return environment
+
+
+def replay(file):
+    """Makes the environment of a robomimic file, performs the actions of each demonstration and compares observations,
+    rewards, dones and the state in the end, to the bit. Returns their number; raises vibe.Error at the first difference."""
+    environment = environment_of(file)
+    with _opened(file) as found:
+        for name, demo in found["data"].items():
+            seen, _ = environment.reset(seed=int(demo.attrs["seed"]))
+            rows = []
+            for action in demo["actions"][:]:
+                following, reward, terminated, truncated, _ = environment.step(action)
+                rows.append((seen, action, reward, terminated or truncated, following))
+                seen = following
+            for key, again in _columns(rows).items():
+                if not np.array_equal(demo[key][:], again):
+                    raise vibe.Error(f"{file}: {name} has other {key} when its actions are performed again; was the task or the file changed?")
+            if demo.attrs["hash"] != _hash(environment):
+                raise vibe.Error(f"{file}: {name} ends in another state when its actions are performed again; was the task or the file changed?")
+        return len(found["data"])
+
+
+@contextlib.contextmanager
+def _opened(file):
+    h5py = files.needed("h5py", hdf5.PLACE)
+    try:
+        with h5py.File(file, "r") as found:
+            found["data"], found.attrs["begun"]
+            yield found
+    except (OSError, KeyError) as error:
+        raise vibe.Error(f"{file} holds no demonstrations of this version for robomimic ({error}); name one that record() has written.") from None
+
+
+# --- what a set is of
+
+
+def _begun(environment, policy, seed):
+    """Everything in which episodes of one set are alike."""
+    task, kind = environment.task, type(environment.task)
+    if not kind.name:
+        raise vibe.Error(f"The task {kind.__qualname__} has no name by which it could be made again; give it one.")
+    settings = {"particles": task.particles, "organs": task.organs, "action": task.mode, "breathing": task.breathing,
+                "step_period": task.step_period, "camera": task.camera, "pictures": task.pictures if task.camera else None}
+    made = {"env_name": f"{kind.__module__}:vibe/{task.name}-v0", "env_version": vibe.__version__, "type": 2,
+            "env_kwargs": json.loads(json.dumps({**settings, **environment._settings}, default=vibe._plain))}
+    spaces = {**environment.observation_space, "actions": environment.action_space}
+    return {"vibe": vibe.__version__, "environment": made, "task": _said(task), "seed": seed,
+            "policy": re.sub(r" at 0x[0-9a-f]+", "", repr(policy)),
+            "shapes": {name: [str(space.dtype), *space.shape] for name, space in spaces.items()}}
+
+
+def _task(made):
+    """MODULE:NAME, which imports the module first."""
+    return made["env_name"].replace("vibe/", "").rsplit("-", 1)[0]
+
+
+def _said(task):
+    """The task itself: two of one name may differ in their source."""
+    kinds = [kind for kind in type(task).__mro__ if issubclass(kind, Task) and kind is not Task]
+    try:
+        source = hashlib.sha256("".join(map(inspect.getsource, kinds)).encode()).hexdigest()[:16]
+    except (OSError, TypeError):  # typed in
+        source = None
+    return {"goal": task.summary(), "source": source}
+
+
+def _hash(environment):
+    return f"{environment.unwrapped.simulation.hash():016x}"
+
+
+def _columns(rows):
+    """As robomimic names them."""
+    found = {f"{name}/{key}": np.stack([row[column][key] for row in rows]) for name, column in (("obs", 0), ("next_obs", 4)) for key in rows[0][0]}
+    return {**found, "actions": np.stack([row[1] for row in rows]), "rewards": np.array([row[2] for row in rows], np.float32),
+            "dones": np.array([row[3] for row in rows], np.int64)}
+
+
+# --- formats: add(rows, seed, hash), and the seeds of what is there
+
+
+class _Robomimic(hdf5.Episodes):
+    def __init__(self, environment, file, begun):
+        super().__init__(file, "data/demo_{}", begun)
+
+    def describe(self, out, said):
+        names = np.array([f"demo_{k}" for k in range(len(said))], "S")
+        valid = np.arange(len(said)) % VALID == 1
+        out.require_group("data").attrs.update(env_args=json.dumps(self.begun["environment"]), total=sum(int(one["num_samples"]) for one in said))
+        out["mask/train"], out["mask/valid"] = names[~valid], names[valid]
+
+    def add(self, rows, seed, state):
+        super().add(_columns(rows), {"num_samples": len(rows), "seed": seed, "hash": state})
+
+
+class _Minari(hdf5.Episodes):
+    """Observations have one row more than actions there."""
+
+    def __init__(self, environment, folder, begun):
+        if not re.search(r"[\w-]-v\d+$", os.path.normpath(folder)):
+            raise vibe.Error(f"{folder} is no name of Minari; give one that ends in a version, such as reach-v0.")
+        self._folder, self._environment = folder, environment
+        super().__init__(os.path.join(folder, "data", "main_data.hdf5"), "episode_{}", begun)
+        self._metadata(self._said)
+
+    def _write(self, links, said):
+        super()._write(links, said)
+        self._metadata(said)
+
+    def _metadata(self, said):
+        """After the file: it never counts an episode that is not there."""
+        made = self.begun["environment"]
+        spec = {"id": made["env_name"].split(":")[1], "entry_point": "vibe.env:Environment", "kwargs": {"task": _task(made), **made["env_kwargs"]}}
+        observed = {name: _box(space) for name, space in self._environment.observation_space.items()}
+        files.write(os.path.join(self._folder, "data", "metadata.json"), json.dumps({
+            "dataset_id": os.path.basename(os.path.normpath(self._folder)), "data_format": "hdf5", "minari_version": "0.5.4", "jpeg_encoding": False,
+            "total_episodes": len(said), "total_steps": sum(int(one["total_steps"]) for one in said), "env_spec": json.dumps(spec),
+            "observation_space": json.dumps({"type": "Dict", "subspaces": observed}), "action_space": json.dumps(_box(self._environment.action_space)),
+            "algorithm_name": self.begun["policy"]}).encode())
+
+    def add(self, rows, seed, state):
+        last = np.arange(len(rows)) == len(rows) - 1
+        content = {f"observations/{key}": np.stack([row[0][key] for row in rows] + [rows[-1][4][key]]) for key in rows[0][0]}
+        content.update(actions=np.stack([row[1] for row in rows]), rewards=np.array([row[2] for row in rows]), terminations=last, truncations=last & False)
+        super().add(content, {"id": len(self.seeds), "seed": seed, "total_steps": len(rows), "hash": state})
+
+
+def _box(space):
+    return {"type": "Box", "dtype": str(space.dtype), "shape": list(space.shape), "low": space.low.tolist(), "high": space.high.tolist()}
+
+
+class _LeRobot(lerobot.Writer):
+    def __init__(self, environment, folder, begun):
+        spaces = environment.observation_space
+        self._pictures = [name for name in spaces if name in PICTURES]
+        around = [name for name in spaces if name not in STATE and name not in self._pictures]
+        self._parts = {"observation.state": STATE, "observation.environment_state": around}
+        features = {name: _vector(int(sum(np.prod(spaces[part].shape) for part in parts)), [
+            f"{part}_{k}" for part in parts for k in range(int(np.prod(spaces[part].shape)))]) for name, parts in self._parts.items()}
+        features.update({"action": _vector(environment.action_space.shape[0]), "next.reward": _vector(1), "next.done": _vector(1, dtype="bool"),
+                         "next.success": _vector(1, dtype="bool")})
+        for name in self._pictures:
+            features[_picture(name)] = {"dtype": "video" if name == "colour" else str(spaces[name].dtype), "shape": list(spaces[name].shape),
+                                        "names": ["height", "width", "channels"][:len(spaces[name].shape)]}
+        self._task = f"{environment.task.name}: {environment.task.summary()}"
+        super().__init__(folder, "v3.0", environment.task.rate, features, begun=begun)
+
+    @property
+    def seeds(self):
+        return [row["seed"] for row in self.rows]
+
+    def add(self, rows, seed, state):
+        last = np.arange(len(rows)) == len(rows) - 1
+        columns = {name: np.stack([np.concatenate([row[0][part].ravel() for part in parts]) for row in rows]) for name, parts in self._parts.items()}
+        columns.update({"action": np.stack([row[1] for row in rows]), "next.reward": np.array([row[2] for row in rows]), "next.done": last,
+                        "next.success": last})
+        columns.update({_picture(name): np.stack([row[0][name] for row in rows]) for name in self._pictures if name != "colour"})
+        videos = {_picture(name): [row[0][name] for row in rows] for name in self._pictures if name == "colour"}
+        super().add(columns, self._task, videos, seed=seed, hash=state)
+
+
+def _vector(size, names=None, dtype="float32"):
+    return {"dtype": dtype, "shape": [size], "names": names}
+
+
+def _picture(name):
+    return "observation.images.endoscope" if name == "colour" else f"observation.{name}"
+
+
+FORMATS = {"robomimic": _Robomimic, "minari": _Minari, "lerobot": _LeRobot}

@@ -24,7 +24,10 @@ class Expert:
         self._policy = task.expert(seed)
         if self._policy is None:
             raise vibe.Error(f"There is no expert for the task {task.name} with action={task.mode!r}.")
-        self.environment = environment
+        self.environment, self._seed = environment, seed
+
+    def __repr__(self):
+        return f"Expert(seed={self._seed})"
 
     def reset(self) -> None:
         self._policy.reset(self.environment.task)
