@@ -57,16 +57,3 @@ def same_names(what, given, wanted):
     missing, strange = [name for name in wanted if name not in given], [name for name in given if name not in wanted]
     if missing or strange:
         raise vibe.Error(f"The {what} {'lack' if missing else 'have'} {(missing or strange)[0]!r}; give {', '.join(wanted) or 'none'}.")
-
-
-def refuse_strange(folder, what):
-    """Raises vibe.Error if a folder without a data set holds anything else than what a killed writer leaves."""
-    for _, _, names in os.walk(folder):
-        for name in names:
-            if not name.endswith(PARTIAL):
-                raise vibe.Error(f"{folder} holds {name} and no {what}; name another folder.")
-
-
-def remove(path):
-    with contextlib.suppress(FileNotFoundError):
-        os.remove(path)

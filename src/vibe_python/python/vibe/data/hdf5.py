@@ -6,6 +6,7 @@ import contextlib
 import io
 import json
 import os
+import pathlib
 import shutil
 
 import vibe
@@ -67,8 +68,9 @@ class Episodes:
         number = len(self._links)
         if None in self._links:  # all in one file, which becomes the first part
             os.makedirs(self._parts, exist_ok=True)
-            files.remove(os.path.join(self._parts, "first.hdf5"))
-            os.link(self.file, os.path.join(self._parts, "first.hdf5"))
+            first = pathlib.Path(self._parts, "first.hdf5")
+            first.unlink(missing_ok=True)
+            os.link(self.file, first)
             self._links = [(self._part("first"), self._name.format(k)) for k in range(number)]
         name = self._name.format(number)
         files.write(os.path.join(os.path.dirname(self.file), self._part(number)), self._image(lambda out: _fill(out, name, content, attributes)))

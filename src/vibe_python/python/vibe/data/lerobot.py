@@ -1,17 +1,15 @@
 """LeRobot data sets, codebase versions v2.1 and v3.0: tables as Parquet, pictures as video, metadata beside them.
 
-    from vibe.data import lerobot
-
-    features = {"observation.state": {"dtype": "float32", "shape": [4], "names": ["insertion", "rotation", "up", "left"]},
-                "action": {"dtype": "float32", "shape": [4], "names": None},
+    features = {"observation.state": {"dtype": "float32", "shape": [2], "names": ["insertion", "rotation"]},
+                "action": {"dtype": "float32", "shape": [2], "names": None},
                 "observation.images.endoscope": {"dtype": "video", "shape": [480, 640, 3], "names": ["height", "width", "channels"]}}
     with lerobot.Writer("reach", version="v3.0", fps=20, features=features) as writer:
-        writer.add({"observation.state": states, "action": actions}, task="Reach the mark",
-                   videos={"observation.images.endoscope": pictures})
+        writer.add({"observation.state": states, "action": actions}, "Reach the mark", {"observation.images.endoscope": pictures})
 """
 
 import json
 import os
+import pathlib
 
 import numpy as np
 
@@ -28,25 +26,15 @@ LAYOUT = {"v3.0": {"data_path": "data/chunk-{chunk_index:03d}/file-{file_index:0
           "v2.1": {"data_path": "data/chunk-{episode_chunk:03d}/episode_{episode_index:06d}.parquet",
                    "video_path": "videos/chunk-{episode_chunk:03d}/{video_key}/episode_{episode_index:06d}.mp4"}}
 EPISODES = "meta/episodes/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"  # of v3.0
-PANDAS = {"pandas": json.dumps({"index_columns": ["task"], "column_indexes": [], "columns": [
-    {"name": "task_index", "field_name": "task_index", "pandas_type": "int64", "numpy_type": "int64", "metadata": None},
-    {"name": "task", "field_name": "task", "pandas_type": "unicode", "numpy_type": "object", "metadata": None}]})}  # task is the index
-CARD = """# {robot}: {total_episodes} episodes
+TASKS = {"pandas": json.dumps({"index_columns": ["task"], "column_indexes": [], "columns": [
+    {"name": name, "field_name": name, "pandas_type": kind, "numpy_type": numpy, "metadata": None}
+    for name, kind, numpy in (("task_index", "int64", "int64"), ("task", "unicode", "object"))]})}  # their index is the task
+CARD = """# {robot_type}: {total_episodes} episodes
 
-## Dataset description
-{about}
-
-## Robot
-`{robot}`; what its state and actions are is in `info.json`, by feature, in SI units.
-
-## Sensors and cameras
-{sensors}
-
-## Synchronization
-Row k of an episode is the moment k / {fps} s after its first row, and picture k of a video is of the same moment.
-
-## Collection procedure
-An episode is whole or not there. `success` and `split` of each are in the table of episodes.
+* Dataset description, collection procedure: {about}
+* Robot: `{robot_type}`. `info.json` names what its state and actions hold; SI units.
+* Sensors: {sensors}.
+* Synchronization: row k of an episode is the moment k / {fps} s after its first row, and frame k of its videos is of that moment.
 """
 
 
@@ -55,35 +43,37 @@ class Writer:
 
     version   "v3.0" (LeRobot from 0.4 on) or "v2.1" (Open-H-Embodiment, GR00T)
     fps       rows per second, a whole number
-    features  by name: {"dtype": "float32", "shape": [4], "names": [...] or None}. dtype is one of numpy's, "string" (shape
-              [1]) or "video" (shape [height, width, 3], both even). LeRobot's own (timestamp, frame_index, episode_index,
-              index, task_index) are added
+    features  by name: {"dtype": "float32", "shape": [4], "names": [...] or None}. dtype is one of numpy's, "string" or "video",
+              which has the shape [height, width, 3], both even. LeRobot's own (timestamp, frame_index, episode_index, index,
+              task_index) are added
     robot     robot_type of the data set
     about     a sentence for its card, meta/README.md: where it comes from, how it was collected
     begun     a dictionary of what else has to be the same when it goes on; kept as meta/begun.json
 
-    An episode is a file of each kind, which is written under another name, synchronised and renamed; info.json, which counts
-    episodes, comes last. So a kill or a full disk leaves all finished episodes, and a new Writer goes on after them. `episodes`
-    says how many there are. The same input gives the same bytes. An episode's videos are in memory while they are encoded.
-    Needs pyarrow, and av for videos. Raises vibe.Error, also where the folder was begun with other arguments."""
+    An episode is a file of each kind, written under another name, synchronised and renamed; info.json, which counts episodes,
+    comes last. So a kill or a full disk leaves all finished episodes, and a new Writer goes on after them; `episodes` says how
+    many there are. The same input gives the same bytes. An episode's videos are in memory while they are encoded (H.264). Needs
+    pyarrow, and av for videos. Raises vibe.Error, also where the folder was begun with other arguments."""
 
     def __init__(self, folder, version="v3.0", fps=30, features=None, robot="vibe_endoscope", about="Made with the simulator ViBE for ROS.",
                  begun=None):
         self._arrow, self._parquet = (files.needed(name, "pip install pyarrow") for name in ("pyarrow", "pyarrow.parquet"))
-        self.folder, self.about = os.fspath(folder), about
-        self.info = _begun(version, fps, features, robot)
+        self.folder, self.about, self.info = os.fspath(folder), about, _begun(version, fps, features, robot)
         self._videos = [name for name, feature in self.info["features"].items() if feature["dtype"] == "video"]
         self._rows, self._stats, self._tasks = [], {}, []  # (row, statistics) of each episode; statistics of all; tasks
+        names, begun = ("codebase_version", "fps", "robot_type", "features"), json.loads(json.dumps(begun or {}))
         if os.path.exists(self._path("meta/info.json")):
-            there = self._json("meta/info.json")
-            fixed = ("codebase_version", "fps", "robot_type", "features")
-            files.compare(self.folder, *({name: info.get(name) for name in fixed} for info in (there, self.info)))
-            files.compare(self.folder, self._json("meta/begun.json"), json.loads(json.dumps(begun or {})))
-            self._take_up(there)
+            info = self._json("info")
+            files.compare(self.folder, {name: info.get(name) for name in names}, {name: self.info[name] for name in names})
+            files.compare(self.folder, self._json("begun"), begun)
+            self._take_up(info)
         else:
-            files.refuse_strange(self.folder, "data set of LeRobot")
-            self._write_json("meta/begun.json", begun or {})
-            self._write_json("meta/info.json", self.info)
+            for _, _, there in os.walk(self.folder):
+                strange = [name for name in there if name != "begun.json" and not name.endswith(files.PARTIAL)]
+                if strange:
+                    raise vibe.Error(f"{self.folder} holds {strange[0]} and no data set of LeRobot; name another folder.")
+            self._write_json("begun", begun)
+            self._write_json("info", self.info)
 
     def __enter__(self):
         return self
@@ -93,13 +83,7 @@ class Writer:
 
     @property
     def episodes(self):
-        """How many are finished."""
         return self.info["total_episodes"]
-
-    @property
-    def rows(self):
-        """The table of episodes, a dictionary each."""
-        return [row for row, _ in self._rows]
 
     def add(self, columns, task, videos=None, split="train", success=True, **further):
         """An episode.
@@ -111,23 +95,23 @@ class Writer:
                   several ranges there, as in "0:8,9:12"
         further   numbers and texts that the table of episodes has besides, the same of each episode
         """
-        features, videos = self.info["features"], dict(videos or {})
+        features, number, videos = self.info["features"], self.episodes, dict(videos or {})
         tasks = self._tasks if task in self._tasks else [*self._tasks, task]
         columns = self._columns(columns)
+        files.same_names("videos", videos, self._videos)
         count = len(next(iter(columns.values())))
         columns.update(timestamp=(np.arange(count) / self.info["fps"]).astype(np.float32), frame_index=np.arange(count),
-                       episode_index=np.full(count, self.episodes), index=self.info["total_frames"] + np.arange(count),
+                       episode_index=np.full(count, number), index=self.info["total_frames"] + np.arange(count),
                        task_index=np.full(count, tasks.index(task)))
         stats = {name: statistics.of_rows(value.reshape(count, *features[name]["shape"]))
                  for name, value in columns.items() if features[name]["dtype"] != "string"}
-        files.same_names("videos", videos, self._videos)
         for name, frames in videos.items():
             frames = video.Frames(name, frames, count, features[name]["shape"])
-            files.write(self._file("video_path", self.episodes, name), video.encode(frames, self.info["fps"], *features[name]["shape"][:2]))
+            files.write(self._file("video_path", number, name), video.encode(frames, self.info["fps"]))
             stats[name] = statistics.of_pictures(frames.samples)
-        table = {name: _array(self._arrow, columns[name], feature) for name, feature in features.items() if name in columns}
-        files.write(self._file("data_path", self.episodes), self._bytes(table))
-        self._finish({"episode_index": self.episodes, "tasks": [task], "length": count, "split": split, "success": bool(success), **further}, stats, tasks)
+        files.write(self._file("data_path", number), self._bytes({name: _array(self._arrow, columns[name]) for name in features if name in columns}))
+        row = {"episode_index": number, "tasks": [task], "length": count, "split": split, "success": bool(success), **further}
+        self._finish(row, stats, tasks)
 
     def _columns(self, columns):
         wanted = {name: feature for name, feature in self.info["features"].items() if name not in INDICES and name not in self._videos}
@@ -141,16 +125,16 @@ class Writer:
     # --- what is said of the episodes
 
     def _finish(self, row, stats, tasks):
-        """The metadata with one more episode; info.json last, and only then does the writer itself know of it."""
-        number = row["episode_index"]
-        info = {**self.info, "total_episodes": number + 1, "total_frames": self.info["total_frames"] + row["length"],
-                "total_tasks": len(tasks), "splits": _extended(self.info["splits"], row["split"], number)}
+        """The metadata with one more episode; only when info.json is there does the writer itself know of it."""
+        number, first = row["episode_index"], self.info["total_frames"]
+        info = {**self.info, "total_episodes": number + 1, "total_frames": first + row["length"], "total_tasks": len(tasks),
+                "splits": _extended(self.info["splits"], row["split"], number)}
         total = {name: statistics.together(self._stats[name], stats[name]) if self._stats else stats[name] for name in stats}
         rows = [*self._rows, (row, stats)]
         if info["codebase_version"] == "v2.1":
             info.update(total_videos=len(rows) * len(self._videos), total_chunks=1 + number // CHUNK)
         else:
-            files.write(self._file("episodes", number), self._bytes(self._episode(row, stats, self.info["total_frames"])))
+            files.write(self._file("episodes", number), self._bytes(self._episode(row, stats, first)))
         self._describe(info, rows, total, tasks)
         self.info, self._rows, self._stats, self._tasks = info, rows, total, tasks
 
@@ -161,13 +145,11 @@ class Writer:
             self._write_lines("episodes_stats", [{"episode_index": row["episode_index"], "stats": part} for row, part in rows])
             self._write_lines("tasks", [{"task_index": k, "task": task} for k, task in enumerate(tasks)])
         else:
-            files.write(self._path("meta/tasks.parquet"), self._bytes({"task_index": list(range(len(tasks))), "task": tasks}, PANDAS))
-        self._write_json("meta/stats.json", stats)
-        observed = (f"* `{name}`: {feature['dtype']}, shape {feature['shape']}" for name, feature in info["features"].items()
-                    if name.startswith("observation"))
-        card = CARD.format(robot=info["robot_type"], about=self.about, sensors="\n".join(observed), **info)
-        files.write(self._path("meta/README.md"), card.encode())
-        self._write_json("meta/info.json", info)
+            files.write(self._path("meta/tasks.parquet"), self._bytes({"task_index": list(range(len(tasks))), "task": tasks}, TASKS))
+        self._write_json("stats", stats)
+        sensors = ", ".join(f"`{name}`" for name in info["features"] if name.startswith("observation"))
+        files.write(self._path("meta/README.md"), CARD.format(about=self.about, sensors=sensors, **info).encode())
+        self._write_json("info", info)
 
     def _take_up(self, info):
         """The state after the last episode that info.json counts; what is left of another one is removed."""
@@ -181,18 +163,17 @@ class Writer:
             self._tasks += [task for task in row["tasks"] if task not in self._tasks]
             self._stats = {name: statistics.together(self._stats[name], stats[name]) if self._stats else stats[name] for name in stats}
         self.info = info
-        for path in [self._file("data_path", count), self._file("episodes", count), *(self._file("video_path", count, name) for name in self._videos)]:
-            files.remove(path)
+        for path in (self._file("data_path", count), self._file("episodes", count), *(self._file("video_path", count, name) for name in self._videos)):
+            pathlib.Path(path).unlink(missing_ok=True)
         if count:
             self._describe(info, self._rows, self._stats, self._tasks)
 
     def _episode(self, row, stats, first):
         """As the table of v3.0 has it: where its files are, and its statistics, one column each."""
         chunk, file = divmod(row["episode_index"], CHUNK)
-        place = {"chunk_index": chunk, "file_index": file}
         found = {**row, "dataset_from_index": first, "dataset_to_index": first + row["length"]}
         for where in ("data", "meta/episodes", *(f"videos/{name}" for name in self._videos)):
-            found.update({f"{where}/{key}": value for key, value in place.items()})
+            found.update({f"{where}/chunk_index": chunk, f"{where}/file_index": file})
         for name in self._videos:
             found.update({f"videos/{name}/from_timestamp": 0.0, f"videos/{name}/to_timestamp": row["length"] / self.info["fps"]})
         found.update({f"stats/{name}/{key}": value for name, part in stats.items() for key, value in part.items()})
@@ -200,12 +181,12 @@ class Writer:
 
     def _episode_of(self, number):
         found = {name: value[0] for name, value in self._parquet.read_table(self._file("episodes", number)).to_pydict().items()}
-        stats = {}
-        for name, value in found.items():
+        row, stats = {name: value for name, value in found.items() if "/" not in name and not name.startswith("dataset_")}, {}
+        for name in found:
             if name.startswith("stats/"):
-                feature, key = name[len("stats/"):].rsplit("/", 1)
-                stats.setdefault(feature, {})[key] = value
-        return {name: value for name, value in found.items() if "/" not in name and not name.startswith("dataset_")}, stats
+                _, feature, key = name.split("/")
+                stats.setdefault(feature, {})[key] = found[name]
+        return row, stats
 
     # --- files
 
@@ -222,19 +203,19 @@ class Writer:
         self._parquet.write_table(self._arrow.table(columns).replace_schema_metadata(metadata), out)
         return out.getvalue()
 
-    def _write_json(self, name, value):
-        files.write(self._path(name), json.dumps(value, indent=4).encode())
-
     def _json(self, name):
-        with open(self._path(name), encoding="utf-8") as file:
+        with open(self._path(f"meta/{name}.json"), encoding="utf-8") as file:
             return json.load(file)
 
-    def _write_lines(self, name, values):
-        files.write(self._path(f"meta/{name}.jsonl"), "".join(json.dumps(value) + "\n" for value in values).encode())
+    def _write_json(self, name, value):
+        files.write(self._path(f"meta/{name}.json"), json.dumps(value, indent=4).encode())
 
     def _lines(self, name):
         with open(self._path(f"meta/{name}.jsonl"), encoding="utf-8") as file:
             return [json.loads(line) for line in file]
+
+    def _write_lines(self, name, values):
+        files.write(self._path(f"meta/{name}.jsonl"), "".join(json.dumps(value) + "\n" for value in values).encode())
 
 
 def _begun(version, fps, features, robot):
@@ -257,15 +238,13 @@ def _begun(version, fps, features, robot):
 def _feature(name, feature, fps):
     """One that can be written, with lists as JSON has them."""
     dtype, shape = (feature.get("dtype"), list(feature.get("shape", ()))) if isinstance(feature, dict) else (None, [])
-    if dtype == "video":
-        good = len(shape) == 3 and shape[2] == 3 and all(isinstance(size, int) and size > 0 and size % 2 == 0 for size in shape[:2])
-    else:
-        good = dtype in DTYPES and 1 <= len(shape) <= 5 and all(isinstance(size, int) and size > 0 for size in shape)
-    if not good or name in INDICES or "/" in name:
+    sizes = bool(shape) and all(isinstance(size, int) and size > 0 for size in shape)
+    video = dtype == "video" and len(shape) == 3 and shape[2] == 3 and shape[0] % 2 == shape[1] % 2 == 0
+    if not sizes or not video and dtype not in DTYPES or name in INDICES or "/" in name:
         raise vibe.Error(f"The feature {name!r} is {vibe._shown(feature)}; give a dtype of {', '.join(DTYPES)} with its shape, or 'video' with "
                          "[height, width, 3], both even, under a name without '/' that LeRobot itself does not use.")
     found = {"dtype": dtype, "shape": shape, "names": feature.get("names")}
-    if dtype == "video":
+    if video:
         found["info"] = {"video.height": shape[0], "video.width": shape[1], "video.codec": "h264", "video.pix_fmt": "yuv420p",
                          "video.is_depth_map": False, "video.fps": fps, "video.channels": 3, "has_audio": False}
     return found
@@ -275,10 +254,9 @@ def _column(name, value, feature):
     """The rows of a feature as they are stored: (rows, *shape), without the axis of shape [1]."""
     shape, text = feature["shape"], feature["dtype"] == "string"
     rows = np.asarray(value, object if text else None)
-    if rows.ndim == len(shape) and shape == [1]:
-        rows = rows[..., None]
-    good = all(isinstance(one, str) for one in rows.flat) if text else \
-        rows.dtype.kind in "biuf" and np.can_cast(rows.dtype, feature["dtype"], "same_kind")
+    if rows.ndim == 1 and shape == [1]:
+        rows = rows[:, None]
+    good = all(isinstance(one, str) for one in rows.flat) if text else np.can_cast(rows.dtype, feature["dtype"], "same_kind")
     if not good or rows.ndim == 0 or list(rows.shape[1:]) != shape:
         raise vibe.Error(f"The column {name!r} is {rows.dtype} of the shape {rows.shape}; give {feature['dtype']} of the shape "
                          f"(rows, {', '.join(map(str, shape))}).")
@@ -287,19 +265,16 @@ def _column(name, value, feature):
     return (rows if text else rows.astype(feature["dtype"])).reshape(len(rows), *([] if shape == [1] else shape))
 
 
-def _array(arrow, rows, feature):
+def _array(arrow, rows):
+    """Lists of a fixed size for every further axis."""
     if rows.ndim == 1:
         return arrow.array(rows)
-    if rows.ndim == 2 and feature["dtype"] != "string":
-        return arrow.FixedSizeListArray.from_arrays(arrow.array(rows.reshape(-1)), rows.shape[1])
-    return arrow.array(rows.tolist())
+    return arrow.FixedSizeListArray.from_arrays(_array(arrow, rows.reshape(-1, *rows.shape[2:])), rows.shape[1])
 
 
 def _extended(splits, name, number):
     """Ranges of episodes by split, with one more episode."""
-    ranges = splits.get(name, "").split(",") if name in splits else []
-    if ranges and ranges[-1].endswith(f":{number}"):
-        ranges[-1] = f"{ranges[-1].split(':')[0]}:{number + 1}"
-    else:
-        ranges.append(f"{number}:{number + 1}")
+    *ranges, last = splits[name].split(",") if name in splits else [f"{number}:{number}"]
+    first, end = last.split(":")
+    ranges += [f"{first}:{number + 1}"] if end == str(number) else [last, f"{number}:{number + 1}"]
     return {**splits, name: ",".join(ranges)}

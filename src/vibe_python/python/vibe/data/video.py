@@ -9,13 +9,13 @@ import vibe
 from .files import needed
 
 
-def encode(frames, fps, height, width):
-    """MP4 of frames (height, width, 3) uint8; the same frames give the same bytes with the same libraries."""
+def encode(frames, fps):
+    """MP4 of Frames; the same ones give the same bytes with the same libraries."""
     av = needed("av", "pip install av, or Debian's python3-av")
     out = io.BytesIO()
     with av.open(out, "w", format="mp4", container_options={"fflags": "+bitexact"}) as container:
         stream = container.add_stream("libx264", rate=fps)
-        stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
+        stream.height, stream.width, stream.pix_fmt = *frames.shape[:2], "yuv420p"
         stream.options = {"crf": "23", "g": "2", "bf": "0", "threads": "1", "flags": "+bitexact"}
         for frame in frames:
             container.mux(stream.encode(av.VideoFrame.from_ndarray(frame, format="rgb24")))

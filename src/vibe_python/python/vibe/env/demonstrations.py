@@ -178,7 +178,8 @@ class _Minari(hdf5.Episodes):
     def _metadata(self, said):
         """After the file: it never counts an episode that is not there."""
         made = self.begun["environment"]
-        spec = {"id": made["env_name"].split(":")[1], "entry_point": "vibe.env:Environment", "kwargs": {"task": _task(made), **made["env_kwargs"]}}
+        spec = {"id": made["env_name"].split(":")[1], "entry_point": "vibe.env:Environment", "additional_wrappers": [],
+                "kwargs": {"task": _task(made), **made["env_kwargs"]}}
         observed = {name: _box(space) for name, space in self._environment.observation_space.items()}
         files.write(os.path.join(self._folder, "data", "metadata.json"), json.dumps({
             "dataset_id": os.path.basename(os.path.normpath(self._folder)), "data_format": "hdf5", "minari_version": "0.5.4", "jpeg_encoding": False,
@@ -215,7 +216,7 @@ class _LeRobot(lerobot.Writer):
 
     @property
     def seeds(self):
-        return [row["seed"] for row in self.rows]
+        return [row["seed"] for row, _ in self._rows]
 
     def add(self, rows, seed, state):
         last = np.arange(len(rows)) == len(rows) - 1
