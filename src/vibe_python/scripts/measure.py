@@ -180,7 +180,9 @@ def pictures():
     full = vibe.Simulation(vibe.load())
     full.run(30, insertion=0.08, insufflate=True)
     print(f"| depth and labels, 128 x 128, 3,618 particles | {median(lambda: full.camera(128, 128), 30):.2f} ms |")
-    print(f"| the same with colours | {median(lambda: full.camera(128, 128, colour=True), 30):.2f} ms |")
+    for colour, tool in ((True, False), (False, True), (True, True)):
+        name = " and ".join(["colours"] * colour + ["device"] * tool)
+        print(f"| the same with {name} | {median(lambda: full.camera(128, 128, colour=colour, tool=tool), 30):.2f} ms |")
 
 
 def threads():

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws what Simulation.camera() gives, after two marks were made: colour, depth, normals, labels side by side."""
+"""Draws what Simulation.camera(tool=True) gives, after two marks were made: colour, depth, normals, labels side by side."""
 
 import argparse
 
@@ -16,7 +16,8 @@ goals:
   - mark: {along: 0.63, around: -0.1 rad}
 """
 FAR = 0.15  # shown white in the picture of depths [m]
-REGIONS = np.array([[0, 0, 0], [204, 120, 166], [87, 181, 232], [230, 158, 0], [0, 158, 115], [214, 94, 0]], np.uint8)
+REGIONS = np.array([[0, 0, 0], [204, 120, 166], [87, 181, 232], [230, 158, 0], [0, 158, 115], [214, 94, 0],
+                    [150, 150, 150], [60, 90, 200]], np.uint8)
 
 
 def main():
@@ -27,7 +28,7 @@ def main():
     simulation = vibe.Simulation(vibe.load())
     simulation.follow(vibe.Trainee(simulation.model, PROTOCOL))
     simulation.run(90, insertion=simulation.input["insertion"] - 0.05)
-    seen = simulation.camera(options.size, options.size, 1.7, normals=True, colour=True)
+    seen = simulation.camera(options.size, options.size, 1.7, normals=True, colour=True, tool=True)
     grey = (255 * np.clip(np.nan_to_num(seen["depth"]) / FAR, 0, 1)).astype(np.uint8)
     parts = [seen["colour"], np.stack([grey] * 3, -1), (127.5 * (seen["normal"] + 1)).astype(np.uint8), REGIONS[seen["label"]]]
     matplotlib.image.imsave(options.file, np.concatenate(parts, 1))

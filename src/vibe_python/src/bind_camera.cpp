@@ -5,6 +5,7 @@
 #include "ray_caster.hpp"
 #include "shading.hpp"
 #include "tool.hpp"
+#include "tool_picture.hpp"
 #include "unlocked.hpp"
 
 namespace vibe::python {
@@ -26,26 +27,44 @@ py::array_t<T> inColour(int width, int height, bool wanted) {
   return py::array_t<T>(wanted ? std::vector<py::ssize_t>{height, width, 3} : std::vector<py::ssize_t>{0});
 }
 
-void findLabels(const Organ& organ, const CastImage& image, std::uint8_t* labels) {
+/// 0 nothing, 1 + region of the wall, or what `scenery` says. Triangles of the picture that are not of the wall become
+/// -1.
+void findLabels(const Organ& organ, const Scenery& scenery, CastImage& image, std::uint8_t* labels) {
+  const int walls = static_cast<int>(organ.surface.triangles.size());
   for (int i = 0; i < image.width * image.height; ++i) {
-    const int seen = image.triangle[i];
-    const auto corner = seen < 0 ? 0 : static_cast<std::size_t>(organ.surface.triangles[seen][0]);
-    labels[i] = seen < 0 ? std::uint8_t{0} : static_cast<std::uint8_t>(1 + static_cast<int>(organ.region[corner]));
+    std::int32_t& seen = image.triangle[i];
+    if (seen < 0) {
+      labels[i] = 0;
+    } else if (seen < walls) {
+      const auto corner = static_cast<std::size_t>(organ.surface.triangles[seen][0]);
+      labels[i] = static_cast<std::uint8_t>(1 + static_cast<int>(organ.region[corner]));
+    } else {
+      labels[i] = scenery.label[static_cast<std::size_t>(seen - walls)];
+      seen = -1;
+    }
   }
 }
 
 /// @param colour  null: not wanted
-void look(const Use& use, double field_of_view, CastImage& image, std::uint8_t* labels, std::uint8_t* colour) {
+void look(const Use& use, double field_of_view, bool tool, CastImage& image, std::uint8_t* labels,
+          std::uint8_t* colour) {
   const Model& model = use.model();
   const State& state = use.state();
-  const SurfaceView surface{model.organ.surface.triangles, state.x, state.y, state.z};
+  const Scenery scenery = tool ? sceneryOf(model, state) : Scenery{};
+  const SurfaceView surface =
+      tool ? scenery.surface() : SurfaceView{model.organ.surface.triangles, state.x, state.y, state.z};
   const Eigen::Isometry3d pose = linkPose(model, state, model.tool->linkIndex("scope_camera_optical"));
   castRays(surface, pose, field_of_view, image);
-  findLabels(model.organ, image, labels);
-  if (colour != nullptr) shade(surface, wallAlbedo(model, state), pose, field_of_view, image, colour);
+  if (colour != nullptr) {
+    std::vector<Eigen::Vector3d> albedo = wallAlbedo(model, state);
+    albedo.insert(albedo.end(), scenery.albedo.begin(), scenery.albedo.end());
+    shade(surface, static_cast<int>(model.organ.surface.triangles.size()), albedo, pose, field_of_view, image, colour);
+  }
+  findLabels(model.organ, scenery, image, labels);
 }
 
-py::dict camera(SimulationHandle& handle, int width, int height, double field_of_view, bool normals, bool colour) {
+py::dict camera(SimulationHandle& handle, int width, int height, double field_of_view, bool normals, bool colour,
+                bool tool) {
   checkLens(width, height, field_of_view);
   const Use use(handle);
   needTool(use.model());
@@ -58,7 +77,7 @@ py::dict camera(SimulationHandle& handle, int width, int height, double field_of
   std::uint8_t* const colours = colour ? shaded.mutable_data() : nullptr;
   {
     const Unlocked others;
-    look(use, field_of_view, image, labels, colours);
+    look(use, field_of_view, tool, image, labels, colours);
   }
   py::dict found;
   found["depth"] = depth;
@@ -74,12 +93,13 @@ py::dict camera(SimulationHandle& handle, int width, int height, double field_of
 void bindCamera(SimulationClass& simulation) {
   simulation.def(
       "camera", &camera, py::arg("width") = 128, py::arg("height") = 128, py::arg("field_of_view") = 1.7,
-      py::arg("normals") = false, py::arg("colour") = false,
+      py::arg("normals") = false, py::arg("colour") = false, py::arg("tool") = false,
       "What a pinhole camera at the endoscope's lens sees of the wall, by exact rays and without a display; "
-      "the tool itself is not in the picture. field_of_view: from the left to the right edge [rad]. A "
+      "tool: with the suturing device and the threads. field_of_view: from the left to the right edge [rad]. A "
       "dictionary of arrays (height, width): depth float32 along the optical axis [m], NaN: nothing; label "
-      "uint8: 0 nothing, else 1 + region (1 cardia, 2 fundus, 3 body, 4 antrum, 5 pylorus); triangle int32, "
-      "-1: nothing; on request normal (height, width, 3) float32 in the camera, towards it; and colour "
+      "uint8: 0 nothing, else 1 + region (1 cardia, 2 fundus, 3 body, 4 antrum, 5 pylorus), 6 device, 7 thread; "
+      "triangle "
+      "int32, -1: not the wall; on request normal (height, width, 3) float32 in the camera, towards it; and colour "
       "(height, width, 3) uint8: red, green, blue of a matt wall that a lamp at the lens lights, 0: nothing. "
       "The colour is 255 sqrt(r / (1 + r)), r = albedo cos(angle of incidence) (0.03 m / distance)^2; it is "
       "not the look of rviz.");

@@ -51,10 +51,10 @@ Rgb seeping(double gap, double aside) {
   return deep / (way * way * way) * left;
 }
 
-/// Irradiance of a wall at `place`, of whatever side, by the lamp at the origin, for red, green and blue.
-Rgb irradiance(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) {
+/// Irradiance of a surface at `place`, of whatever side, by the lamp at the origin, for red, green and blue.
+Rgb irradiance(const Eigen::Vector3d& place, const Eigen::Vector3d& normal, bool is_wall) {
   const double square = place.squaredNorm(), distance = std::sqrt(square);
-  const double height = std::abs(normal.dot(place)) / normal.norm(), close = closeness(distance);
+  const double height = std::abs(normal.dot(place)) / normal.norm(), close = is_wall ? closeness(distance) : 0;
   Rgb light = Rgb::Constant(height / (distance * square));
   if (close > 0)
     light += close *
@@ -78,8 +78,8 @@ std::vector<Eigen::Vector3d> wallAlbedo(const Model& model, const State& state) 
   return albedo;
 }
 
-void shade(const SurfaceView& surface, const std::vector<Eigen::Vector3d>& albedo, const Eigen::Isometry3d& camera,
-           double field_of_view, const CastImage& image, std::uint8_t* colour) {
+void shade(const SurfaceView& surface, int walls, const std::vector<Eigen::Vector3d>& albedo,
+           const Eigen::Isometry3d& camera, double field_of_view, const CastImage& image, std::uint8_t* colour) {
   const Lens lens(image.width, image.height, field_of_view);
   const Eigen::Isometry3d to_camera = camera.inverse();
   SurfaceMesh seen{{}, surface.triangles};  // in the camera
@@ -95,7 +95,7 @@ void shade(const SurfaceView& surface, const std::vector<Eigen::Vector3d>& albed
       const Eigen::Vector3d normal = weight[0] * normals[t[0]] + weight[1] * normals[t[1]] + weight[2] * normals[t[2]];
       radiance = (weight[0] * albedo[t[0]] + weight[1] * albedo[t[1]] + weight[2] * albedo[t[2]])
                      .cwiseMax(0)
-                     .cwiseProduct(irradiance(place, normal));
+                     .cwiseProduct(irradiance(place, normal, image.triangle[i] < walls));
     }
     for (int k = 0; k < 3; ++k) colour[3 * i + k] = shown(radiance[k]);
   }

@@ -21,8 +21,9 @@ std::vector<Eigen::Vector3d> wallAlbedo(const Model& model, const State& state);
 /// Nearer than 10 mm light goes through the wall, too, and it becomes red, as in the endoscope's picture
 /// (docs/endoscope_look.md). There are no shadows, because what the lens sees, the lamp lights. All operations are
 /// rounded by IEEE 754.
+/// @param walls  the first so many triangles are wall; light does not go through the others
 /// @param[out] colour  (height, width, 3)
-void shade(const SurfaceView& surface, const std::vector<Eigen::Vector3d>& albedo, const Eigen::Isometry3d& camera,
-           double field_of_view, const CastImage& image, std::uint8_t* colour);
+void shade(const SurfaceView& surface, int walls, const std::vector<Eigen::Vector3d>& albedo,
+           const Eigen::Isometry3d& camera, double field_of_view, const CastImage& image, std::uint8_t* colour);
 
 }  // namespace vibe::python

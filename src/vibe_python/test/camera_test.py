@@ -115,6 +115,38 @@ class CameraTest(unittest.TestCase):
         share = picture["colour"][..., 2] / picture["colour"][..., 0]
         self.assertGreater(share[pale].min(), share[~marked[simulation.model.triangles].any(1)[picture["triangle"]]].max())
 
+    def test_the_device_hides_the_wall_and_nothing_else_changes(self):
+        simulation = vibe.Simulation(self.simulation.model)
+        simulation.run(240, insertion=0.05, helix_advance=0.02, insufflate=True)
+        wall, seen = simulation.camera(96, 96, ANGLE, normals=True), simulation.camera(96, 96, ANGLE, normals=True, tool=True)
+        hidden = seen["label"] == 6
+        self.assertTrue(0.02 < hidden.mean() < 0.5)
+        self.assertTrue(np.all(seen["depth"][hidden] < wall["depth"][hidden]))
+        self.assertTrue(np.all(seen["triangle"][hidden] == -1))
+        for name in wall:
+            np.testing.assert_array_equal(seen[name][~hidden], wall[name][~hidden])
+        tip = np.linalg.inv(simulation.link_pose("scope_camera_optical")) @ simulation.link_pose("helix")[:, 3]
+        row, column = (96 / (2 * np.tan(ANGLE / 2)) * tip[[1, 0]] / tip[2] + 48).astype(int)
+        around = np.s_[row - 3:row + 4, column - 3:column + 4]
+        self.assertTrue(hidden[around].any())
+        self.assertLess(abs(seen["depth"][around][hidden[around]].max() - tip[2]), 2e-3)  # the wire turns about the axis
+        simulation.run(30, helix_advance=0.0)
+        self.assertFalse((simulation.camera(96, 96, ANGLE, tool=True)["label"][around] == 6).any())  # control
+        before = (simulation.camera(96, 96, ANGLE, tool=True)["label"] == 6).sum()
+        simulation.run(1, apc_pedal=True)  # the probe comes out
+        self.assertGreater((simulation.camera(96, 96, ANGLE, tool=True)["label"] == 6).sum(), before)
+
+    def test_threads_are_where_the_bites_are(self):
+        environment = Environment("Cinch", camera=(96, 96, 2.2), pictures=["label"], tool=True, **SMALL)
+        label = environment.reset(seed=1)[0]["label"]
+        simulation = environment.simulation
+        bites = simulation.threads()[0]["bites"]
+        middle = np.c_[(bites[1:] + bites[:-1]) / 2, np.ones(len(bites) - 1)] @ np.linalg.inv(simulation.link_pose("scope_camera_optical")).T
+        pixel = (96 / (2 * np.tan(1.1)) * middle[:, [1, 0]] / middle[:, 2:3] + 48).astype(int)
+        near = [label[max(v - 6, 0):v + 7, max(u - 6, 0):u + 7] for (v, u), z in zip(pixel, middle[:, 2]) if z > 0 and 0 <= v < 96 and 0 <= u < 96]
+        self.assertGreater(sum((part == 7).any() for part in near), 0)
+        self.assertFalse((Environment("Reach", camera=(96, 96, 2.2), tool=True, **SMALL).reset(seed=1)[0]["label"] == 7).any())  # control
+
     def test_environments_give_the_pictures_that_are_asked_for(self):
         pictures = ["colour", "normal", "label", "depth"]
         seen = {}
@@ -130,6 +162,8 @@ class CameraTest(unittest.TestCase):
         self.assertNotIn("depth", only.reset(seed=1)[0])
         with self.assertRaisesRegex(vibe.Error, "'pictures' is .'smell'.*depth, label, normal, colour"):
             Environment("Reach", camera=(12, 8, ANGLE), pictures=["smell"])
+        with self.assertRaisesRegex(vibe.Error, "'tool' is True.*with True a camera"):
+            Environment("Reach", tool=True)
 
 
 if __name__ == "__main__":

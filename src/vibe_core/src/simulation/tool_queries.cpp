@@ -1,13 +1,18 @@
 #include "vibe_core/simulation/tool_queries.hpp"
 
+#include <algorithm>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include <Eigen/Geometry>
 
+#include "arithmetic/turn.hpp"
 #include "geometry/ray.hpp"
 #include "tool/kinematics.hpp"
 #include "tool/tool_motion.hpp"
+#include "tool/urdf_document.hpp"
+#include "vibe_core/files/files.hpp"
 
 namespace vibe {
 
@@ -106,6 +111,39 @@ std::vector<DrawnJoint> drawnJoints(const Model& model, const State& state) {
     return probeIsOut(model, state) ? model.scene.marking->apc.probe_length : joint.offset;
   });
   return drawn;
+}
+
+std::vector<Eigen::Isometry3d> drawnLinkPoses(const Model& model, const State& state) {
+  const ToolModel& tool = *model.tool;
+  const std::vector<Eigen::Isometry3d> simulated = linkPoses(model, state);
+  const std::vector<DrawnJoint> drawn = drawnJoints(model, state);
+  std::vector<Eigen::Isometry3d> poses(simulated.size(), model.tool_base * simulated[0]);
+  for (const ToolJoint& joint : tool.joints()) {
+    const auto is_this = [&](const DrawnJoint& one) { return one.name == joint.name; };
+    const auto found = std::find_if(drawn.begin(), drawn.end(), is_this);
+    Eigen::Isometry3d in_parent = joint.origin;
+    if (found == drawn.end())
+      in_parent = simulated[joint.parent_link].inverse() * simulated[joint.child_link];
+    else if (joint.type == ToolJoint::Type::Prismatic)
+      in_parent.translate(found->position * joint.axis);
+    else
+      in_parent.rotate(rotationAbout(joint.axis, found->position));
+    poses[joint.child_link] = poses[joint.parent_link] * in_parent;
+  }
+  return poses;
+}
+
+std::vector<LinkMesh> linkMeshes(const Model& model) {
+  const std::string& urdf = model.scene.scope->urdf;
+  const UrdfDocument document(readTextFile(resolveAddress(urdf), "URDF"), urdf);
+  std::vector<LinkMesh> meshes;
+  for (int link = 0; link < model.tool->linkCount(); ++link) {
+    const urdf::LinkConstSharedPtr found = document.model().getLink(model.tool->linkName(link));
+    if (!found || !found->visual) continue;
+    const auto mesh = std::dynamic_pointer_cast<const urdf::Mesh>(found->visual->geometry);
+    if (mesh) meshes.push_back({link, toIsometry(found->visual->origin), mesh->filename});
+  }
+  return meshes;
 }
 
 }  // namespace vibe

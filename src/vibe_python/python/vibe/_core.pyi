@@ -141,8 +141,8 @@ class Simulation:
     @property
     def burn_grade(self) -> ndarray:
         """View (particles,) uint8: 0 none, then mark, burn, deep burn; (0,) without marking."""
-    def camera(self, width: int = 128, height: int = 128, field_of_view: float = 1.7, normals: bool = False, colour: bool = False) -> dict:
-        """What a pinhole camera at the endoscope's lens sees of the wall, by exact rays and without a display; the tool itself is not in the picture. field_of_view: from the left to the right edge [rad]. A dictionary of arrays (height, width): depth float32 along the optical axis [m], NaN: nothing; label uint8: 0 nothing, else 1 + region (1 cardia, 2 fundus, 3 body, 4 antrum, 5 pylorus); triangle int32, -1: nothing; on request normal (height, width, 3) float32 in the camera, towards it; and colour (height, width, 3) uint8: red, green, blue of a matt wall that a lamp at the lens lights, 0: nothing. The colour is 255 sqrt(r / (1 + r)), r = albedo cos(angle of incidence) (0.03 m / distance)^2; it is not the look of rviz."""
+    def camera(self, width: int = 128, height: int = 128, field_of_view: float = 1.7, normals: bool = False, colour: bool = False, tool: bool = False) -> dict:
+        """What a pinhole camera at the endoscope's lens sees of the wall, by exact rays and without a display; tool: with the suturing device and the threads. field_of_view: from the left to the right edge [rad]. A dictionary of arrays (height, width): depth float32 along the optical axis [m], NaN: nothing; label uint8: 0 nothing, else 1 + region (1 cardia, 2 fundus, 3 body, 4 antrum, 5 pylorus), 6 device, 7 thread; triangle int32, -1: not the wall; on request normal (height, width, 3) float32 in the camera, towards it; and colour (height, width, 3) uint8: red, green, blue of a matt wall that a lamp at the lens lights, 0: nothing. The colour is 255 sqrt(r / (1 + r)), r = albedo cos(angle of incidence) (0.03 m / distance)^2; it is not the look of rviz."""
     def close(self) -> None:
         """Ends it; views stay valid. Whatever uses it later raises vibe.Error."""
     @property

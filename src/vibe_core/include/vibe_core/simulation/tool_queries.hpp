@@ -52,4 +52,19 @@ struct DrawnJoint {
 /// @param model  with a tool
 std::vector<DrawnJoint> drawnJoints(const Model& model, const State& state);
 
+/// Pose of every link in world with the joints that only a picture needs, in link order.
+/// @param model  with a tool
+std::vector<Eigen::Isometry3d> drawnLinkPoses(const Model& model, const State& state);
+
+/// A mesh that the URDF has for the picture of a link.
+struct LinkMesh {
+  int link = -1;
+  Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  ///< mesh in the link [m]
+  std::string file;                                          ///< or package://NAME/FILE
+};
+
+/// All of them, in link order; of several meshes of a link the first. Reads the URDF again.
+/// @param model  with a tool
+std::vector<LinkMesh> linkMeshes(const Model& model);
+
 }  // namespace vibe

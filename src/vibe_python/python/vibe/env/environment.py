@@ -79,7 +79,7 @@ class _Episodes:
             raise vibe.Error("The environment was made without render_mode='rgb_array'; give that.")
         if not self._has_begun():
             raise vibe.Error("No episode has begun; call reset() first.")
-        return tuple(simulation.camera(*PICTURE, colour=True)["colour"] for simulation in self.task.simulation)
+        return tuple(simulation.camera(*PICTURE, colour=True, tool=True)["colour"] for simulation in self.task.simulation)
 
 
 class Environment(_Episodes, api.Env):
@@ -95,6 +95,7 @@ class Environment(_Episodes, api.Env):
                nothing is seen
     pictures   which: of 'depth' float32 [m], 'label' uint8, 'normal' (.., 3) float32 and 'colour' (.., 3) uint8, as
                vibe.Simulation.camera() has them; depth and label by default
+    tool       whether they show the suturing device and the threads
     step_period
                simulated time per step [s], a whole part of that of an action; None: one step per action. Shorter steps
                are slower and more accurate (docs/python.md)
@@ -108,7 +109,7 @@ class Environment(_Episodes, api.Env):
     max_episode_steps
                actions until an episode is truncated, instead of the task's
     render_mode
-               None, or 'rgb_array': render() gives a picture of the wall, without tool and thread
+               None, or 'rgb_array': render() gives a picture with device and threads
 
     reset(seed) draws stomach, start and goal; the same seed gives the same episode, to the bit. reset(options=...) chooses
     instead: {'organ': (shape, scale) or a scene file, 'start': 0 to 3, 'goal': (along, around [rad]), 'phase': 0 to 7,
@@ -151,7 +152,7 @@ class Environment(_Episodes, api.Env):
         return self._seen()
 
     def render(self) -> np.ndarray:
-        """The wall as the endoscope sees it (480, 480, 3) uint8, without tool and thread."""
+        """What the endoscope sees, (480, 480, 3) uint8, with device and threads."""
         return self._pictures()[0]
 
     def step(self, action: Any) -> tuple[dict[str, np.ndarray], float, bool, bool, dict[str, Any]]:

@@ -51,7 +51,7 @@ class Task:
             _register(cls)
 
     def __init__(self, count=1, *, particles=1000, organs=_organs.TRAINING, action="joints", threads=1, camera=None,
-                 pictures=None, breathing=None, step_period=None, max_episode_steps=None, scene=None, vary=None, tolerance=None,
+                 pictures=None, tool=False, breathing=None, step_period=None, max_episode_steps=None, scene=None, vary=None, tolerance=None,
                  along=None, around=None):
         if not isinstance(action, str) or action not in ("joints", "tip"):
             raise vibe.Error(f"'action' is {vibe._shown(action)}; use 'joints' or 'tip'.")
@@ -67,7 +67,8 @@ class Task:
         self.count, self.particles = whole("count", count, 1, 65536), whole("particles", particles, 100, 1000000)
         self.organs, self.breathing = organs_of(organs), breathing
         self.mode, self.threads, self.camera = action, whole("threads", threads, 1, 1024), camera_of(camera)
-        self.pictures, self.step_period = pictures_of(pictures, self.camera), self._period(step_period)
+        self.pictures, self.tool = pictures_of(pictures, tool, self.camera), bool(tool)
+        self.step_period = self._period(step_period)
         self.length = self.steps_of_episode() if max_episode_steps is None else whole("max_episode_steps", max_episode_steps, 1, 10**9)
         self.variation = Variation(count, scene, vary, breathing, self.sections)
         for sections in self.variation.scenes():  # what no scene has is refused before any episode
@@ -229,7 +230,7 @@ class Task:
 
     #: what no episode changes; everything else that an instance holds is the state of its episodes
     _constant = {"count", "particles", "organs", "tolerance", "along", "around", "breathing", "mode", "threads", "camera",
-                 "pictures", "step_period", "length", "closed", "action_space", "observation_space", "seen", "events"}
+                 "pictures", "tool", "step_period", "length", "closed", "action_space", "observation_space", "seen", "events"}
 
     def state(self):
         """Everything that the episodes are in the midst of, as a dictionary that can be pickled; but the events of the last action."""
@@ -329,7 +330,8 @@ class Task:
         parts.update(self._further(seen))
         parts = {name: np.asarray(value, np.float32) for name, value in parts.items()}
         if self.camera:
-            seen = [simulation.camera(*self.camera, normals="normal" in self.pictures, colour="colour" in self.pictures)
+            wanted = {"normals": "normal" in self.pictures, "colour": "colour" in self.pictures, "tool": self.tool}
+            seen = [simulation.camera(*self.camera, **wanted)
                     for simulation in self.simulation]
             parts.update({name: np.nan_to_num(np.stack([one[name] for one in seen]), nan=0.0) for name in self.pictures})
         return parts

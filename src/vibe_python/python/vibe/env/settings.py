@@ -9,7 +9,7 @@ from . import organs as _organs
 #: greatest numbers of observations, far beyond what occurs: [m], [rad]; [N], [N m]; of depths [m]
 FAR, STRONG, DEEP = 10.0, 1000.0, 10.0
 #: pictures that an observation may hold: channels, type, least and greatest value
-PICTURES = {"depth": ((), np.float32, 0, DEEP), "label": ((), np.uint8, 0, 5), "normal": ((3,), np.float32, -1, 1),
+PICTURES = {"depth": ((), np.float32, 0, DEEP), "label": ((), np.uint8, 0, 7), "normal": ((3,), np.float32, -1, 1),
             "colour": ((3,), np.uint8, 0, 255)}
 
 
@@ -62,8 +62,10 @@ def camera_of(camera):
     return whole("camera[0]", camera[0], 1, 4096), whole("camera[1]", camera[1], 1, 4096), float(camera[2])
 
 
-def pictures_of(pictures, camera):
+def pictures_of(pictures, tool, camera):
     """Which pictures the camera gives, as a tuple of names."""
+    if not isinstance(tool, (bool, np.bool_)) or tool and camera is None:
+        raise vibe.Error(f"'tool' is {vibe._shown(tool)}; give True or False, and with True a camera=(width, height, field of view).")
     if pictures is None:
         return ("depth", "label")
     if camera is None:
