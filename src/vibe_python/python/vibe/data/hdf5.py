@@ -72,10 +72,23 @@ class Episodes:
             first.unlink(missing_ok=True)
             os.link(self.file, first)
             self._links = [(self._part("first"), self._name.format(k)) for k in range(number)]
-        name = self._name.format(number)
-        files.write(os.path.join(os.path.dirname(self.file), self._part(number)), self._image(lambda out: _fill(out, name, content, attributes)))
-        links, said = [*self._links, (self._part(number), name)], [*self._said, attributes]
-        self._write(links, said)
+        name, image = self._name.format(number), io.BytesIO()
+        with self._h5py.File(image, "w") as out:
+            group = out.create_group(name)
+            group.attrs.update(attributes)
+            for key, rows in content.items():
+                group.create_dataset(key, data=rows, compression=1)
+        files.write(os.path.join(os.path.dirname(self.file), self._part(number)), image.getvalue())
+        self._write([*self._links, (self._part(number), name)], [*self._said, attributes])
+
+    def _write(self, links, said):
+        """The file with links to episodes; only when it is there do they count."""
+        image = io.BytesIO()
+        with self._h5py.File(image, "w") as out:
+            for number, link in enumerate(links):
+                out[self._name.format(number)] = self._h5py.ExternalLink(*link)
+            self._finish(out, said)
+        files.write(self.file, image.getvalue())
         self._links, self._said = links, said
 
     def gather(self):
@@ -96,23 +109,9 @@ class Episodes:
     def _part(self, name):
         return f"{os.path.basename(self._parts)}/{name}.hdf5"
 
-    def _write(self, links, attributes):
-        def all_linked(out):
-            for number, link in enumerate(links):
-                out[self._name.format(number)] = self._h5py.ExternalLink(*link)
-            self._finish(out, attributes)
-
-        files.write(self.file, self._image(all_linked))
-
-    def _finish(self, out, attributes):
+    def _finish(self, out, said):
         out.attrs["begun"] = json.dumps(self.begun)
-        self.describe(out, attributes)
-
-    def _image(self, fill):
-        image = io.BytesIO()
-        with self._h5py.File(image, "w") as out:
-            fill(out)
-        return image.getvalue()
+        self.describe(out, said)
 
 
 class _Reserved:
@@ -132,10 +131,3 @@ class _Reserved:
         count = self._raw.write(data)
         self.end = max(self.end, self._raw.tell())
         return count
-
-
-def _fill(out, name, content, attributes):
-    group = out.create_group(name)
-    group.attrs.update(attributes)
-    for key, rows in content.items():
-        group.create_dataset(key, data=rows, compression=1 if rows.nbytes > 4096 else None)

@@ -1,10 +1,7 @@
 """LeRobot data sets, codebase versions v2.1 and v3.0: tables as Parquet, pictures as video, metadata beside them.
 
-    features = {"observation.state": {"dtype": "float32", "shape": [2], "names": ["insertion", "rotation"]},
-                "action": {"dtype": "float32", "shape": [2], "names": None},
-                "observation.images.endoscope": {"dtype": "video", "shape": [480, 640, 3], "names": ["height", "width", "channels"]}}
     with lerobot.Writer("reach", version="v3.0", fps=20, features=features) as writer:
-        writer.add({"observation.state": states, "action": actions}, "Reach the mark", {"observation.images.endoscope": pictures})
+        writer.add({"observation.state": states, "action": actions}, "Reach the mark", {"observation.images.endoscope": frames})
 """
 
 import json
@@ -18,7 +15,7 @@ import vibe
 from . import files, statistics, video
 
 CHUNK = 1000  # files in a folder
-DTYPES = ("float32", "float64", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64", "bool", "string")
+DTYPES = ("float32", "float64", "bool", "string", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
 INDICES = {"timestamp": "float32", "frame_index": "int64", "episode_index": "int64", "index": "int64", "task_index": "int64"}
 LAYOUT = {"v3.0": {"data_path": "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet",
                    "video_path": "videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4",
@@ -29,7 +26,7 @@ EPISODES = "meta/episodes/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
 TASKS = {"pandas": json.dumps({"index_columns": ["task"], "column_indexes": [], "columns": [
     {"name": name, "field_name": name, "pandas_type": kind, "numpy_type": numpy, "metadata": None}
     for name, kind, numpy in (("task_index", "int64", "int64"), ("task", "unicode", "object"))]})}  # their index is the task
-CARD = """# {robot_type}: {total_episodes} episodes
+CARD = """# {robot_type}
 
 * Dataset description, collection procedure: {about}
 * Robot: `{robot_type}`. `info.json` names what its state and actions hold; SI units.
@@ -48,32 +45,32 @@ class Writer:
               task_index) are added
     robot     robot_type of the data set
     about     a sentence for its card, meta/README.md: where it comes from, how it was collected
-    begun     a dictionary of what else has to be the same when it goes on; kept as meta/begun.json
+    begun     a dictionary of what else has to be the same when it goes on; kept in info.json
 
     An episode is a file of each kind, written under another name, synchronised and renamed; info.json, which counts episodes,
-    comes last. So a kill or a full disk leaves all finished episodes, and a new Writer goes on after them; `episodes` says how
-    many there are. The same input gives the same bytes. An episode's videos are in memory while they are encoded (H.264). Needs
-    pyarrow, and av for videos. Raises vibe.Error, also where the folder was begun with other arguments."""
+    comes last. So a kill or a full disk leaves all finished episodes, and a new Writer goes on after them: `episodes` is their
+    number. The same input gives the same bytes. Each video is in memory while it is encoded (H.264). Needs pyarrow, and av for
+    videos. Raises vibe.Error, also where the folder was begun with other arguments."""
 
     def __init__(self, folder, version="v3.0", fps=30, features=None, robot="vibe_endoscope", about="Made with the simulator ViBE for ROS.",
                  begun=None):
         self._arrow, self._parquet = (files.needed(name, "pip install pyarrow") for name in ("pyarrow", "pyarrow.parquet"))
-        self.folder, self.about, self.info = os.fspath(folder), about, _begun(version, fps, features, robot)
+        self.folder, self.info = os.fspath(folder), _begun(version, fps, features, robot, begun)
         self._videos = [name for name, feature in self.info["features"].items() if feature["dtype"] == "video"]
-        self._rows, self._stats, self._tasks = [], {}, []  # (row, statistics) of each episode; statistics of all; tasks
-        names, begun = ("codebase_version", "fps", "robot_type", "features"), json.loads(json.dumps(begun or {}))
-        if os.path.exists(self._path("meta/info.json")):
-            info = self._json("info")
-            files.compare(self.folder, {name: info.get(name) for name in names}, {name: self.info[name] for name in names})
-            files.compare(self.folder, self._json("begun"), begun)
+        self._rows, self._stats, self._tasks = [], {}, []  # the table of episodes; statistics of all; tasks
+        self._lines = {"episodes": b"", "episodes_stats": b""}  # of v2.1, whose files are replaced as a whole, too
+        there = [name for _, _, names in os.walk(self.folder) for name in names if not name.endswith(files.PARTIAL)]
+        info = self._json("info") if "info.json" in there else {}
+        if there and "vibe" not in info:
+            raise vibe.Error(f"{self.folder} holds {there[0]} and no data set that was begun here; name another folder.")
+        if info:
+            fixed = ("codebase_version", "fps", "robot_type", "features")
+            files.compare(self.folder, *({**{name: one[name] for name in fixed}, **one["vibe"]} for one in (info, self.info)))
             self._take_up(info)
         else:
-            for _, _, there in os.walk(self.folder):
-                strange = [name for name in there if name != "begun.json" and not name.endswith(files.PARTIAL)]
-                if strange:
-                    raise vibe.Error(f"{self.folder} holds {strange[0]} and no data set of LeRobot; name another folder.")
-            self._write_json("begun", begun)
             self._write_json("info", self.info)
+        sensors = ", ".join(f"`{name}`" for name in self.info["features"] if name.startswith("observation"))
+        files.write(self._path("meta/README.md"), CARD.format(about=about, sensors=sensors, **self.info).encode())
 
     def __enter__(self):
         return self
@@ -106,17 +103,17 @@ class Writer:
         stats = {name: statistics.of_rows(value.reshape(count, *features[name]["shape"]))
                  for name, value in columns.items() if features[name]["dtype"] != "string"}
         for name, frames in videos.items():
-            frames = video.Frames(name, frames, count, features[name]["shape"])
-            files.write(self._file("video_path", number, name), video.encode(frames, self.info["fps"]))
-            stats[name] = statistics.of_pictures(frames.samples)
-        files.write(self._file("data_path", number), self._bytes({name: _array(self._arrow, columns[name]) for name in features if name in columns}))
+            samples, shape = [], features[name]["shape"]
+            files.write(self._file("video_path", number, name), video.encode(video.seen(name, frames, count, shape, samples), self.info["fps"], shape))
+            stats[name] = statistics.of_pictures(samples)
+        files.write(self._file("data_path", number), self._bytes({name: _array(self._arrow, value) for name, value in columns.items()}))
         row = {"episode_index": number, "tasks": [task], "length": count, "split": split, "success": bool(success), **further}
         self._finish(row, stats, tasks)
 
     def _columns(self, columns):
-        wanted = {name: feature for name, feature in self.info["features"].items() if name not in INDICES and name not in self._videos}
+        wanted = [name for name in self.info["features"] if name not in INDICES and name not in self._videos]
         files.same_names("columns", columns, wanted)
-        found = {name: _column(name, columns[name], feature) for name, feature in wanted.items()}
+        found = {name: _column(name, columns[name], self.info["features"][name]) for name in wanted}
         counts = {name: len(value) for name, value in found.items()}
         if len(set(counts.values())) != 1 or 0 in counts.values():
             raise vibe.Error(f"The columns have the rows {counts}; give as many of each, at least one.")
@@ -130,43 +127,43 @@ class Writer:
         info = {**self.info, "total_episodes": number + 1, "total_frames": first + row["length"], "total_tasks": len(tasks),
                 "splits": _extended(self.info["splits"], row["split"], number)}
         total = {name: statistics.together(self._stats[name], stats[name]) if self._stats else stats[name] for name in stats}
-        rows = [*self._rows, (row, stats)]
+        lines = {"episodes": self._lines["episodes"] + _line(row),
+                 "episodes_stats": self._lines["episodes_stats"] + _line({"episode_index": number, "stats": stats})}
         if info["codebase_version"] == "v2.1":
-            info.update(total_videos=len(rows) * len(self._videos), total_chunks=1 + number // CHUNK)
+            info.update(total_videos=(number + 1) * len(self._videos), total_chunks=1 + number // CHUNK)
         else:
             files.write(self._file("episodes", number), self._bytes(self._episode(row, stats, first)))
-        self._describe(info, rows, total, tasks)
-        self.info, self._rows, self._stats, self._tasks = info, rows, total, tasks
+        self._describe(info, lines, total, tasks)
+        self.info, self._lines, self._stats, self._tasks = info, lines, total, tasks
+        self._rows.append(row)
 
-    def _describe(self, info, rows, stats, tasks):
+    def _describe(self, info, lines, stats, tasks):
         """Writes what is of all episodes together."""
         if info["codebase_version"] == "v2.1":
-            self._write_lines("episodes", [row for row, _ in rows])
-            self._write_lines("episodes_stats", [{"episode_index": row["episode_index"], "stats": part} for row, part in rows])
-            self._write_lines("tasks", [{"task_index": k, "task": task} for k, task in enumerate(tasks)])
+            lines = {**lines, "tasks": b"".join(_line({"task_index": k, "task": task}) for k, task in enumerate(tasks))}
+            for name, text in lines.items():
+                files.write(self._path(f"meta/{name}.jsonl"), text)
         else:
             files.write(self._path("meta/tasks.parquet"), self._bytes({"task_index": list(range(len(tasks))), "task": tasks}, TASKS))
         self._write_json("stats", stats)
-        sensors = ", ".join(f"`{name}`" for name in info["features"] if name.startswith("observation"))
-        files.write(self._path("meta/README.md"), CARD.format(about=self.about, sensors=sensors, **info).encode())
         self._write_json("info", info)
 
     def _take_up(self, info):
         """The state after the last episode that info.json counts; what is left of another one is removed."""
         count = info["total_episodes"]
-        if info["codebase_version"] == "v2.1" and count:
-            rows, parts = (self._lines(name)[:count] for name in ("episodes", "episodes_stats"))
-            self._rows = [(row, part["stats"]) for row, part in zip(rows, parts)]
-        else:
-            self._rows = [self._episode_of(number) for number in range(count)]
-        for row, stats in self._rows:
+        for number, (row, stats) in enumerate(map(self._episode_of, range(count)) if info["codebase_version"] == "v3.0" else self._lines_of(count)):
+            self._rows.append(row)
+            self._lines["episodes"] += _line(row)
+            self._lines["episodes_stats"] += _line({"episode_index": number, "stats": stats})
             self._tasks += [task for task in row["tasks"] if task not in self._tasks]
             self._stats = {name: statistics.together(self._stats[name], stats[name]) if self._stats else stats[name] for name in stats}
         self.info = info
-        for path in (self._file("data_path", count), self._file("episodes", count), *(self._file("video_path", count, name) for name in self._videos)):
+        begun = [self._file("data_path", count), self._file("episodes", count), *(self._file("video_path", count, name) for name in self._videos)]
+        said = [path for path in pathlib.Path(self._path("meta")).glob("*.*") if count == 0 and path.name != "info.json"]
+        for path in (*begun, *said):
             pathlib.Path(path).unlink(missing_ok=True)
         if count:
-            self._describe(info, self._rows, self._stats, self._tasks)
+            self._describe(info, self._lines, self._stats, self._tasks)
 
     def _episode(self, row, stats, first):
         """As the table of v3.0 has it: where its files are, and its statistics, one column each."""
@@ -188,6 +185,10 @@ class Writer:
                 stats.setdefault(feature, {})[key] = found[name]
         return row, stats
 
+    def _lines_of(self, count):
+        rows, stats = (pathlib.Path(self._path(f"meta/{name}.jsonl")).read_text().splitlines()[:count] if count else [] for name in self._lines)
+        return [(json.loads(row), json.loads(part)["stats"]) for row, part in zip(rows, stats)]
+
     # --- files
 
     def _path(self, name):
@@ -204,21 +205,17 @@ class Writer:
         return out.getvalue()
 
     def _json(self, name):
-        with open(self._path(f"meta/{name}.json"), encoding="utf-8") as file:
-            return json.load(file)
+        return json.loads(pathlib.Path(self._path(f"meta/{name}.json")).read_text())
 
     def _write_json(self, name, value):
         files.write(self._path(f"meta/{name}.json"), json.dumps(value, indent=4).encode())
 
-    def _lines(self, name):
-        with open(self._path(f"meta/{name}.jsonl"), encoding="utf-8") as file:
-            return [json.loads(line) for line in file]
 
-    def _write_lines(self, name, values):
-        files.write(self._path(f"meta/{name}.jsonl"), "".join(json.dumps(value) + "\n" for value in values).encode())
+def _line(value):
+    return json.dumps(value).encode() + b"\n"
 
 
-def _begun(version, fps, features, robot):
+def _begun(version, fps, features, robot, begun):
     """info.json of no episodes, or vibe.Error."""
     if version not in LAYOUT:
         raise vibe.Error(f"There is no version {version!r} of LeRobot here; use one of {', '.join(LAYOUT)}.")
@@ -229,7 +226,8 @@ def _begun(version, fps, features, robot):
     features = {name: _feature(name, feature, fps) for name, feature in features.items()}
     features.update({name: {"dtype": dtype, "shape": [1], "names": None} for name, dtype in INDICES.items()})
     info = {"codebase_version": version, "robot_type": robot, "total_episodes": 0, "total_frames": 0, "total_tasks": 0,
-            "chunks_size": CHUNK, "fps": fps, "splits": {}, **LAYOUT[version], "features": features}
+            "chunks_size": CHUNK, "fps": fps, "splits": {}, **LAYOUT[version], "features": features,
+            "vibe": json.loads(json.dumps(begun or {}))}
     if not any(feature["dtype"] == "video" for feature in features.values()):
         info["video_path"] = None
     return info

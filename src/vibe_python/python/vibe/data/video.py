@@ -9,13 +9,13 @@ import vibe
 from .files import needed
 
 
-def encode(frames, fps):
-    """MP4 of Frames; the same ones give the same bytes with the same libraries."""
+def encode(frames, fps, shape):
+    """MP4 of frames; the same ones give the same bytes with the same libraries."""
     av = needed("av", "pip install av, or Debian's python3-av")
     out = io.BytesIO()
     with av.open(out, "w", format="mp4", container_options={"fflags": "+bitexact"}) as container:
         stream = container.add_stream("libx264", rate=fps)
-        stream.height, stream.width, stream.pix_fmt = *frames.shape[:2], "yuv420p"
+        stream.height, stream.width, stream.pix_fmt = *shape[:2], "yuv420p"
         stream.options = {"crf": "23", "g": "2", "bf": "0", "threads": "1", "flags": "+bitexact"}
         for frame in frames:
             container.mux(stream.encode(av.VideoFrame.from_ndarray(frame, format="rgb24")))
@@ -23,27 +23,18 @@ def encode(frames, fps):
     return out.getvalue()
 
 
-class Frames:
-    """Hands frames on, sees that they are what they should be, and keeps samples of them for statistics: up to 100, or a
-    few more of a long video, at a coarser resolution, as LeRobot takes them."""
-
-    def __init__(self, name, frames, count, shape):
-        self.name, self.frames, self.count, self.shape, self.samples = name, frames, count, tuple(shape), []
-
-    def __iter__(self):
-        wanted = set(np.round(np.linspace(0, self.count - 1, max(min(self.count, 100), int(self.count**0.75)))).astype(int))
-        stride = max(1, max(self.shape[:2]) // 150) if max(self.shape[:2]) >= 300 else 1
-        number = 0
-        for number, frame in enumerate(self.frames, 1):
-            frame = np.asarray(frame)
-            if number > self.count or frame.dtype != np.uint8 or frame.shape != self.shape:
-                break
-            if number - 1 in wanted:
-                self.samples.append(frame[::stride, ::stride])
-            yield np.ascontiguousarray(frame)
-        else:
-            if number == self.count:
-                return
-            raise vibe.Error(f"The video {self.name!r} has {number} frames for {self.count} rows; give as many.")
-        raise vibe.Error(f"The video {self.name!r} has as frame {number} {frame.dtype} of the shape {frame.shape}; give {self.count} of uint8 of the "
-                         f"shape {self.shape}.")
+def seen(name, frames, count, shape, samples):
+    """Hands frames on that are what they should be. `samples` gets up to 100 of them, or a few more of a long video, at a
+    coarser resolution, as LeRobot takes them for statistics."""
+    wanted = set(np.round(np.linspace(0, count - 1, max(min(count, 100), int(count**0.75)))).astype(int))
+    stride = max(shape[:2]) // 150 if max(shape[:2]) >= 300 else 1
+    number = 0
+    for number, frame in enumerate(map(np.asarray, frames), 1):
+        if number > count or frame.dtype != np.uint8 or list(frame.shape) != shape:
+            raise vibe.Error(f"Frame {number} of the video {name!r} is {frame.dtype} of the shape {frame.shape}; give {count} frames of uint8 of "
+                             f"the shape {tuple(shape)}.")
+        if number - 1 in wanted:
+            samples.append(frame[::stride, ::stride])
+        yield np.ascontiguousarray(frame)
+    if number < count:
+        raise vibe.Error(f"The video {name!r} has {number} frames for {count} rows; give as many.")

@@ -1,6 +1,5 @@
 """Demonstrations as training sets: robomimic's HDF5, Minari's, or LeRobot's folder; and the environment back from a file."""
 
-import contextlib
 import hashlib
 import inspect
 import json
@@ -37,7 +36,7 @@ def record(environment, policy, file, episodes, seed=0, progress=None, format="r
         for number in range(seed + tried, seed + episodes):
             rows, success = episode(environment, policy, number)
             if success:
-                out.add(rows, number, _hash(environment))
+                out.add(_columns(rows), number, _hash(environment))
             if progress:
                 progress(number - seed + 1, episodes, len(out.seeds))
         return len(out.seeds), max(tried, episodes)
@@ -89,13 +88,12 @@ def replay(file):
         return len(found["data"])
 
 
-@contextlib.contextmanager
 def _opened(file):
     h5py = files.needed("h5py", hdf5.PLACE)
     try:
-        with h5py.File(file, "r") as found:
-            found["data"], found.attrs["begun"]
-            yield found
+        found = h5py.File(file, "r")
+        found["data"], found.attrs["begun"]
+        return found
     except (OSError, KeyError) as error:
         raise vibe.Error(f"{file} holds no demonstrations of this version for robomimic ({error}); name one that record() has written.") from None
 
@@ -140,7 +138,7 @@ def _hash(environment):
 def _columns(rows):
     """As robomimic names them."""
     found = {f"{name}/{key}": np.stack([row[column][key] for row in rows]) for name, column in (("obs", 0), ("next_obs", 4)) for key in rows[0][0]}
-    return {**found, "actions": np.stack([row[1] for row in rows]), "rewards": np.array([row[2] for row in rows], np.float32),
+    return {**found, "actions": np.clip([row[1] for row in rows], -1, 1), "rewards": np.array([row[2] for row in rows], np.float32),
             "dones": np.array([row[3] for row in rows], np.int64)}
 
 
@@ -157,8 +155,8 @@ class _Robomimic(hdf5.Episodes):
         out.require_group("data").attrs.update(env_args=json.dumps(self.begun["environment"]), total=sum(int(one["num_samples"]) for one in said))
         out["mask/train"], out["mask/valid"] = names[~valid], names[valid]
 
-    def add(self, rows, seed, state):
-        super().add(_columns(rows), {"num_samples": len(rows), "seed": seed, "hash": state})
+    def add(self, columns, seed, state):
+        super().add(columns, {"num_samples": len(columns["actions"]), "seed": seed, "hash": state})
 
 
 class _Minari(hdf5.Episodes):
@@ -168,6 +166,8 @@ class _Minari(hdf5.Episodes):
         if not re.search(r"[\w-]-v\d+$", os.path.normpath(folder)):
             raise vibe.Error(f"{folder} is no name of Minari; give one that ends in a version, such as reach-v0.")
         self._folder, self._environment = folder, environment
+        place = os.path.relpath(folder, os.environ.get("MINARI_DATASETS_PATH", os.path.expanduser("~/.minari/datasets")))
+        self._identifier = os.path.basename(os.path.normpath(folder)) if place.startswith("..") else place
         super().__init__(os.path.join(folder, "data", "main_data.hdf5"), "episode_{}", begun)
         self._metadata(self._said)
 
@@ -182,16 +182,17 @@ class _Minari(hdf5.Episodes):
                 "kwargs": {"task": _task(made), **made["env_kwargs"]}}
         observed = {name: _box(space) for name, space in self._environment.observation_space.items()}
         files.write(os.path.join(self._folder, "data", "metadata.json"), json.dumps({
-            "dataset_id": os.path.basename(os.path.normpath(self._folder)), "data_format": "hdf5", "minari_version": "0.5.4", "jpeg_encoding": False,
+            "dataset_id": self._identifier, "data_format": "hdf5", "minari_version": "0.5.4", "jpeg_encoding": False,
             "total_episodes": len(said), "total_steps": sum(int(one["total_steps"]) for one in said), "env_spec": json.dumps(spec),
             "observation_space": json.dumps({"type": "Dict", "subspaces": observed}), "action_space": json.dumps(_box(self._environment.action_space)),
             "algorithm_name": self.begun["policy"]}).encode())
 
-    def add(self, rows, seed, state):
-        last = np.arange(len(rows)) == len(rows) - 1
-        content = {f"observations/{key}": np.stack([row[0][key] for row in rows] + [rows[-1][4][key]]) for key in rows[0][0]}
-        content.update(actions=np.stack([row[1] for row in rows]), rewards=np.array([row[2] for row in rows]), terminations=last, truncations=last & False)
-        super().add(content, {"id": len(self.seeds), "seed": seed, "total_steps": len(rows), "hash": state})
+    def add(self, columns, seed, state):
+        content = {name.replace("obs", "observations", 1): np.append(value, columns[f"next_{name}"][-1:], 0)
+                   for name, value in columns.items() if name.startswith("obs/")}
+        over = columns["dones"] > 0
+        content.update(actions=columns["actions"], rewards=columns["rewards"], terminations=over, truncations=over & False)
+        super().add(content, {"id": len(self.seeds), "seed": seed, "total_steps": len(over), "hash": state})
 
 
 def _box(space):
@@ -200,40 +201,34 @@ def _box(space):
 
 class _LeRobot(lerobot.Writer):
     def __init__(self, environment, folder, begun):
-        spaces = environment.observation_space
-        self._pictures = [name for name in spaces if name in PICTURES]
-        around = [name for name in spaces if name not in STATE and name not in self._pictures]
-        self._parts = {"observation.state": STATE, "observation.environment_state": around}
-        features = {name: _vector(int(sum(np.prod(spaces[part].shape) for part in parts)), [
-            f"{part}_{k}" for part in parts for k in range(int(np.prod(spaces[part].shape)))]) for name, parts in self._parts.items()}
-        features.update({"action": _vector(environment.action_space.shape[0]), "next.reward": _vector(1), "next.done": _vector(1, dtype="bool"),
-                         "next.success": _vector(1, dtype="bool")})
-        for name in self._pictures:
-            features[_picture(name)] = {"dtype": "video" if name == "colour" else str(spaces[name].dtype), "shape": list(spaces[name].shape),
-                                        "names": ["height", "width", "channels"][:len(spaces[name].shape)]}
-        self._task = f"{environment.task.name}: {environment.task.summary()}"
+        spaces, self._task = environment.observation_space, f"{environment.task.name}: {environment.task.summary()}"
+        self._pictures = {name: "observation.images.endoscope" if name == "colour" else f"observation.{name}" for name in spaces if name in PICTURES}
+        self._vectors = {"observation.state": STATE,
+                         "observation.environment_state": [name for name in spaces if name not in STATE and name not in PICTURES]}
+        features = {"action": _vector([f"action_{k}" for k in range(environment.action_space.shape[0])]), "next.reward": _vector(["reward"]),
+                    **{name: {**_vector([name]), "dtype": "bool"} for name in ("next.done", "next.success")}}
+        for name, parts in self._vectors.items():
+            features[name] = _vector([f"{part}_{k}" for part in parts for k in range(int(np.prod(spaces[part].shape)))])
+        for name, feature in self._pictures.items():
+            features[feature] = {"dtype": "video" if name == "colour" else str(spaces[name].dtype), "shape": list(spaces[name].shape),
+                                 "names": ["height", "width", "channels"][:len(spaces[name].shape)]}
         super().__init__(folder, "v3.0", environment.task.rate, features, begun=begun)
 
     @property
     def seeds(self):
-        return [row["seed"] for row, _ in self._rows]
+        return [row["seed"] for row in self._rows]
 
-    def add(self, rows, seed, state):
-        last = np.arange(len(rows)) == len(rows) - 1
-        columns = {name: np.stack([np.concatenate([row[0][part].ravel() for part in parts]) for row in rows]) for name, parts in self._parts.items()}
-        columns.update({"action": np.stack([row[1] for row in rows]), "next.reward": np.array([row[2] for row in rows]), "next.done": last,
-                        "next.success": last})
-        columns.update({_picture(name): np.stack([row[0][name] for row in rows]) for name in self._pictures if name != "colour"})
-        videos = {_picture(name): [row[0][name] for row in rows] for name in self._pictures if name == "colour"}
-        super().add(columns, self._task, videos, seed=seed, hash=state)
-
-
-def _vector(size, names=None, dtype="float32"):
-    return {"dtype": dtype, "shape": [size], "names": names}
+    def add(self, columns, seed, state):
+        found = {"action": columns["actions"], "next.reward": columns["rewards"], "next.done": columns["dones"] > 0, "next.success": columns["dones"] > 0}
+        for name, parts in self._vectors.items():
+            found[name] = np.hstack([columns[f"obs/{part}"].reshape(len(found["action"]), -1) for part in parts])
+        found.update({feature: columns[f"obs/{name}"] for name, feature in self._pictures.items()})
+        videos = {name: found.pop(name) for name in self._videos}
+        super().add(found, self._task, videos, seed=seed, hash=state)
 
 
-def _picture(name):
-    return "observation.images.endoscope" if name == "colour" else f"observation.{name}"
+def _vector(names):
+    return {"dtype": "float32", "shape": [len(names)], "names": names}
 
 
 FORMATS = {"robomimic": _Robomimic, "minari": _Minari, "lerobot": _LeRobot}
