@@ -3,7 +3,7 @@ from setuptools import setup
 
 setup(
     **generate_distutils_setup(
-        packages=["vibe_sessions", "vibe_sessions.report"],
+        packages=["vibe_sessions", "vibe_sessions.export", "vibe_sessions.report"],
         package_dir={"": "src"},
         package_data={"vibe_sessions.report": ["templates/*"]},
     )

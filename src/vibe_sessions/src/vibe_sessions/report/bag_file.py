@@ -29,6 +29,7 @@ class Connection:
     md5sum: str
     definition: str
     caller: str  # name of the node that published
+    latched: bool = False
 
 
 @dataclass
@@ -191,6 +192,7 @@ class BagFile:
             text.get("md5sum", ""),
             text.get("message_definition", ""),
             text.get("callerid", ""),
+            text.get("latching") == "1",
         )
 
     def _add_chunk_info(self, fields, data):

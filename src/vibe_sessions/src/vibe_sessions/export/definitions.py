@@ -1,0 +1,101 @@
+"""Definitions of messages as a bag has them: their fields with units, and the same in the spelling of ROS 2."""
+
+import re
+from dataclasses import dataclass
+
+SEPARATOR = "=" * 80
+LINE = re.compile(r"^\s*([A-Za-z][\w/]*)(\[\d*\])?\s+([A-Za-z]\w*)\s*(=\s*(.*?)\s*)?(#.*)?$")
+STRING_CONSTANT = re.compile(r"^\s*(string)()\s+([A-Za-z]\w*)\s*(=\s*(.*))()$")  # a # belongs to its value
+PRIMITIVES = {"bool", "byte", "char", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32",
+              "float64", "string", "time", "duration"}  # fmt: skip
+ROS2_TYPES = {"time": "builtin_interfaces/Time", "duration": "builtin_interfaces/Duration", "char": "uint8"}
+BUILTIN = {"builtin_interfaces/Time": "int32 sec\nuint32 nanosec\n",
+           "builtin_interfaces/Duration": "int32 sec\nuint32 nanosec\n"}  # fmt: skip
+# of messages whose definitions do not say it
+UNITS = {"geometry_msgs/Point": "m", "geometry_msgs/Wrench.force": "N", "geometry_msgs/Wrench.torque": "N m",
+         "geometry_msgs/Twist.linear": "m/s", "geometry_msgs/Twist.angular": "rad/s", "time": "s", "duration": "s",
+         "geometry_msgs/Transform.translation": "m"}  # fmt: skip
+
+
+@dataclass
+class Field:
+    kind: str  # a primitive, or PACKAGE/NAME
+    array: str  # "", "[]" or "[7]"
+    name: str
+    unit: str  # as its comment has it; empty: none
+    comment: str
+
+    def length(self):
+        """Of an array of fixed length; None of another one."""
+        return int(self.array[1:-1]) if len(self.array) > 2 else None
+
+
+def full_name(kind, package):
+    if kind in PRIMITIVES or "/" in kind:
+        return kind
+    return "std_msgs/Header" if kind == "Header" else package + "/" + kind
+
+
+def parts_of(datatype, definition):
+    """Text by type, of the type itself and of all that it holds."""
+    first, *others = re.split(r"^=+\s*\nMSG: *", definition, flags=re.MULTILINE)
+    parts = {datatype: first}
+    for other in others:
+        name, _, text = other.partition("\n")
+        parts[name.strip()] = text
+    return parts
+
+
+def fields_of(datatype, text):
+    """Without constants. The comment above a field, and the one behind it, tell its unit in brackets."""
+    fields, words, is_old = [], [], True  # a comment is that of all fields up to the next one
+    for line in text.splitlines():
+        found = LINE.match(line)
+        if found is None:
+            words = [*([] if is_old or not line.strip() else words), line.strip().lstrip("# ")]
+        elif not found[4]:
+            comment = " ".join([*words, (found[6] or "").lstrip("# ")]).strip()
+            units = re.findall(r"\[([^\]\d]{1,12}[^\]]{0,3})\]", comment)
+            kind = full_name(found[1], datatype.split("/")[0])
+            own = UNITS.get(datatype + "." + found[3]) or UNITS.get(datatype if datatype == "geometry_msgs/Point" else kind)
+            fields.append(Field(kind, found[2] or "", found[3], own or " or ".join(dict.fromkeys(units)), comment))
+        is_old = found is not None
+    return fields
+
+
+def structure(datatype, definition):
+    """Fields by type."""
+    return {name: fields_of(name, text) for name, text in parts_of(datatype, definition).items()}
+
+
+# --- ROS 2
+
+
+def ros2_name(name):
+    """A name of a field: small letters, digits and single underscores."""
+    apart = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
+    return re.sub("__+", "_", apart).strip("_")
+
+
+def ros2_text(datatype, text):
+    """The same definition, comments included, in the spelling of ROS 2; its header has no sequence number."""
+    lines = []
+    for line in text.splitlines():
+        found = STRING_CONSTANT.match(line) or LINE.match(line)
+        if found is None or (datatype, found[3]) == ("std_msgs/Header", "seq"):
+            lines += [line] if found is None else []
+            continue
+        kind = full_name(found[1], datatype.split("/")[0])
+        name = found[3].upper() if found[4] else ros2_name(found[3])
+        value = "" if not found[4] else "=" + (repr(found[5]) if kind == "string" else found[5])
+        comment = "  " + found[6] if found[6] else ""
+        lines.append("{}{} {}{}{}".format(ROS2_TYPES.get(kind, kind), found[2] or "", name, value, comment))
+    return "\n".join(lines).strip("\n") + "\n"
+
+
+def ros2_definition(datatype, definition):
+    """With all that it holds, as `ros2msg` in a file."""
+    parts = {name: ros2_text(name, text) for name, text in parts_of(datatype, definition).items()}
+    parts.update({name: text for name, text in BUILTIN.items() if any(name in part for part in parts.values())})
+    first = parts.pop(datatype)
+    return first + "".join("{}\nMSG: {}\n{}".format(SEPARATOR, name, text) for name, text in parts.items())

@@ -1,0 +1,195 @@
+"""Exports of some recordings: each is read once for all formats, and what is complete is kept."""
+
+import errno
+import fcntl
+import hashlib
+import json
+import mmap
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import time
+
+import genpy
+
+from ..report.bag_file import BagError
+from ..report.main import find_bags
+from ..report.session_work import names_of
+from .mcap import Mcap
+from .mesh import Mesh
+from .options import check, parser
+from .source import Source
+from .tables import Csv, Parquet
+
+WRITERS = {"csv": Csv, "parquet": Parquet, "mcap": Mcap, "mesh": Mesh}
+ABOUT = "export.json"  # in each folder: of what it is
+
+
+class Progress:
+    """One line on a terminal that is written over."""
+
+    def __init__(self, name):
+        self._name, self._said = name, 0.0
+
+    def __call__(self, share):
+        if sys.stderr.isatty() and time.monotonic() - self._said > 0.2:
+            self._said = time.monotonic()
+            print("\r\033[Kexport: {} {:.0f} %".format(self._name, 100 * share), end="", file=sys.stderr, flush=True)
+
+    def end(self):
+        if self._said:
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
+
+
+def digest_of(path):
+    with open(path, "rb") as file:
+        return hashlib.sha256(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)).hexdigest()
+
+
+class Folder:
+    """The folder of a format: made under another name, and renamed when all in it is on the disk."""
+
+    def __init__(self, path, about):
+        self.path, self._about = path, json.dumps(about, indent=1, sort_keys=True) + "\n"
+        self.part = os.path.join(os.path.dirname(path), "." + os.path.basename(path) + ".part")
+
+    def is_complete(self):
+        try:
+            with open(os.path.join(self.path, ABOUT), encoding="utf-8") as file:
+                same = file.read() == self._about
+        except FileNotFoundError:
+            if not os.path.lexists(self.path):
+                return False
+            same = False
+        if not same:
+            raise BagError("{}: is there already, of another recording or other options; remove it, or give another --output"
+                           .format(self.path))  # fmt: skip
+        return True
+
+    def begin(self):
+        shutil.rmtree(self.part, ignore_errors=True)  # of an export that was interrupted
+        os.makedirs(self.part)
+
+    def end(self):
+        with open(os.path.join(self.part, ABOUT), "w", encoding="utf-8") as file:
+            file.write(self._about)
+        for folder, _, names in os.walk(self.part, topdown=False):
+            for name in [*names, "."]:
+                sync(os.path.join(folder, name))
+        os.rename(self.part, self.path)
+        sync(os.path.dirname(self.path))
+
+
+def sync(path):
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def filled(bag, scratch):
+    """The path of the same recording with every message, from repeating it."""
+    shutil.rmtree(scratch, ignore_errors=True)
+    os.makedirs(scratch)
+    whole, said = os.path.join(scratch, "whole.bag"), os.path.join(scratch, "said.txt")
+    with open(said, "w", encoding="utf-8") as file:
+        command = ["rosrun", "vibe_sim", "vibe_replay", "--fill", whole, bag]
+        status = subprocess.run(command, stdout=file, stderr=subprocess.STDOUT, check=False).returncode
+    if status not in (0, 3):  # 3: an older release has no hashes to compare with
+        with open(said, encoding="utf-8", errors="replace") as file:
+            last = (file.read().strip().splitlines() or ["it says nothing"])[-1]
+        raise BagError("{}: does not repeat, so what it leaves out cannot be added ({}); export what it has to csv, parquet or "
+                       "mcap without --fill".format(bag, last))  # fmt: skip
+    return whole
+
+
+def is_compact(source):
+    return source.count("step_result") < 0.9 * source.count("applied_input")
+
+
+def write(arguments, path, name, folders):
+    """Some formats of one recording, which is read once."""
+    with Source(path, arguments.topics, arguments.begin, arguments.end, arguments.rate or 0) as source:
+        writers = {}
+        for each, folder in folders.items():
+            folder.begin()
+            writers[each] = WRITERS[each](folder.part, source, arguments)
+        wanted = {each: writer.connections for each, writer in writers.items()}
+        progress = Progress(name)
+        for message in source.messages(set().union(*wanted.values()), progress):
+            for each, writer in writers.items():
+                if message.number in wanted[each]:
+                    add(writer, message, source)
+        progress.end()
+        for each, writer in writers.items():
+            print("{}: {}".format(folders[each].path, writer.finish()), flush=True)
+            folders[each].end()
+
+
+def add(writer, message, source):
+    try:
+        writer.add(message)
+    except (struct.error, genpy.DeserializationError, ValueError, KeyError) as error:
+        raise source.damaged(message.connection, message.received, error) from None
+
+
+def export_one(arguments, bag, name):
+    """All formats of one recording that are not complete."""
+    with Source(bag, arguments.topics if not arguments.fill else None) as source:
+        compact = is_compact(source)
+        with_more = {each for each in WRITERS if compact and (arguments.fill or WRITERS[each].needs_more(source, arguments))}
+    about = {"recording": os.path.basename(bag), "sha256": digest_of(bag), "topics": arguments.topics, "from": arguments.begin,
+             "to": arguments.end, "rate": arguments.rate, "fill": arguments.fill}  # fmt: skip
+    place = os.path.join(arguments.output, name)
+    folders = {each: Folder(os.path.join(place, each), {"format": each, **about}) for each in arguments.to if each in WRITERS}
+    left = {each: folder for each, folder in folders.items() if not folder.is_complete()}
+    for each in sorted(folders.keys() - left.keys()):
+        print("{}: complete, kept".format(folders[each].path), flush=True)
+    os.makedirs(place, exist_ok=True)
+    recorded = {each: folder for each, folder in left.items() if each not in with_more}
+    if recorded:
+        write(arguments, bag, name, recorded)
+    if recorded.keys() != left.keys():
+        scratch = os.path.join(place, ".filling")
+        try:
+            write(arguments, filled(bag, scratch), name, {each: left[each] for each in left if each in with_more})
+        finally:
+            shutil.rmtree(scratch, ignore_errors=True)
+
+
+def export(arguments, fail):
+    """Returns the exit status."""
+    paths = find_bags(arguments, fail)
+    os.makedirs(arguments.output, exist_ok=True)
+    handle = os.open(arguments.output, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)  # until this program ends
+    except BlockingIOError:
+        raise BagError("{}: another export writes there; wait for it, or give another --output".format(arguments.output)) from None
+    for bag, name in zip(paths, names_of(paths)):
+        export_one(arguments, bag, name)
+    return 0
+
+
+def main(words=None):
+    made = parser()
+    arguments = made.parse_args(words)
+    check(arguments, made.error)
+    return run(arguments, made.error)
+
+
+def run(arguments, fail):
+    try:
+        return export(arguments, fail)
+    except BagError as problem:
+        said = str(problem)
+    except OSError as error:
+        where = " '{}'".format(error.filename) if error.filename else " of '{}'".format(arguments.output)
+        remedy = "make room there" if error.errno == errno.ENOSPC else "see to it"
+        said = "{}{}; {}, and the same command goes on: formats that are complete are kept".format(
+            error.strerror or error, where, remedy)  # fmt: skip
+    print("export: " + said, file=sys.stderr)
+    return 2
