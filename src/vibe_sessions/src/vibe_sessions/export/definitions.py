@@ -1,5 +1,6 @@
 """Definitions of messages as a bag has them: their fields with units, and the same in the spelling of ROS 2."""
 
+import json
 import re
 from dataclasses import dataclass
 
@@ -87,7 +88,7 @@ def ros2_text(datatype, text):
             continue
         kind = full_name(found[1], datatype.split("/")[0])
         name = found[3].upper() if found[4] else ros2_name(found[3])
-        value = "" if not found[4] else "=" + (repr(found[5]) if kind == "string" else found[5])
+        value = "" if not found[4] else "=" + (json.dumps(found[5], ensure_ascii=False) if kind == "string" else found[5])
         comment = "  " + found[6] if found[6] else ""
         lines.append("{}{} {}{}{}".format(ROS2_TYPES.get(kind, kind), found[2] or "", name, value, comment))
     return "\n".join(lines).strip("\n") + "\n"

@@ -1,18 +1,16 @@
 """Exports of some recordings: each is read once for all formats, and what is complete is kept."""
 
+import contextlib
 import errno
 import fcntl
 import hashlib
 import json
-import mmap
 import os
 import shutil
 import struct
 import subprocess
 import sys
 import time
-
-import genpy
 
 from ..report.bag_file import BagError
 from ..report.main import find_bags
@@ -44,8 +42,11 @@ class Progress:
 
 
 def digest_of(path):
+    found = hashlib.sha256()
     with open(path, "rb") as file:
-        return hashlib.sha256(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)).hexdigest()
+        for block in iter(lambda: file.read(1 << 20), b""):
+            found.update(block)
+    return found.hexdigest()
 
 
 class Folder:
@@ -56,30 +57,38 @@ class Folder:
         self.part = os.path.join(os.path.dirname(path), "." + os.path.basename(path) + ".part")
 
     def is_complete(self):
-        try:
-            with open(os.path.join(self.path, ABOUT), encoding="utf-8") as file:
-                same = file.read() == self._about
-        except FileNotFoundError:
-            if not os.path.lexists(self.path):
-                return False
-            same = False
-        if not same:
+        if not os.path.lexists(self.path):
+            return False
+        about = os.path.join(self.path, ABOUT)
+        if not os.path.exists(about) or read(about) != self._about:
             raise BagError("{}: is there already, of another recording or other options; remove it, or give another --output"
                            .format(self.path))  # fmt: skip
+        print("{}: complete, kept".format(self.path), flush=True)
         return True
 
-    def begin(self):
-        shutil.rmtree(self.part, ignore_errors=True)  # of an export that was interrupted
-        os.makedirs(self.part)
+    def begin(self, resume=False):
+        """Without what an interrupted export left there, unless it can go on from it."""
+        about = os.path.join(self.part, ABOUT)
+        if not (resume and os.path.exists(about) and read(about) == self._about):
+            shutil.rmtree(self.part, ignore_errors=True)
+            os.makedirs(self.part)
 
-    def end(self):
+    def describe(self):
         with open(os.path.join(self.part, ABOUT), "w", encoding="utf-8") as file:
             file.write(self._about)
+
+    def end(self):
+        self.describe()
         for folder, _, names in os.walk(self.part, topdown=False):
             for name in [*names, "."]:
                 sync(os.path.join(folder, name))
         os.rename(self.part, self.path)
         sync(os.path.dirname(self.path))
+
+
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
 
 
 def sync(path):
@@ -90,20 +99,24 @@ def sync(path):
         os.close(handle)
 
 
-def filled(bag, scratch):
+@contextlib.contextmanager
+def whole(bag, scratch):
     """The path of the same recording with every message, from repeating it."""
-    shutil.rmtree(scratch, ignore_errors=True)
+    shutil.rmtree(scratch, ignore_errors=True)  # of an export that was interrupted
     os.makedirs(scratch)
-    whole, said = os.path.join(scratch, "whole.bag"), os.path.join(scratch, "said.txt")
-    with open(said, "w", encoding="utf-8") as file:
-        command = ["rosrun", "vibe_sim", "vibe_replay", "--fill", whole, bag]
-        status = subprocess.run(command, stdout=file, stderr=subprocess.STDOUT, check=False).returncode
-    if status not in (0, 3):  # 3: an older release has no hashes to compare with
-        with open(said, encoding="utf-8", errors="replace") as file:
-            last = (file.read().strip().splitlines() or ["it says nothing"])[-1]
-        raise BagError("{}: does not repeat, so what it leaves out cannot be added ({}); export what it has to csv, parquet or "
-                       "mcap without --fill".format(bag, last))  # fmt: skip
-    return whole
+    try:
+        path, said = os.path.join(scratch, "whole.bag"), os.path.join(scratch, "said.txt")
+        print("repeating {}, to have every message of it".format(bag), flush=True)
+        with open(said, "w", encoding="utf-8") as file:
+            command = ["rosrun", "vibe_sim", "vibe_replay", "--fill", path, bag]
+            status = subprocess.run(command, stdout=file, stderr=subprocess.STDOUT, check=False).returncode
+        if status not in (0, 3):  # 3: an older release has no hashes to compare with
+            last = (read(said).strip().splitlines() or ["it says nothing"])[-1]
+            raise BagError("{}: does not repeat, so what it leaves out cannot be added ({}); export what it has to csv, parquet "
+                           "or mcap without --fill".format(bag, last))  # fmt: skip
+        yield path
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
 
 
 def is_compact(source):
@@ -132,45 +145,77 @@ def write(arguments, path, name, folders):
 def add(writer, message, source):
     try:
         writer.add(message)
-    except (struct.error, genpy.DeserializationError, ValueError, KeyError) as error:
+    except (struct.error, ValueError, KeyError) as error:
         raise source.damaged(message.connection, message.received, error) from None
+
+
+def options_of(arguments, *names):
+    return {name: getattr(arguments, name) for name in ("begin", "end", "rate", *names)}
 
 
 def export_one(arguments, bag, name):
     """All formats of one recording that are not complete."""
-    with Source(bag, arguments.topics if not arguments.fill else None) as source:
-        compact = is_compact(source)
-        with_more = {each for each in WRITERS if compact and (arguments.fill or WRITERS[each].needs_more(source, arguments))}
-    about = {"recording": os.path.basename(bag), "sha256": digest_of(bag), "topics": arguments.topics, "from": arguments.begin,
-             "to": arguments.end, "rate": arguments.rate, "fill": arguments.fill}  # fmt: skip
+    with Source(bag, None if arguments.fill else arguments.topics) as source:
+        with_more = {each for each in WRITERS if is_compact(source) and (arguments.fill or WRITERS[each].needs_more(arguments))}
+    about = {"recording": os.path.basename(bag), "sha256": digest_of(bag), **options_of(arguments, "topics", "fill")}
     place = os.path.join(arguments.output, name)
     folders = {each: Folder(os.path.join(place, each), {"format": each, **about}) for each in arguments.to if each in WRITERS}
     left = {each: folder for each, folder in folders.items() if not folder.is_complete()}
-    for each in sorted(folders.keys() - left.keys()):
-        print("{}: complete, kept".format(folders[each].path), flush=True)
     os.makedirs(place, exist_ok=True)
     recorded = {each: folder for each, folder in left.items() if each not in with_more}
     if recorded:
         write(arguments, bag, name, recorded)
     if recorded.keys() != left.keys():
-        scratch = os.path.join(place, ".filling")
-        try:
-            write(arguments, filled(bag, scratch), name, {each: left[each] for each in left if each in with_more})
-        finally:
-            shutil.rmtree(scratch, ignore_errors=True)
+        with whole(bag, os.path.join(place, ".filling")) as path:
+            write(arguments, path, name, {each: left[each] for each in left if each in with_more})
+
+
+def export_set(arguments, bags):
+    """The data set of all recordings, an episode at a time."""
+    from . import lerobot
+
+    about = {"format": "lerobot", "recordings": [[os.path.basename(bag), digest_of(bag)] for bag in bags.values()],
+             **options_of(arguments, "lerobot_version", "images")}  # fmt: skip
+    folder = Folder(os.path.join(arguments.output, "lerobot"), about)
+    if folder.is_complete():
+        return
+    folder.begin(resume=True)
+    made = lerobot.DataSet(folder.part, arguments)
+    folder.describe()  # from here on it can be resumed
+    for number, (name, bag) in enumerate(bags.items()):
+        if made.has(number):
+            continue
+        progress = Progress(name)
+        with contextlib.ExitStack() as stack:
+            with Source(bag) as source:
+                short = is_compact(source) and lerobot.lacks(source)
+            path = stack.enter_context(whole(bag, os.path.join(arguments.output, ".filling"))) if short else bag
+            try:
+                made.add(path, name, progress)
+            except made.error as error:
+                raise BagError(str(error)) from None
+        progress.end()
+    print("{}: {}".format(folder.path, made.finish()), flush=True)
+    folder.end()
 
 
 def export(arguments, fail):
     """Returns the exit status."""
     paths = find_bags(arguments, fail)
+    if arguments.images and len(paths) > 1:
+        fail("--images goes with one recording")
     os.makedirs(arguments.output, exist_ok=True)
     handle = os.open(arguments.output, os.O_RDONLY)
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)  # until this program ends
     except BlockingIOError:
         raise BagError("{}: another export writes there; wait for it, or give another --output".format(arguments.output)) from None
-    for bag, name in zip(paths, names_of(paths)):
-        export_one(arguments, bag, name)
+    bags = dict(zip(names_of(paths), paths))
+    if set(arguments.to) & set(WRITERS):
+        for name, bag in bags.items():
+            export_one(arguments, bag, name)
+    if "lerobot" in arguments.to:
+        export_set(arguments, bags)
     return 0
 
 

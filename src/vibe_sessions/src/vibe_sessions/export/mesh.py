@@ -9,13 +9,15 @@ from ..report.bag_file import BagError
 KEPT = 0.5  # of tissue/particles in a compact recording [Hz]
 TYPES = {1: "i1", 2: "u1", 3: "<i2", 4: "<u2", 5: "<i4", 6: "<u4", 7: "<f4", 8: "<f8"}  # by datatype of PointField
 PLY = {"i1": "char", "u1": "uchar", "i2": "short", "u2": "ushort", "i4": "int", "u4": "uint", "f4": "float", "f8": "double"}
-LAYER = """#usda 1.0
-(
+RATE = 24  # time codes per second, as most films have frames
+BEGIN = "#usda 1.0\n(\n    endTimeCode = "  # which is known last
+LAYER = """{end:20}
     defaultPrim = "wall"
-    doc = "The wall of the organ in the frame '{frame}' [m]; time codes are stamps times {rate:g}"
-    framesPerSecond = {rate:g}
+    doc = "The wall of the organ in the frame '{frame}' [m]; time codes are {rate} times the stamps"
+    framesPerSecond = {rate}
     metersPerUnit = 1
-    timeCodesPerSecond = {rate:g}
+    startTimeCode = {start!r}
+    timeCodesPerSecond = {rate}
     upAxis = "Z"
 )
 
@@ -54,13 +56,13 @@ def write_ply(path, points, triangles, comment):
 class Usd:
     """A text layer; a mesh for each revision of the topology, shown while it lasts."""
 
-    def __init__(self, file, rate):
-        self._file, self._rate, self._revision, self._first = file, rate, None, None
+    def __init__(self, file):
+        self._file, self._revision, self._first, self._last = file, None, None, None
 
     def add(self, time, revision, positions, triangles, frame):
-        code = float("{:.9g}".format(time * self._rate))
+        self._last = code = round(time * RATE, 6)
         if self._revision is None:
-            self._file.write(LAYER.format(frame=frame, rate=self._rate))
+            self._file.write(BEGIN + LAYER.format(end="", frame=frame, rate=RATE, start=code))
         if revision != self._revision:
             self._end(code)
             self._revision, self._first = revision, code
@@ -71,17 +73,19 @@ class Usd:
 
     def _end(self, code=None):
         if self._revision is not None:
-            times = {self._first - 1: "invisible", self._first: "inherited", **({code: "invisible"} if code else {})}
+            times = {self._first - 1: "invisible", self._first: "inherited", **({code: "invisible"} if code is not None else {})}
             shown = ", ".join('{!r}: "{}"'.format(*each) for each in times.items())
             self._file.write("        }}\n        token visibility.timeSamples = {{{}}}\n    }}\n".format(shown))
 
     def close(self):
         self._end()
         self._file.write("}\n")
+        self._file.seek(len(BEGIN))
+        self._file.write(repr(self._last))
 
 
 class Mesh:
-    def __init__(self, folder, source, arguments):
+    def __init__(self, folder, source, _arguments):
         self.connections = set()
         for name in ("tissue/topology", "tissue/particles"):
             topics = sorted({source.bag.connections[number].topic for number in source.numbers_of(name) if source.count(name)})
@@ -91,12 +95,12 @@ class Mesh:
             self.connections.update(source.numbers_of(topics[0]))
         self._folder, self._path = folder, source.path
         self._usd_file = open(os.path.join(folder, "wall.usda"), "w", encoding="utf-8")
-        self._usd = Usd(self._usd_file, arguments.rate or KEPT)
+        self._usd = Usd(self._usd_file)
         self._topologies, self._last, self._frames = {}, -1, []
         os.makedirs(os.path.join(folder, "ply"))
 
     @staticmethod
-    def needs_more(_source, arguments):
+    def needs_more(arguments):
         return bool(arguments.rate and arguments.rate > KEPT)
 
     def add(self, message):

@@ -6,7 +6,7 @@ import importlib.util
 import sys
 
 FORMATS = ("csv", "parquet", "mcap", "lerobot", "mesh")
-PACKAGES = {"parquet": "pyarrow"}  # which a format needs from outside Debian
+PACKAGES = {"parquet": "pyarrow", "lerobot": "pyarrow"}  # which a format needs from outside Debian
 DESCRIPTION = """\
 Writes recorded sessions in formats that others read: tables of topics (csv, parquet), messages of ROS 2 (mcap), a data
 set for learning (lerobot) and the moving wall (mesh: USD and PLY). docs/export.md has what is in the files."""
@@ -66,6 +66,8 @@ def add_options(made):
                       "of every topic; lerobot does so anyway, and mesh where --rate asks for it")  # fmt: skip
     made.add_argument("--images", metavar="DIR", help="of lerobot: the images that scripts/dataset wrote of the only "
                       "recording, as a video")  # fmt: skip
+    made.add_argument("--lerobot-version", choices=("v3.0", "v2.1"), default="v3.0", help="of its format (default: "
+                      "%(default)s; v2.1: Open-H-Embodiment)")  # fmt: skip
 
 
 class Parser(argparse.ArgumentParser):
@@ -91,6 +93,8 @@ def check(arguments, fail):
         fail("where to? --output DIR")
     if arguments.end is not None and arguments.end <= (arguments.begin or 0):
         fail("--to-time must be later than --from; exchange their values")
+    if "lerobot" in arguments.to and arguments.rate and (arguments.rate != int(arguments.rate)):
+        fail("--rate of lerobot must be a whole number, not {:g}".format(arguments.rate))
     for name in arguments.to:
         if name in PACKAGES and importlib.util.find_spec(PACKAGES[name]) is None:
             fail("--to {} needs the Python package {}, which is not there; `pip install {}`, or leave {} out".format(

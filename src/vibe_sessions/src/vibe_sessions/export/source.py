@@ -1,10 +1,12 @@
-"""The messages of a recording that are asked for, in the order of the file."""
+"""The messages of a recording that are asked for, in the order of their reception."""
 
 import difflib
 import fnmatch
 import functools
 import re
 import struct
+
+import genpy
 
 from ..report.bag_file import BagError, BagFile
 from ..report.message_types import parse, stamp_of
@@ -16,15 +18,18 @@ WHOLE = ("vibe_msgs/ProcedureEvent", "rosgraph_msgs/Log", "tf2_msgs/TFMessage") 
 class Message:
     """One message, which is parsed where somebody asks for its fields."""
 
-    def __init__(self, bag, number, received, data):
-        self.connection, self.number = bag.connections[number], number
+    def __init__(self, source, number, received, data):
+        self._source, self.connection, self.number = source, source.bag.connections[number], number
         self.received, self.data = received, data  # [ns], bytes
         self.stamp = stamp_of(data)[1] if has_header(self.connection.definition) else 0  # [ns]; 0: none
         self.time = self.stamp or received  # [ns]
 
     @functools.cached_property
     def fields(self):
-        return parse(self.connection, self.data)
+        try:
+            return parse(self.connection, self.data)
+        except (struct.error, genpy.DeserializationError, ValueError) as error:
+            raise self._source.damaged(self.connection, self.received, error) from None
 
 
 @functools.lru_cache(maxsize=None)
@@ -73,11 +78,11 @@ class Source:
     def messages(self, wanted, progress=lambda share: None):
         """Those of some connections. Raises BagError where one cannot be read."""
         total, done, due = sum(self.bag.count(number) for number in wanted), 0, {}
-        for number, received, data in self.bag.messages(wanted):
+        for number, received, data in self.bag.in_time(wanted):
             done += 1
             progress(done / total)
             try:
-                message = Message(self.bag, number, received, data)
+                message = Message(self, number, received, data)
             except struct.error as error:
                 raise self.damaged(self.bag.connections[number], received, error) from None
             if self._is_wanted(message, due):

@@ -114,7 +114,7 @@ class Tables:
         self._flattener.add(name, message)
 
     @staticmethod
-    def needs_more(_source, _arguments):
+    def needs_more(_arguments):
         return False
 
     def _row(self, name, row):
