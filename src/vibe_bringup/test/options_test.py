@@ -62,8 +62,8 @@ class OptionsTest(unittest.TestCase):
 
 
 class EveryProgram(OptionsTest):
-    def test_there_are_nine(self):
-        self.assertEqual(" ".join(NAMES), "cohort dataset latency picture record replay report run views")
+    def test_there_are_ten(self):
+        self.assertEqual(" ".join(NAMES), "cohort dataset export latency picture record replay report run views")
 
     def test_help(self):
         for name in NAMES:
@@ -292,6 +292,10 @@ class OthersTest(OptionsTest):
         self.refuses("which recording?", "report")
         self.refuses("--jobs needs a number above zero, not '0'", "report", "--jobs", "0", "a.bag")
         self.refuses("--group: 'x' is neither", "report", "--group", "x", "a.bag")
+        self.refuses("which recording?", "export")
+        self.refuses("'mcp' is no format; the nearest is 'mcap'", "export", "a.bag", "--to", "csv,mcp")
+        self.refuses("--to-time must be later", "export", "a.bag", "--to", "csv", "--output", "x", "--from", "2", "--to-time", "1")
+        self.assertEqual(self.accepts("export", "a.bag", "--to", "mesh,csv", "--output", "x").to, ["csv", "mesh"])
         self.refuses("either --output DIR or --plot DIR", "cohort")
         self.assertEqual(self.accepts("cohort", "--output", "a", "--novice", "0", "1", "--count", "2").novice, [0, 1])
 

@@ -12,12 +12,6 @@ PRIMITIVES = {"bool", "byte", "char", "int8", "uint8", "int16", "uint16", "int32
 ROS2_TYPES = {"time": "builtin_interfaces/Time", "duration": "builtin_interfaces/Duration", "char": "uint8"}
 BUILTIN = {"builtin_interfaces/Time": "int32 sec\nuint32 nanosec\n",
            "builtin_interfaces/Duration": "int32 sec\nuint32 nanosec\n"}  # fmt: skip
-# of messages whose definitions do not say it
-UNITS = {"geometry_msgs/Point": "m", "geometry_msgs/Wrench.force": "N", "geometry_msgs/Wrench.torque": "N m",
-         "geometry_msgs/Twist.linear": "m/s", "geometry_msgs/Twist.angular": "rad/s", "time": "s", "duration": "s",
-         "geometry_msgs/Transform.translation": "m"}  # fmt: skip
-
-
 @dataclass
 class Field:
     kind: str  # a primitive, or PACKAGE/NAME
@@ -58,8 +52,7 @@ def fields_of(datatype, text):
             comment = " ".join([*words, (found[6] or "").lstrip("# ")]).strip()
             units = re.findall(r"\[([^\]\d]{1,12}[^\]]{0,3})\]", comment)
             kind = full_name(found[1], datatype.split("/")[0])
-            own = UNITS.get(datatype + "." + found[3]) or UNITS.get(datatype if datatype == "geometry_msgs/Point" else kind)
-            fields.append(Field(kind, found[2] or "", found[3], own or " or ".join(dict.fromkeys(units)), comment))
+            fields.append(Field(kind, found[2] or "", found[3], " or ".join(dict.fromkeys(units)), comment))
         is_old = found is not None
     return fields
 

@@ -125,11 +125,11 @@ def is_compact(source):
 
 def write(arguments, path, name, folders):
     """Some formats of one recording, which is read once."""
-    with Source(path, arguments.topics, arguments.begin, arguments.end, arguments.rate or 0) as source:
+    with Source(path, arguments.topics, arguments.begin, arguments.end, arguments.rate or 0) as source, contextlib.ExitStack() as files:
         writers = {}
         for each, folder in folders.items():
             folder.begin()
-            writers[each] = WRITERS[each](folder.part, source, arguments)
+            writers[each] = WRITERS[each](folder.part, source, files)
         wanted = {each: writer.connections for each, writer in writers.items()}
         progress = Progress(name)
         for message in source.messages(set().union(*wanted.values()), progress):
@@ -199,23 +199,31 @@ def export_set(arguments, bags):
     folder.end()
 
 
+@contextlib.contextmanager
+def only_one(folder):
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    except BlockingIOError:
+        raise BagError("{}: another export writes there; wait for it, or give another --output".format(folder)) from None
+    finally:
+        os.close(handle)
+
+
 def export(arguments, fail):
     """Returns the exit status."""
     paths = find_bags(arguments, fail)
     if arguments.images and len(paths) > 1:
         fail("--images goes with one recording")
     os.makedirs(arguments.output, exist_ok=True)
-    handle = os.open(arguments.output, os.O_RDONLY)
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)  # until this program ends
-    except BlockingIOError:
-        raise BagError("{}: another export writes there; wait for it, or give another --output".format(arguments.output)) from None
-    bags = dict(zip(names_of(paths), paths))
-    if set(arguments.to) & set(WRITERS):
-        for name, bag in bags.items():
-            export_one(arguments, bag, name)
-    if "lerobot" in arguments.to:
-        export_set(arguments, bags)
+    with only_one(arguments.output):
+        bags = dict(zip(names_of(paths), paths))
+        if set(arguments.to) & set(WRITERS):
+            for name, bag in bags.items():
+                export_one(arguments, bag, name)
+        if "lerobot" in arguments.to:
+            export_set(arguments, bags)
     return 0
 
 

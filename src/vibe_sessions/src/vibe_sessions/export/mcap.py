@@ -133,9 +133,9 @@ def quality(latched):
 
 
 class Mcap:
-    def __init__(self, folder, source, _arguments):
+    def __init__(self, folder, source, files):
         self.connections = source.chosen
-        self._stream = open(os.path.join(folder, "session.mcap"), "wb")
+        self._stream = files.enter_context(open(os.path.join(folder, "session.mcap"), "wb"))
         self._file, self._transcoders, self._count = McapFile(self._stream), {}, 0
 
     @staticmethod

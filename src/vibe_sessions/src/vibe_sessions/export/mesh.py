@@ -85,7 +85,7 @@ class Usd:
 
 
 class Mesh:
-    def __init__(self, folder, source, _arguments):
+    def __init__(self, folder, source, files):
         self.connections = set()
         for name in ("tissue/topology", "tissue/particles"):
             topics = sorted({source.bag.connections[number].topic for number in source.numbers_of(name) if source.count(name)})
@@ -94,7 +94,7 @@ class Mesh:
                     source.path, name))  # fmt: skip
             self.connections.update(source.numbers_of(topics[0]))
         self._folder, self._path = folder, source.path
-        self._usd_file = open(os.path.join(folder, "wall.usda"), "w", encoding="utf-8")
+        self._usd_file = files.enter_context(open(os.path.join(folder, "wall.usda"), "w", encoding="utf-8"))
         self._usd = Usd(self._usd_file)
         self._topologies, self._last, self._frames = {}, -1, []
         os.makedirs(os.path.join(folder, "ply"))

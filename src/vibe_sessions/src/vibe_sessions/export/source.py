@@ -9,7 +9,7 @@ import struct
 import genpy
 
 from ..report.bag_file import BagError, BagFile
-from ..report.message_types import parse, stamp_of
+from ..report.message_types import has_its_definition, parse, stamp_of
 
 ALWAYS = ("scene", "session_info", "tissue/topology")  # sent once, and needed to understand the rest at any time
 WHOLE = ("vibe_msgs/ProcedureEvent", "rosgraph_msgs/Log", "tf2_msgs/TFMessage")  # types of which a rate leaves none out
@@ -44,10 +44,17 @@ class Source:
     def __init__(self, path, topics=None, begin=None, end=None, rate=0):
         self.path = path
         self.bag = BagFile(path)
-        if self.bag.cut_reason:
-            raise BagError("{}: {} `rosbag reindex` mends it".format(path, self.bag.cut_reason.rstrip(".") + ";"))
+        try:
+            self._choose(topics)
+        except BagError:
+            self.bag.__exit__()
+            raise
         self._begin, self._end = 1e9 * (begin or 0), 1e9 * (end if end is not None else 1e10)
         self._gap = 1e9 / rate if rate else 0  # [ns]
+
+    def _choose(self, topics):
+        if self.bag.cut_reason:
+            raise BagError("{}: {} `rosbag reindex` mends it".format(self.path, self.bag.cut_reason.rstrip(".") + ";"))
         self.chosen = {n for n, each in self.bag.connections.items() if topics is None or fits(each.topic, topics)}
         self._always = set(self.numbers_of(*ALWAYS))
         for pattern in topics or ():
@@ -77,10 +84,14 @@ class Source:
 
     def messages(self, wanted, progress=lambda share: None):
         """Those of some connections. Raises BagError where one cannot be read."""
-        total, done, due = sum(self.bag.count(number) for number in wanted), 0, {}
+        total, done, due, seen = sum(self.bag.count(number) for number in wanted), 0, {}, set()
         for number, received, data in self.bag.in_time(wanted):
             done += 1
             progress(done / total)
+            if number not in seen and not has_its_definition(self.bag.connections[number]):
+                raise BagError("{}: the definition of {} is not that of its MD5 sum; it may have been edited or damaged, so take the "
+                               "recording as it was".format(self.path, self.bag.connections[number].datatype))  # fmt: skip
+            seen.add(number)
             try:
                 message = Message(self, number, received, data)
             except struct.error as error:

@@ -14,12 +14,16 @@ from .definitions import PRIMITIVES, structure
 
 BLOCK = 4096  # rows in memory
 LONGEST = 64  # array that becomes columns
+# of messages whose definitions do not say it
+UNITS = {"geometry_msgs/Point": "m", "geometry_msgs/Wrench.force": "N", "geometry_msgs/Wrench.torque": "N m",
+         "geometry_msgs/Twist.linear": "m/s", "geometry_msgs/Twist.angular": "rad/s",
+         "geometry_msgs/Transform.translation": "m", "time": "s", "duration": "s"}  # fmt: skip
 
 
 class Table:
-    def __init__(self, folder):
+    def __init__(self, spill):
         self.rows, self.columns = [], {}  # of columns the names alone
-        self._spill = tempfile.TemporaryFile(dir=folder)
+        self._spill = spill
 
     def add(self, row):
         self.rows.append(row)
@@ -38,7 +42,6 @@ class Table:
         self._spill.seek(0)
         while self._spill.tell() < end:
             yield pickle.load(self._spill)
-        self._spill.close()
 
 
 class Flattener:
@@ -90,22 +93,25 @@ def meaning_of(types, datatype, table, column):
     """(type, unit, comment) of a column: that of the field from which it comes."""
     if column in ("received", "stamp"):
         return "float64", "s", "when it was received" if column == "received" else "time of the sample"
-    *above, last = [*table.split(".")[1:], *re.sub(r"\[.*\]$", "", column).split(".")]
-    for name in above:
-        found = next((field for field in types[datatype] if field.name == name), None)
-        datatype = found.kind if found else datatype
-    found = next((field for field in types.get(datatype, ()) if field.name == last), None)
+    unit, comment, found = "", "", None
+    for name in [*table.split(".")[1:], *re.sub(r"\[.*\]$", "", column).split(".")]:
+        found = next((field for field in types.get(datatype, ()) if field.name == name), None)
+        if found is None:
+            break
+        unit = found.unit or UNITS.get(datatype + "." + name) or UNITS.get(found.kind) or unit
+        comment = found.comment or comment  # of a vector, where x says nothing
+        datatype = found.kind
     if found is None or found.kind not in PRIMITIVES:
         return "uint32", "", "number of the element, or of elements"
-    return found.kind, found.unit, found.comment
+    return found.kind, unit, comment
 
 
 class Tables:
     """What csv and parquet share; they differ in how a table is written."""
 
-    def __init__(self, folder, source, _arguments):
+    def __init__(self, folder, source, files):
         self.connections = source.chosen
-        self._folder, self._tables, self._about = folder, {}, {}
+        self._folder, self._files, self._tables, self._about = folder, files, {}, {}
         self._flattener = Flattener(self._row)
 
     def add(self, message):
@@ -119,7 +125,7 @@ class Tables:
 
     def _row(self, name, row):
         if name not in self._tables:
-            self._tables[name] = Table(self._folder)
+            self._tables[name] = Table(self._files.enter_context(tempfile.TemporaryFile(dir=self._folder)))
         self._tables[name].add(row)
 
     def finish(self):

@@ -21,6 +21,17 @@ def message_class(connection):
     return _classes[connection.md5sum]
 
 
+def has_its_definition(connection):
+    """Whether the definition is that of the MD5 sum beside it, and not one that was edited or damaged."""
+    try:
+        made = genpy.dynamic.generate_dynamic(connection.datatype, connection.definition)[connection.datatype]
+    except Exception:  # of whatever kind: genpy runs what it makes of the text
+        return False
+    if made._md5sum == connection.md5sum:
+        _classes.setdefault(connection.md5sum, made)
+    return made._md5sum == connection.md5sum
+
+
 def parse(connection, data):
     return message_class(connection)().deserialize(data)
 

@@ -1,0 +1,269 @@
+"""Exports of a recording: what is in the files, what an interruption leaves, and one sentence for what cannot be done."""
+
+import contextlib
+import csv
+import errno
+import glob
+import io
+import os
+import re
+import shutil
+import tempfile
+import unittest
+from unittest import mock
+
+import numpy
+import rosbag
+from report_bags import SyntheticSession
+
+from vibe_sessions.export import main as export
+from vibe_sessions.export.source import Source
+
+
+def tree(folder):
+    """Bytes by path."""
+    found = {}
+    for path in glob.glob(os.path.join(glob.escape(folder), "**", "*"), recursive=True):
+        if os.path.isfile(path):
+            with open(path, "rb") as file:
+                found[os.path.relpath(path, folder)] = file.read()
+    return found
+
+
+class ExportTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.bag, self.output = os.path.join(self.folder, "a", "session.bag"), os.path.join(self.folder, "out")
+        os.mkdir(os.path.dirname(self.bag))
+
+    def make(self, **options):
+        return SyntheticSession(self.bag, **{"duration": 2.0, **options}).write()
+
+    def call(self, *words, to="csv", output=None):
+        """(status, what was said, what was complained of)"""
+        said, complained = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(complained):
+            try:
+                status = export.main([*(words if words and words[0].endswith(("bag", "active")) else (self.bag, *words)),
+                                      "--to", to, "--output", output or self.output])  # fmt: skip
+            except SystemExit as ended:
+                status = ended.code
+        return status, said.getvalue(), complained.getvalue()
+
+    def exports(self, *words, **options):
+        status, said, complained = self.call(*words, **options)
+        self.assertEqual((status, complained), (0, ""))
+        return said
+
+    def refuses(self, pattern, *words, **options):
+        status, _, complained = self.call(*words, **options)
+        self.assertEqual((status, complained.count("\n")), (2, 1), complained)
+        self.assertRegex(complained, pattern)
+        self.assertRegex(complained, "; |--help")  # the remedy
+        self.assertNotIn("Traceback", complained)
+
+    def table(self, name, form="a/csv"):
+        with open(os.path.join(self.output, form, name + ".csv"), newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def messages(self, topic):
+        with rosbag.Bag(self.bag) as bag:
+            return [message for _, message, _ in bag.read_messages(topics=["/" + topic])]
+
+
+class TablesTest(ExportTest):
+    def test_they_have_every_message(self):
+        self.make()
+        self.exports()
+        with rosbag.Bag(self.bag) as bag:
+            counts = {topic.strip("/").replace("/", "_"): about.message_count
+                      for topic, about in bag.get_type_and_topic_info().topics.items()}  # fmt: skip
+        for name, count in counts.items():
+            self.assertEqual(len(self.table(name)), count, name)
+        for row, message in zip(self.table("scope_measured_cp"), self.messages("scope/measured_cp")):
+            self.assertEqual(float(row["pose.position.x"]), message.pose.position.x)
+            self.assertEqual(float(row["stamp"]), message.header.stamp.to_nsec() / 1e9)
+        inputs = self.table("applied_input")
+        self.assertEqual([int(row["state_hash"]) for row in inputs], [m.state_hash for m in self.messages("applied_input")])
+        self.assertEqual(inputs[0]["joints[6]"], "0.0")
+        self.assertEqual({row["sutures"] + row["bites"] for row in self.table("sutures.sutures.bites")}, {"00", "01"})
+        self.assertEqual(self.table("procedure_skill_metrics")[0]["log_dimensionless_jerk"], "nan")
+
+    def test_columns_and_their_units(self):
+        self.make(origin=1.7e9)
+        self.exports()
+        rows = {(row["table"], row["column"]): row for row in self.table("columns")}
+        units = {("scope_measured_cp", "pose.position.x"): "m", ("scope_measured_cf", "wrench.force.z"): "N",
+                 ("procedure_state", "pressure"): "Pa", ("applied_input", "stamp"): "s", ("sutures.sutures.bites", "depth"): "m",
+                 ("scope_measured_cp", "pose.orientation.w"): "", ("applied_input", "buttons[0]"): ""}  # fmt: skip
+        self.assertEqual({key: rows[key]["unit"] for key in units}, units)
+        self.assertEqual(rows["applied_input", "state_hash"]["type"], "uint64")
+        for table in {name for name, _ in rows}:
+            with open(os.path.join(self.output, "a/csv", table + ".csv"), encoding="utf-8") as file:
+                self.assertEqual(file.readline().strip().split(","), [column for name, column in rows if name == table])
+        self.assertEqual(self.table("scope_input_joint_states")[0]["position[insertion]"], "0.1")
+
+    def test_topics_time_and_rate(self):
+        self.make()
+        self.exports("--topics", "scope/*,procedure/events", "--from", "1.5", "--to-time", "2.5", "--rate", "10")
+        found = sorted(os.path.basename(path)[:-4] for path in glob.glob(self.output + "/a/csv/*.csv"))
+        self.assertEqual(found, ["columns", "scope_measured_cf", "scope_measured_cp"])  # the event was before
+        stamps = [float(row["stamp"]) for row in self.table("scope_measured_cp")]
+        self.assertEqual(len(stamps), 11)
+        self.assertTrue(all(1.5 <= stamp <= 2.5 for stamp in stamps))
+        self.assertLess(abs(numpy.diff(stamps) - 0.1).max(), 1e-6)
+
+    def test_what_is_sent_once_is_there_at_any_time(self):
+        self.make()
+        self.exports("--from", "2.5", to="mcap,mesh")
+        with Source(self.bag, begin=2.5) as source:
+            topics = {message.connection.topic for message in source.messages(source.chosen)}
+        self.assertLess({"/scene", "/tissue/topology"}, topics)
+        self.assertNotIn("/procedure/events", topics)
+
+    def test_messages_come_in_the_order_of_time_from_a_bag_that_was_filled(self):
+        self.make()
+        with rosbag.Bag(self.bag) as bag:
+            every = list(bag.read_messages(raw=True))
+        with rosbag.Bag(self.bag, "w", chunk_threshold=4096) as bag:  # results first, as a replay writes them
+            for inputs in (False, True):
+                for topic, message, stamp in every:
+                    if (topic == "/applied_input") == inputs:
+                        bag.write(topic, message, stamp, raw=True)
+        with Source(self.bag) as source:
+            found = [(message.received, message.connection.topic) for message in source.messages(source.chosen)]
+        self.assertEqual(len(found), len(every))
+        self.assertEqual([time for time, _ in found], sorted(time for time, _ in found))
+
+
+class MeshTest(ExportTest):
+    def test_points_and_triangles(self):
+        self.make()
+        self.exports(to="mesh")
+        cloud, topology = self.messages("tissue/particles")[0], self.messages("tissue/topology")[0]
+        points = numpy.frombuffer(cloud.data, numpy.dtype([("xyz", "<f4", 3), ("grade", "u1"), ("", "V3")]))
+        with open(os.path.join(self.output, "a/mesh/ply/wall_000000.ply"), "rb") as file:
+            header, body = file.read().split(b"end_header\n")
+        self.assertIn(b"element vertex 208\n", header)
+        vertices = numpy.frombuffer(body[: 13 * 208], numpy.dtype([("xyz", "<f4", 3), ("grade", "u1")]))
+        numpy.testing.assert_array_equal(vertices["xyz"], points["xyz"])
+        numpy.testing.assert_array_equal(vertices["grade"], points["grade"])
+        faces = numpy.frombuffer(body[13 * 208 :], numpy.dtype([("count", "u1"), ("of", "<i4", 3)]))
+        self.assertEqual(faces["of"].ravel().tolist(), list(topology.triangles))
+        with open(os.path.join(self.output, "a/mesh/wall.usda"), encoding="utf-8") as file:
+            text = file.read()
+        sample = re.search(r"^ +72\.0: \[(.*)\],$", text, re.MULTILINE)[1]  # at 3 s
+        self.assertEqual(numpy.array(re.findall("[-.e0-9]+", sample), "f4").tolist(), points["xyz"].ravel().tolist())
+        self.assertEqual(text.count("{"), text.count("}"))
+        self.assertIn("endTimeCode = 72.0 ", text)
+
+
+class InterruptedTest(ExportTest):
+    FORMATS = "csv,mcap,mesh"
+
+    def reference(self):
+        self.make(duration=0.5)
+        self.exports(to=self.FORMATS, output=self.folder + "/reference")
+        return tree(self.folder + "/reference")
+
+    def check_left(self, wanted):
+        """Under final names there are whole formats only."""
+        left = {path: data for path, data in tree(self.output).items() if not any(part.startswith(".") for part in path.split("/"))}
+        for form in {path.split("/")[1] for path in left}:
+            self.assertEqual({path for path in left if path.split("/")[1] == form}, {path for path in wanted if path.split("/")[1] == form})
+        self.assertEqual(left, {path: wanted[path] for path in left})
+        return left
+
+    def test_same_bytes_and_kept(self):
+        wanted = self.reference()
+        self.exports(to=self.FORMATS)
+        self.assertEqual(tree(self.output), wanted)
+        times = {path: os.stat(os.path.join(self.output, path)).st_mtime_ns for path in wanted}
+        self.assertEqual(self.exports(to=self.FORMATS).count("complete, kept"), 3)
+        self.assertEqual({path: os.stat(os.path.join(self.output, path)).st_mtime_ns for path in wanted}, times)
+        self.refuses("other options; remove it", "--rate", "5")
+
+    def test_a_full_disk_at_any_moment_leaves_whole_formats(self):
+        wanted, number, complete = self.reference(), 0, False
+        while not complete:
+            number += 7
+            calls, sync = iter(range(number)), export.sync
+
+            def full(path, calls=calls, sync=sync):
+                if next(calls, None) is None:
+                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), path)
+                sync(path)
+
+            shutil.rmtree(self.output, ignore_errors=True)
+            with mock.patch.object(export, "sync", full):
+                status, _, complained = self.call(to=self.FORMATS)
+            complete = status == 0
+            if not complete:
+                self.assertRegex(complained, "^export: No space left on device .*make room there.*same command goes on.*\n$")
+                self.check_left(wanted)
+                self.exports(to=self.FORMATS)
+            self.assertEqual(self.check_left(wanted), wanted)
+        self.assertGreater(number, 30)
+
+    def test_a_kill_while_it_writes(self):
+        wanted = self.reference()
+        for folder in ("reference/a/csv", "reference/a/mesh"):  # what a killed program leaves
+            name = os.path.basename(folder)
+            shutil.copytree(os.path.join(self.folder, folder), os.path.join(self.output, "a", "." + name + ".part"))
+            with open(os.path.join(self.output, "a", "." + name + ".part", "of_another_call"), "w", encoding="utf-8"):
+                pass
+        self.exports(to=self.FORMATS)
+        self.assertEqual(self.check_left(wanted), wanted)
+        self.assertEqual(os.listdir(self.output + "/a").sort(), ["csv", "mcap", "mesh"].sort())
+
+
+class RefusalTest(ExportTest):
+    def test_calls(self):
+        self.make()
+        self.refuses("'cvs' is no format; the nearest is 'csv'", to="cvs")
+        self.refuses("needs a rate above zero", "--rate", "0")
+        self.refuses("needs seconds, not 'soon'", "--from", "soon")
+        self.refuses("must be later than --from", "--from", "2", "--to-time", "1")
+        self.refuses("no topic 'scope/measured_fc'; the nearest is 'scope/measured_c.'", "--topics", "scope/measured_fc")
+        self.refuses("needs the Python package pyarrow|has no scope/measured_js", to="lerobot")
+        self.refuses("--rate of lerobot", "--rate", "2.5", to="lerobot")
+
+    def test_recordings(self):
+        self.refuses("there is no such file|no recording")
+        path = self.make()
+        with open(path, "rb") as file:
+            whole = file.read()
+        for data, pattern in ((b"", "is empty"), (b"x" * 99, "is not a bag"), (whole[: len(whole) // 2], "not closed.*rosbag reindex")):
+            with open(path, "wb") as file:
+                file.write(data)
+            for form in ("csv", "mcap", "mesh"):
+                self.refuses(pattern, to=form)
+            self.assertEqual(tree(self.output), {})
+        self.make(without=("tissue/topology",))
+        self.refuses("has no tissue/topology", to="mesh")
+        self.make(scene="nonsense: 1\n")
+        self.refuses("does not repeat.*nonsense.*export what it has", "--rate", "30", to="mesh")
+
+    def test_an_edited_definition(self):
+        path = self.make()
+        with open(path, "rb") as file:
+            whole = file.read()
+        edited = whole.replace(b"\nfloat64 depth\n", b"\nstring  depth\n").replace(b"\nfloat64 pressure\n", b"\nstring  pressure\n")
+        self.assertNotEqual(edited, whole)
+        with open(path, "wb") as file:
+            file.write(edited)
+        for form in ("csv", "mcap"):
+            self.refuses("is not that of its MD5 sum.*edited", to=form)
+
+    def test_another_export_writes_there(self):
+        self.make()
+        os.makedirs(self.output)
+        handle = os.open(self.output, os.O_RDONLY)
+        self.addCleanup(os.close, handle)
+        export.fcntl.flock(handle, export.fcntl.LOCK_EX)
+        self.refuses("another export writes there; wait for it")
+
+
+if __name__ == "__main__":
+    unittest.main()
