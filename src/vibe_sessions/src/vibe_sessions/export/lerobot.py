@@ -120,7 +120,7 @@ class Reader:
     def _step(self, message):
         if self._run not in (None, message.fields.run):  # a reset, or another state or scene
             yield from self._end(False)
-            self._due, self._latest = 0, {}
+            self._due = 0
         self._run = message.fields.run
         if self._episode is None and not self._has_goals:
             self._episode = Episode(None, "Endoscopic suturing of the stomach")
@@ -147,7 +147,7 @@ class Images:
 
         self._open, self._folder = Image.open, folder
         try:
-            self._stamps = numpy.loadtxt(os.path.join(folder, "times.txt"), ndmin=1)
+            self._stamps = numpy.loadtxt(os.path.join(folder, "times.txt"), ndmin=2)[:, 1]
             self.shape = list(self._load(0).shape)
         except (OSError, ValueError) as error:
             raise BagError("--images: '{}' is no folder of scripts/dataset ({})".format(folder, error)) from None

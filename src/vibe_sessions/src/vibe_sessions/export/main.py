@@ -218,7 +218,8 @@ def export(arguments, fail):
         fail("--images goes with one recording")
     os.makedirs(arguments.output, exist_ok=True)
     with only_one(arguments.output):
-        bags = dict(zip(names_of(paths), paths))
+        names = names_of(paths) if len(paths) > 1 else [os.path.basename(names_of(paths)[0])]
+        bags = dict(zip(names, paths))
         if set(arguments.to) & set(WRITERS):
             for name, bag in bags.items():
                 export_one(arguments, bag, name)

@@ -54,7 +54,12 @@ class McapFile:
         self._counts, self._chunks = {}, []
         self._chunk, self._index, self._times = bytearray(), {}, []
         self._range = [None, 0]  # times of the first and last message [ns]
-        file.write(MAGIC + record(HEADER, text("ros2") + text("ViBE for ROS")))
+        self._checksum = 0  # of all before the summary
+        self._write(MAGIC + record(HEADER, text("ros2") + text("ViBE for ROS")))
+
+    def _write(self, data):
+        self._checksum = zlib.crc32(data, self._checksum)
+        self._file.write(data)
 
     def add_channel(self, number, topic, datatype, definition, latched):
         """A topic, before its first message. `definition`: that of ROS 1"""
@@ -87,12 +92,12 @@ class McapFile:
         packed = self._zstd.compress(self._chunk)
         sizes = struct.pack("<QQQI", first, last, len(self._chunk), zlib.crc32(self._chunk))
         start = self._file.tell()
-        self._file.write(record(CHUNK, sizes + text("zstd") + struct.pack("<Q", len(packed)) + packed))
+        self._write(record(CHUNK, sizes + text("zstd") + struct.pack("<Q", len(packed)) + packed))
         end, offsets = self._file.tell(), b""
         for channel, entries in self._index.items():
             offsets += struct.pack("<HQ", channel, self._file.tell())
             places = b"".join(struct.pack("<QQ", *entry) for entry in entries)
-            self._file.write(record(MESSAGE_INDEX, struct.pack("<H", channel) + sized(places)))
+            self._write(record(MESSAGE_INDEX, struct.pack("<H", channel) + sized(places)))
         self._chunks.append(record(CHUNK_INDEX, struct.pack("<QQQQ", first, last, start, end - start) + sized(offsets)
                                    + struct.pack("<Q", self._file.tell() - end) + text("zstd")
                                    + struct.pack("<QQ", len(packed), len(self._chunk))))  # fmt: skip
@@ -102,7 +107,7 @@ class McapFile:
 
     def close(self):
         self._end_chunk()
-        self._file.write(record(DATA_END, struct.pack("<I", 0)))
+        self._file.write(record(DATA_END, struct.pack("<I", self._checksum)))
         start, summary, offsets = self._file.tell(), b"", b""
         groups = {SCHEMA: self._schemas.values(), CHANNEL: self._channels.values(), STATISTICS: [self._statistics()],
                   CHUNK_INDEX: self._chunks}  # fmt: skip

@@ -11,7 +11,8 @@ import genpy
 from ..report.bag_file import BagError, BagFile
 from ..report.message_types import has_its_definition, parse, stamp_of
 
-ALWAYS = ("scene", "session_info", "tissue/topology")  # sent once, and needed to understand the rest at any time
+# sent on change, and needed to understand the rest at any time
+ALWAYS = ("scene", "session_info", "tissue/topology", "trainee/progress")
 WHOLE = ("vibe_msgs/ProcedureEvent", "rosgraph_msgs/Log", "tf2_msgs/TFMessage")  # types of which a rate leaves none out
 
 

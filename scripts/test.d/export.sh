@@ -1,0 +1,24 @@
+# What scripts/export writes, as the readers of others see it: rosbags, mcap, pyarrow and usd-core of PyPI, in an environment
+# below build/. The rest is tested in src/vibe_sessions/test.
+# kind: computing
+# packages: vibe_bringup vibe_msgs vibe_sessions vibe_python
+source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
+
+check 'export asks for a recording' refuses 2 'which recording' "$root/scripts/export" --to csv
+check 'export refuses a format' refuses 2 "no format; the nearest is 'mcap'" "$root/scripts/export" a.bag --to mcp
+
+readonly names=$root/src/vibe_sessions/test/readers.txt environment=$root/build/readers
+makeEnvironment() {
+  cmp -s "$names" "$environment/installed.txt" && return
+  rm -rf "$environment" && /usr/bin/python3 -m venv --system-site-packages "$environment" &&
+    "$environment/bin/pip" install --quiet --retries 1 --timeout 10 --requirement "$names" && cp "$names" "$environment/installed.txt"
+}
+if ! makeEnvironment >"$scratch/pip.txt" 2>&1; then
+  echo "skipped the readers of others (pip could not install what $(basename "$names") names: $(tail -n 1 "$scratch/pip.txt"))"
+  exit 0
+fi
+
+readers() { (set +u && source "$root/devel/setup.bash" && cd "$root/src/vibe_sessions/test" && exec "$environment/bin/python" -B export_readers.py "$1"); }
+for part in McapReaders Ros2Package ParquetReader UsdReader LerobotReader; do
+  check "readers of others: $part" readers "$part"
+done

@@ -1,0 +1,130 @@
+"""Episodes of a recording: which steps are rows of which goal, and how a goal ended."""
+
+import os
+import shutil
+import tempfile
+import unittest
+
+import genpy
+import numpy
+import rosbag
+from geometry_msgs.msg import PoseStamped, Vector3, WrenchStamped
+from sensor_msgs.msg import JointState
+from vibe_msgs.msg import GoalProgress, ProcedureEvent, StepInput, StepResult, ToolContact, ToolContacts, TraineeProgress
+
+from vibe_sessions.export.lerobot import JOINTS, NAMES, Reader
+from vibe_sessions.export.source import Source
+from vibe_sessions.report.bag_file import BagError
+
+RATE = 60
+GOALS = [(1, 0.5, GoalProgress.REACHED), (2, 1.2, GoalProgress.REACHED), (3, 1.6, GoalProgress.FAILED), (4, 9, None)]  # until [s]
+SLIP = 0.9  # [s]
+
+
+class EpisodesTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        self.path = os.path.join(folder, "session.bag")
+
+    def write(self, steps=120, goals=True, reset=None, kinds=()):
+        """Joint k has the position time + k where it is measured, and minus that where it is commanded."""
+        events = [(SLIP, ProcedureEvent.SLIP), *kinds]
+        with rosbag.Bag(self.path, "w") as self.bag:
+            for step in range(steps + 1):
+                seconds = 1 + step / RATE
+                self.put_results(seconds)
+                for time, kind in events:
+                    if abs(1 + time - seconds) < 1e-6:
+                        self.put("procedure/events", ProcedureEvent(kind=kind), seconds)
+                if goals:
+                    self.put_goals(seconds)
+                run = 2 if reset is not None and step >= reset else 1
+                joints = [-(seconds + k) for k in range(7)]
+                self.put("applied_input", StepInput(step=step, run=run, joints=joints, buttons=bytes([0, 1, 0, 0, 0, step % 2])), seconds)
+        return self.path
+
+    def put(self, topic, message, seconds):
+        message.header.stamp = genpy.Time.from_sec(seconds)
+        self.bag.write("/" + topic, message, message.header.stamp)
+
+    def put_results(self, seconds):
+        values = [seconds + k for k in range(7)]
+        self.put("scope/measured_js", JointState(name=JOINTS[:4], position=values[:4], velocity=[1.0] * 4), seconds)
+        self.put("suturing_device/measured_js", JointState(name=JOINTS[4:], position=values[4:], velocity=[2.0] * 3), seconds)
+        pose, wrench = PoseStamped(), WrenchStamped()
+        pose.pose.position.x, wrench.wrench.torque.z = seconds, 3 * seconds
+        self.put("scope/measured_cp", pose, seconds)
+        self.put("scope/measured_cf", wrench, seconds)
+        contacts = [ToolContact(force=Vector3(0, 1.0, seconds), normal_force=2.0)] * 2
+        self.put("scope/contacts", ToolContacts(contacts=contacts if seconds < 2 else []), seconds)
+        self.put("step_result", StepResult(pressure=100 * seconds), seconds)
+
+    def put_goals(self, seconds):
+        ended, goals = 0, []
+        for number, until, state in GOALS:
+            if seconds - 1 > until - 1e-6:
+                goals.append(GoalProgress(id=number, goal="goal {}".format(number), state=state))
+                ended = until
+        if len(goals) < len(GOALS):
+            number = GOALS[len(goals)][0]
+            goals.append(GoalProgress(id=number, goal="goal {}".format(number), state=GoalProgress.ACTIVE))
+        if abs(seconds - 1 - ended) < 1e-6:  # when something changes, as the trainee sends it
+            self.put("trainee/progress", TraineeProgress(goals=goals), seconds)
+
+    def episodes(self, fps=30, **options):
+        with Source(self.path, **options) as source:
+            return [(episode, episode.split(success), success) for episode, success in Reader(source, fps).episodes(lambda share: None)]
+
+    def test_goals_are_episodes_with_their_splits(self):
+        self.write()
+        found = [(episode.task, split, success) for episode, split, success in self.episodes()]
+        self.assertEqual(found, [("goal 1", "train", True), ("goal 2", "recovery", True), ("goal 3", "failure", False),
+                                 ("goal 4", "failure", False)])  # fmt: skip
+
+    def test_a_row_is_what_was_known_at_its_time_and_what_was_commanded_then(self):
+        self.write()
+        for fps in (20, 30, 60):
+            self.assertEqual([len(episode.times) for episode, _, _ in self.episodes(fps)],
+                             [0.5 * fps, round(0.7 * fps), 0.4 * fps, 0.4 * fps + 1])  # fmt: skip
+            for episode, _, _ in self.episodes(fps):
+                columns, times = episode.columns(), numpy.array(episode.times) / 1e9
+                self.assertLess(abs(numpy.diff(times) - 1 / fps).max(), 1e-6)
+                self.assertEqual({name: value.shape for name, value in columns.items()},
+                                 {name: (len(times), len(names)) for name, names in NAMES.items()})  # fmt: skip
+                expected = times[:, None] + numpy.arange(7)
+                numpy.testing.assert_allclose(columns["observation.state"][:, :7], expected, atol=1e-6)
+                numpy.testing.assert_allclose(columns["action"][:, :7], -expected, atol=1e-6)
+                numpy.testing.assert_allclose(columns["observation.pose"][:, 0], times, atol=1e-6)
+                numpy.testing.assert_allclose(columns["observation.wrench"][:, 5], 3 * times, atol=1e-6)
+                touched = (times < 2 - 1e-6)[:, None]
+                contacts = numpy.stack([numpy.full_like(times, 2), 4 + 0 * times, 0 * times, 2 + 0 * times, 2 * times], axis=1)
+                numpy.testing.assert_allclose(columns["observation.contacts"], touched * contacts, atol=1e-5)
+                numpy.testing.assert_allclose(columns["observation.gas"][:, 0], 100 * times, atol=1e-3)
+
+    def test_events_are_in_the_first_row_after_them(self):
+        self.write(kinds=[(0.25, ProcedureEvent.GRAB), (0.25, ProcedureEvent.GRAB)])
+        columns = [episode.columns()["observation.events"] for episode, _, _ in self.episodes(20)]
+        grabs = NAMES["observation.events"].index("grab")
+        self.assertEqual([column[:, grabs].sum() for column in columns], [2, 0, 0, 0])
+        self.assertEqual(columns[0][5, grabs], 2)
+        self.assertEqual(columns[1].sum(), 1)  # the slip
+
+    def test_without_a_trainee_a_session_is_an_episode_and_a_reset_begins_another(self):
+        self.write(goals=False, reset=60, kinds=[(1.5, ProcedureEvent.CINCHED)])
+        found = [(len(episode.times), split) for episode, split, _ in self.episodes()]
+        self.assertEqual(found, [(30, "failure"), (31, "train")])
+        self.assertEqual(len(self.episodes(begin=1.5, end=1.9)[0][0].times), 12 + 1)
+
+    def test_what_cannot_be_done(self):
+        self.write()
+        with self.assertRaisesRegex(BagError, "fewer than 100 frames; give a lower --rate"):
+            self.episodes(100)
+        with rosbag.Bag(self.path, "w") as bag:
+            bag.write("/applied_input", StepInput(), genpy.Time(1))
+        with self.assertRaisesRegex(BagError, "has no scope/measured_js, which lerobot needs; "):
+            self.episodes()
+
+
+if __name__ == "__main__":
+    unittest.main()

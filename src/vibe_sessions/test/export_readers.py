@@ -1,0 +1,195 @@
+"""What the readers of others find in exports. Called by scripts/test.d/export.sh with a name of a class, in an environment with
+the packages of readers.txt."""
+
+import dataclasses
+import glob
+import json
+import os
+import pathlib
+import random
+import unittest
+
+import numpy
+import rosbag
+import genpy
+from export_lerobot_test import EpisodesTest
+from export_ros2_test import TYPES
+from export_test import ExportTest
+from random_messages import content, random_message
+
+from vibe_sessions.export import ros2_package
+
+
+def content2(message):
+    """Of a message of ROS 2 in the classes of either reader: lists and numbers, as content() of one of ROS 1."""
+    if isinstance(message, (bool, int, float, str)):
+        return message
+    if hasattr(message, "tolist"):
+        return content2(message.tolist())
+    if isinstance(message, (list, tuple, bytes)):
+        return [content2(each) for each in message]
+    if dataclasses.is_dataclass(message):
+        names = [field.name for field in dataclasses.fields(message) if not field.name.startswith(("structure_needs", "__"))]
+    else:
+        names = message.__slots__
+    return [content2(getattr(message, name)) for name in names if not name.isupper()]
+
+
+class McapReaders(ExportTest):
+    """Every type of message, three times each, on topics of their own."""
+
+    def setUp(self):
+        super().setUp()
+        dice, self.expected = random.Random(3), {}
+        with rosbag.Bag(self.bag, "w", compression="bz2") as bag:
+            for k in range(3 * len(TYPES)):
+                kind, stamp = TYPES[k % len(TYPES)], genpy.Time(1 + k, 5)
+                topic = "/of/" + kind._type.replace("/", "_")
+                message = random_message(kind, dice)
+                bag.write(topic, message, stamp)
+                self.expected.setdefault(topic, []).append((stamp.to_nsec(), repr(content(message))))
+        self.exports(to="mcap")
+        self.mcap = os.path.join(self.output, "a/mcap/session.mcap")
+
+    def with_mcap(self):
+        from mcap.reader import make_reader
+        from mcap.stream_reader import StreamReader
+        from mcap_ros2.decoder import DecoderFactory
+
+        found = {}
+        with open(self.mcap, "rb") as file:
+            list(StreamReader(file, validate_crcs=True).records)
+            file.seek(0)
+            reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
+            for _, channel, message, decoded in reader.iter_decoded_messages():
+                found.setdefault(channel.topic, []).append((message.log_time, repr(content2(decoded))))
+            statistics = reader.get_summary().statistics
+        self.assertEqual(statistics.message_count, sum(map(len, self.expected.values())))
+        self.assertEqual(statistics.channel_count, len(self.expected))
+        return found
+
+    def with_rosbags(self):
+        from rosbags.highlevel import AnyReader
+
+        found = {}
+        with AnyReader([pathlib.Path(self.mcap)]) as reader:
+            for connection, time, data in reader.messages():
+                found.setdefault(connection.topic, []).append((time, repr(content2(reader.deserialize(data, connection.msgtype)))))
+        return found
+
+    def test_both_find_every_field_of_every_message(self):
+        for read in (self.with_mcap, self.with_rosbags):
+            found = read()
+            self.assertEqual(sorted(found), sorted(self.expected))
+            for topic, messages in self.expected.items():
+                self.assertEqual(found[topic], messages, topic)
+
+    def test_a_byte_that_is_changed_is_noticed(self):
+        with open(self.mcap, "r+b") as file:
+            file.seek(os.path.getsize(self.mcap) // 10)
+            byte = file.read(1)
+            file.seek(-1, os.SEEK_CUR)
+            file.write(bytes([byte[0] ^ 1]))
+        with self.assertRaisesRegex(Exception, "crc|zstd|Zstd"):
+            self.with_mcap()
+
+
+class Ros2Package(unittest.TestCase):
+    def test_every_definition_is_read_and_has_a_hash(self):
+        import rospkg
+        from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+        files = ros2_package.files_of(rospkg.RosPack().get_path("vibe_msgs"))
+        for name in (Stores.ROS2_FOXY, Stores.ROS2_JAZZY):
+            store, types = get_typestore(name), {}
+            for path, text in files.items():
+                if path.startswith("msg/"):
+                    types.update(get_types_from_msg(text, "vibe_msgs/msg/" + path[4:-4]))
+                elif path.startswith("srv/"):
+                    for part, half in zip(("_Request", "_Response"), text.split("---\n")):
+                        types.update(get_types_from_msg(half, "vibe_msgs/srv/" + path[4:-4] + part))
+            store.register(types)
+            self.assertEqual(len({store.hash_rihs01(each) for each in types}), len(types))
+            self.assertEqual(len(types), len([each for each in files if each.startswith("msg/")]) + 2 * len([each for each in files if each.startswith("srv/")]))
+
+
+class ParquetReader(ExportTest):
+    def test_same_as_csv(self):
+        from pyarrow import parquet
+
+        self.make()
+        self.exports(to="csv,parquet")
+        paths = glob.glob(self.output + "/a/parquet/*.parquet")
+        self.assertGreater(len(paths), 8)
+        for path in paths:
+            table, rows = parquet.read_table(path), self.table(os.path.basename(path)[:-8])
+            self.assertEqual(table.num_rows, len(rows))
+            self.assertEqual(["" if value is None else str(value) for row in table.to_pylist() for value in row.values()],
+                             [value for row in rows for value in row.values()])  # fmt: skip
+        units = {field.name: field.metadata[b"unit"] for field in parquet.read_schema(self.output + "/a/parquet/scope_measured_cp.parquet")}
+        self.assertEqual(units["pose.position.x"], b"m")
+
+
+class UsdReader(ExportTest):
+    def test_points_of_a_sample_are_those_of_the_message(self):
+        from pxr import Usd, UsdGeom
+
+        self.make()
+        self.exports(to="mesh")
+        stage = Usd.Stage.Open(self.output + "/a/mesh/wall.usda")
+        (mesh,) = (UsdGeom.Mesh(prim) for prim in stage.Traverse() if prim.IsA(UsdGeom.Mesh))
+        self.assertEqual(mesh.GetPointsAttr().GetTimeSamples(), [72.0])  # at 3 s
+        self.assertEqual((stage.GetStartTimeCode(), stage.GetEndTimeCode(), stage.GetTimeCodesPerSecond()), (72, 72, 24))
+        cloud = self.messages("tissue/particles")[0]
+        points = numpy.frombuffer(cloud.data, numpy.dtype([("xyz", "<f4", 3), ("", "V4")]))["xyz"]
+        numpy.testing.assert_array_equal(numpy.array(mesh.GetPointsAttr().Get(72.0)), points)
+        indices, counts = mesh.GetFaceVertexIndicesAttr().Get(), mesh.GetFaceVertexCountsAttr().Get()
+        self.assertTrue(UsdGeom.Mesh.ValidateTopology(indices, counts, len(points))[0])
+        self.assertEqual(list(indices), list(self.messages("tissue/topology")[0].triangles))
+
+
+class LerobotReader(EpisodesTest):
+    def test_rows_are_those_of_the_episodes_also_after_an_interruption(self):
+        from pyarrow import parquet
+
+        from vibe_sessions.export import lerobot
+        from vibe_sessions.export import main as export
+
+        folder = os.path.dirname(self.write())
+        words = [self.path, "--to", "lerobot", "--output"]
+        self.assertEqual(export.main([*words, folder + "/a"]), 0)
+        add = lerobot.DataSet.add
+
+        def killed(data_set, *arguments):
+            write, left = data_set._writer.add, iter(range(2))
+
+            def add_two(*arguments):
+                if next(left, None) is None:
+                    raise KeyboardInterrupt
+                write(*arguments)
+
+            data_set._writer.add = add_two
+            add(data_set, *arguments)
+
+        lerobot.DataSet.add = killed
+        try:
+            self.assertRaises(KeyboardInterrupt, export.main, [*words, folder + "/b"])
+        finally:
+            lerobot.DataSet.add = add
+        self.assertFalse(os.path.exists(folder + "/b/lerobot"))
+        self.assertEqual(export.main([*words, folder + "/b"]), 0)
+        contents = []
+        for place in ("/a/lerobot", "/b/lerobot"):
+            paths = sorted(path for path in glob.glob(folder + place + "/**", recursive=True) if os.path.isfile(path))
+            contents.append({os.path.relpath(path, folder + place): pathlib.Path(path).read_bytes() for path in paths})
+        self.assertEqual(*contents)
+        info = json.loads(contents[0]["meta/info.json"])
+        self.assertEqual(info["splits"], {"train": "0:1", "recovery": "1:2", "failure": "2:4"})
+        for number, (episode, _, _) in enumerate(self.episodes()):
+            table = parquet.read_table(folder + "/a/lerobot/data/chunk-000/file-{:03d}.parquet".format(number)).to_pydict()
+            for name, rows in episode.columns().items():
+                numpy.testing.assert_array_equal(numpy.array(table[name]).reshape(rows.shape), rows)
+
+
+if __name__ == "__main__":
+    unittest.main()
