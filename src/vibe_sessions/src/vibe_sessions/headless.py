@@ -31,11 +31,10 @@ def find_in_package(package, name, kind="lib"):
     return None
 
 
-def find_program():
-    """vibe_headless."""
-    program = find_in_package("vibe_core", "vibe_headless")
+def find_program(package="vibe_core", name="vibe_headless"):
+    program = find_in_package(package, name)
     if program is None:
-        raise SessionError("There is no vibe_headless; build vibe_core and source its workspace.")
+        raise SessionError(f"There is no {name}; build {package} and source its workspace.")
     return program
 
 
@@ -48,14 +47,16 @@ def _wait(child, stopped):
                 raise Stopped from None
 
 
-def call(arguments, stopped=lambda: False):
-    """What it printed.
+def call(arguments, stopped=lambda: False, program=None):
+    """What a program printed: vibe_headless, or that at another path.
 
     Raises SessionError with the sentence that it said, Killed if a signal ended it, Stopped on demand.
     """
+    program = program or find_program()
+    name = os.path.basename(program)
     # the child ends with the process that waits for it, even if that is killed
     guard = ["setpriv", "--pdeathsig", "KILL"] if shutil.which("setpriv") else []
-    child = subprocess.Popen(guard + [find_program(), *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+    child = subprocess.Popen(guard + [program, *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                              stderr=subprocess.PIPE, text=True, errors="replace", process_group=0)
     try:
         output, said = _wait(child, stopped)
@@ -64,10 +65,10 @@ def call(arguments, stopped=lambda: False):
             child.kill()
             child.communicate()
     if child.returncode < 0:
-        raise Killed(f"vibe_headless was ended by the signal {signal.Signals(-child.returncode).name}.")
+        raise Killed(f"{name} was ended by the signal {signal.Signals(-child.returncode).name}.")
     if child.returncode > 0:
-        lines = said.strip().splitlines() or [f"vibe_headless ended with status {child.returncode}."]
-        raise SessionError(lines[-1].removeprefix("vibe_headless: "))
+        lines = said.strip().splitlines() or [f"{name} ended with status {child.returncode}."]
+        raise SessionError(lines[-1].removeprefix(name + ": "))
     return output
 
 

@@ -1,14 +1,11 @@
 """Regressions as users write them: parsing and checking, with lines."""
 import dataclasses
-import difflib
 import math
-import os
 import re
 
 import yaml
 
-from vibe_sessions import regression_units as units
-from vibe_sessions.headless import SessionError
+from vibe_sessions.yaml_file import YamlFile, nearest
 
 KEYS = ("scene", "script", "mesh", "seed", "duration", "expect")
 LIMITS = ("value", "tolerance", "min", "max")
@@ -42,69 +39,11 @@ class Regression:
     expect: list = dataclasses.field(default_factory=list)
 
 
-def nearest(word, known):
-    found = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
-    return f"; did you mean '{found[0]}'?" if found else "; known are " + ", ".join(sorted(known)[:8]) + "."
-
-
-class _Reader:
+class _Reader(YamlFile):
     def __init__(self, file, known):
         """known: {measure: SI unit}"""
-        self.file, self.known = file, known
-        try:
-            with open(file, encoding="utf-8") as stream:
-                self.text = stream.read()
-            self.root = yaml.compose(self.text, Loader=yaml.SafeLoader)
-        except OSError as error:
-            raise SessionError(f"{file}: cannot be read: {error.strerror}.") from None
-        except RecursionError:
-            raise SessionError(f"{file}: this is not a regression: its lists or maps are nested too deeply.") from None
-        except yaml.reader.ReaderError as error:
-            line = self.text.count("\n", 0, error.position) + 1
-            raise SessionError(f"{file}:{line}: this is not YAML: {error.reason}.") from None
-        except (yaml.YAMLError, UnicodeDecodeError) as error:
-            mark = getattr(error, "problem_mark", None)
-            line = f":{mark.line + 1}" if mark else ""
-            problem = getattr(error, "problem", "not UTF-8")
-            raise SessionError(f"{file}{line}: this is not YAML: {problem}.") from None
-
-    def fail(self, node, sentence):
-        line = node.start_mark.line + 1 if node is not None else 1
-        raise SessionError(f"{self.file}:{line}: {sentence}")
-
-    def items(self, node, what):
-        """(key, key node, value node) of a map, each key once."""
-        if not isinstance(node, yaml.MappingNode):
-            self.fail(node, f"{what} must be a map of keys and values.")
-        seen = set()
-        for key, value in node.value:
-            if not isinstance(key, yaml.ScalarNode):
-                self.fail(key, "a key must be a word.")
-            if key.value in seen:
-                self.fail(key, f"'{key.value}' is there twice; remove one.")
-            seen.add(key.value)
-            yield key.value, key, value
-
-    def scalar(self, node, what):
-        if not isinstance(node, yaml.ScalarNode):
-            self.fail(node, f"'{what}' must be a single value.")
-        return node.value
-
-    def quantity(self, node, what, unit):
-        try:
-            return units.parse(self.scalar(node, what), unit)
-        except units.UnitError as error:
-            self.fail(node, f"'{node.value}' of '{what}' {error}.")
-
-    def address(self, node, what):
-        """A path relative to this file, which must exist; package:// stays."""
-        path = self.scalar(node, what)
-        if path.startswith("package://"):
-            return path
-        path = os.path.join(os.path.dirname(os.path.abspath(self.file)), path)
-        if not os.path.isfile(path):
-            self.fail(node, f"there is no {what} '{node.value}'; paths are relative to this file.")
-        return os.path.normpath(path)
+        super().__init__(file, "a regression")
+        self.known = known
 
     def read(self):
         result, lists = Regression(self.file, self.text), None

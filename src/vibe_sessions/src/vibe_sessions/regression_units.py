@@ -15,9 +15,11 @@ SYMBOLS = {
     "mbar": (1e2, "Pa"), "mmHg": (133.322387415, "Pa"), "cmH2O": (98.0665, "Pa"),
     "J": (1, "J"), "kJ": (1e3, "J"),
 }
+ANGLES = {"rad": (1, "rad"), "mrad": (1e-3, "rad"), "deg": (math.pi / 180, "rad"), "turn": (2 * math.pi, "rad"),
+          "turns": (2 * math.pi, "rad")}
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 EXAMPLES = {"1": "0.45 or 45 %", "m": "20 mm", "m^2": "60 cm^2", "m^3": "0.9 L", "s": "20 s", "N": "1.2 N",
-            "Pa": "10 mmHg", "J": "0.1 J"}
+            "Pa": "10 mmHg", "J": "0.1 J", "rad": "90 deg"}
 
 
 class UnitError(ValueError):
@@ -27,9 +29,9 @@ class UnitError(ValueError):
 def unit_of(text):
     """(factor, SI unit) of "mm", "cm^2", ...; a product of units is none that a measure has."""
     symbol, _, power = text.replace(" ", "").partition("^")
-    if symbol not in SYMBOLS or power not in ("", "2", "3"):
+    if symbol not in {**SYMBOLS, **ANGLES} or power not in ("", "2", "3"):
         raise UnitError(f"has the unknown unit '{text}'")
-    factor, unit = SYMBOLS[symbol]
+    factor, unit = {**SYMBOLS, **ANGLES}[symbol]
     if not power:
         return factor, unit
     if unit != "m":
@@ -53,7 +55,7 @@ def parse(text, si_unit):
     except UnitError as error:
         raise UnitError(f"{error}; write for example {EXAMPLES[si_unit]}") from None
     if unit != si_unit:
-        raise UnitError(f"is in {unit}, but the measure is in {si_unit}; write for example {EXAMPLES[si_unit]}")
+        raise UnitError(f"is in {unit}, but {si_unit} was due; write for example {EXAMPLES[si_unit]}")
     return number * factor, written
 
 

@@ -23,13 +23,15 @@ constexpr int kSame = 0, kDiffers = 1, kUsage = 2, kNotChecked = 3;
 constexpr int kProgressSteps = 120;
 
 const char kHelp[] =
-    "usage: vibe_replay [--from S] [--to S] [--fill FILE] [--session S] [--namespace NS] BAG...\n"
+    "usage: vibe_replay [--from S] [--to S] [--fill FILE | --record FILE] [--session S] [--namespace NS] BAG...\n"
     "       vibe_replay --list BAG...\n"
     "Repeats a recorded session from its scene and inputs, without a roscore, compares every step with the recorded\n"
     "hashes, and prints its summary. Several bags are the parts of a split recording.\n"
     "  --from S        begin at the last snapshot before S seconds\n"
     "  --to S          end after S seconds\n"
     "  --fill FILE     also write a bag with every message of every topic that the simulator sent\n"
+    "  --record FILE   also record it as a new session: of inputs and a scene alone, or of another release's "
+    "recording\n"
     "  --session S     which session: its number in the list, or the beginning of its identity (default: the first)\n"
     "  --namespace NS  the first session in this namespace\n"
     "  --list          list the sessions and end\n"
@@ -40,6 +42,7 @@ const char kHelp[] =
 struct Options {
   std::vector<std::string> bags;
   std::string fill;
+  Filling filling = Filling::Whole;
   SessionChoice choice;
   bool list = false;
   double from = 0, to = INFINITY;
@@ -67,7 +70,8 @@ Options readOptions(const std::vector<std::string>& words) {
       options.from = readSeconds("--from", words[++i]);
     } else if (words[i] == "--to" && has_value) {
       options.to = readSeconds("--to", words[++i]);
-    } else if (words[i] == "--fill" && has_value) {
+    } else if ((words[i] == "--fill" || words[i] == "--record") && has_value) {
+      options.filling = words[i] == "--fill" ? Filling::Whole : Filling::NewSession;
       options.fill = words[++i];
     } else if (words[i] == "--session" && has_value) {
       options.choice.session = words[++i];
@@ -84,7 +88,7 @@ Options readOptions(const std::vector<std::string>& words) {
   if (options.bags.empty()) throw Error("takes a recording; see --help.");
   if (options.to <= options.from) throw Error("--to must be later than --from; exchange their values.");
   if (!options.fill.empty() && (options.from > 0 || std::isfinite(options.to)))
-    throw Error("--fill writes the whole recording; leave --from and --to out.");
+    throw Error("--fill and --record write the whole recording; leave --from and --to out.");
   return options;
 }
 
@@ -149,7 +153,7 @@ int run(const Options& options) {
   if (!recording.remarkOnChoice().empty()) std::printf("%s\n", recording.remarkOnChoice().c_str());
   Replay::Listener nobody;
   std::unique_ptr<BagFiller> filler;
-  if (!options.fill.empty()) filler = std::make_unique<BagFiller>(recording, options.fill);
+  if (!options.fill.empty()) filler = std::make_unique<BagFiller>(recording, options.fill, options.filling);
   Replay replay(recording, filler ? *filler : nobody);
   if (options.from > replay.duration())
     throw Error("--from " + seconds(options.from) + " is after the end of the session, at " +
@@ -170,10 +174,11 @@ int run(const Options& options) {
              stdout);
   if (filler) {
     filler->finish(replay.simulation());
-    std::printf("filled: %s, %llu messages\n", options.fill.c_str(),
-                static_cast<unsigned long long>(filler->messageCount()));
+    std::printf("%s: %s, %llu messages\n", options.filling == Filling::Whole ? "filled" : "recorded",
+                options.fill.c_str(), static_cast<unsigned long long>(filler->messageCount()));
   }
-  return report(recording, replay.result());
+  const int status = report(recording, replay.result());
+  return status == kNotChecked && options.filling == Filling::NewSession ? kSame : status;
 }
 
 }  // namespace

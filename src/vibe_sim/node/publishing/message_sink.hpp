@@ -46,6 +46,7 @@ struct BagTarget {
   std::string prefix;                                    ///< of the names of all topics, such as "/"
   std::function<bool(const std::string& topic)> wanted;  ///< by its whole name; other topics are left out
   ros::Time time{ros::TIME_MIN};                         ///< of the messages to come
+  bool thinned = false;                                  ///< as a recorder thins them (Kept::period)
 };
 
 /// Where the messages of one topic go: to listeners in the graph, or into a bag. Used like a ros::Publisher.
@@ -53,13 +54,14 @@ class MessageSink {
  public:
   MessageSink() = default;
   explicit MessageSink(ros::Publisher publisher) : publisher_(std::move(publisher)) {}
-  MessageSink(BagTarget& target, std::string topic) : target_(&target), topic_(std::move(topic)) {}
+  MessageSink(BagTarget& target, std::string topic, double period)
+      : target_(&target), topic_(std::move(topic)), period_(period) {}
 
   template <class M>
   void publish(const M& message) const {
     if (target_ == nullptr) {
       if (publisher_) publisher_.publish(message);
-    } else if (!topic_.empty()) {
+    } else if (!topic_.empty() && isDue()) {
       target_->bag.write(topic_, target_->time, message);
     }
   }
@@ -70,9 +72,18 @@ class MessageSink {
   }
 
  private:
+  // A message that comes a hundredth of the period early counts as due.
+  bool isDue() const {
+    const bool due = !target_->thinned || last_ == ros::TIME_MIN || (target_->time - last_).toSec() >= 0.99 * period_;
+    if (due) last_ = target_->time;
+    return due;
+  }
+
   ros::Publisher publisher_;
   BagTarget* target_ = nullptr;
   std::string topic_;
+  double period_ = 0;                      // of a target that is thinned [s]
+  mutable ros::Time last_{ros::TIME_MIN};  // that was written
 };
 
 /// Makes sinks, in the graph or into a bag, and knows of all that it has made whether somebody listens and what a
@@ -90,7 +101,7 @@ class SinkSource {
   template <class M>
   MessageSink advertise(const std::string& topic, std::uint32_t queue, Kept kept = kKeptWhole, bool latch = false,
                         const std::function<void()>& on_connect = {}) {
-    made_.push_back(make<M>(topic, queue, latch, on_connect));
+    made_.push_back(make<M>(topic, queue, kept, latch, on_connect));
     if (kept.period != 0 || kept.replayed) rules_.push_back({topic, kept.period, kept.replayed});
     return made_.back();
   }
@@ -105,10 +116,11 @@ class SinkSource {
 
  private:
   template <class M>
-  MessageSink make(const std::string& topic, std::uint32_t queue, bool latch, const std::function<void()>& on_connect) {
+  MessageSink make(const std::string& topic, std::uint32_t queue, Kept kept, bool latch,
+                   const std::function<void()>& on_connect) {
     if (target_ != nullptr) {
       const std::string whole = topic[0] == '/' ? topic : target_->prefix + topic;
-      return MessageSink(*target_, target_->wanted(whole) ? whole : "");
+      return MessageSink(*target_, target_->wanted(whole) ? whole : "", kept.period);
     }
     if (!handle_) return {};
     ros::SubscriberStatusCallback connected;

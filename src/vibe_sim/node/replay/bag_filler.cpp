@@ -9,6 +9,7 @@
 #include "conversions/conversions.hpp"
 #include "recording/bag_name.hpp"
 #include "recording/recording.hpp"
+#include "vibe_core/metrics/session_report.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::sim {
@@ -20,17 +21,24 @@ bool isReplayed(const std::string& topic, const std::string& prefix) {
   return rule != nullptr && rule->replayed;
 }
 
+// Of a new session, what a recorder leaves to a replay is not written.
+bool isWritten(const std::string& topic, const std::string& prefix, Filling filling) {
+  if (filling == Filling::Whole) return isReplayed(topic, prefix);
+  const RecordingRule* rule = recordingRule(topic, "", {prefix});
+  return rule == nullptr || rule->period != kNever;
+}
+
 bool hasClock(const Recording& recording) {
   return recording.view(rosbag::TopicQuery("/clock"))->size() > 0;
 }
 
 // An open bag with the name of the file while it is incomplete.
-std::unique_ptr<rosbag::Bag> begin(const std::string& file) {
+std::unique_ptr<rosbag::Bag> begin(const std::string& file, Filling filling) {
   claimBag(file);
   auto bag = std::make_unique<rosbag::Bag>();
   try {
     bag->open(file + ".active", rosbag::bagmode::Write);
-    bag->setCompression(rosbag::compression::LZ4);
+    bag->setCompression(filling == Filling::Whole ? rosbag::compression::LZ4 : rosbag::compression::BZ2);
     return bag;
   } catch (const rosbag::BagException& error) {
     bag.release();  // NOLINT: see the destructor
@@ -91,14 +99,19 @@ bool SessionFilter::has(const rosbag::MessageInstance& message) const {
   return message.getTime() >= from_ && message.getTime() < to_;
 }
 
-BagFiller::BagFiller(const Recording& recording, const std::string& file)
+BagFiller::BagFiller(const Recording& recording, const std::string& file, Filling filling)
     : recording_(recording),
+      filling_(filling),
       filter_(recording),
-      bag_(begin(file)),
+      bag_(begin(file, filling)),
       file_(file),
       target_{*bag_, recording.prefix(),
-              [prefix = recording.prefix()](const std::string& topic) { return isReplayed(topic, prefix); }},
-      publishers_(SinkSource(target_), hasClock(recording)) {}
+              [prefix = recording.prefix(), filling](const std::string& topic) {
+                return isWritten(topic, prefix, filling);
+              }},
+      publishers_(SinkSource(target_), filling == Filling::NewSession || hasClock(recording)) {
+  target_.thinned = filling == Filling::NewSession;
+}
 
 // A bag is closed by its destructor, and one that cannot be written throws there, which ends the program.
 BagFiller::~BagFiller() {
@@ -135,19 +148,40 @@ void BagFiller::newState(const TimedSimulation& simulation) {
   publish(simulation, [&] { publishers_.wholeState(simulation, {}); });
 }
 
+void BagFiller::beforeStep(const TimedSimulation& simulation) {
+  if (filling_ == Filling::Whole) return;
+  target_.thinned = static_cast<std::uint64_t>(simulation.state().step) + 1 <
+                    recording_.runs().back().endStep();  // the end is kept whole
+  publish(simulation, [&] { publishers_.appliedInput(simulation); });
+}
+
 void BagFiller::afterStep(const TimedSimulation& simulation) {
   publish(simulation, [&] { publishers_.stepResult(simulation, {}); });
+}
+
+void BagFiller::copyRest() {
+  const auto all = recording_.view([](const rosbag::ConnectionInfo*) { return true; });
+  for (const rosbag::MessageInstance& message : *all) {
+    const std::string topic = message.getTopic();
+    if (!isReplayed(topic, recording_.prefix()) && filter_.has(message)) bag_->write(topic, message.getTime(), message);
+  }
+}
+
+// The hash after the last step, which no later input carries.
+void BagFiller::sendEnd(const TimedSimulation& simulation) {
+  vibe_msgs::SolverStatistics end;
+  end.header.stamp = toRosTime(simulation.now());
+  end.session = simulation.session();
+  end.steps = static_cast<std::uint64_t>(simulation.state().step);
+  end.particle_count = static_cast<std::uint32_t>(simulation.model().particle_count);
+  end.state_hash = toHex(simulation.simulation().hash());
+  publishers_.solverStatistics(end);
 }
 
 void BagFiller::finish(const TimedSimulation& simulation) {
   newState(simulation);
   try {
-    const auto all = recording_.view([](const rosbag::ConnectionInfo*) { return true; });
-    for (const rosbag::MessageInstance& message : *all) {
-      const std::string topic = message.getTopic();
-      if (!isReplayed(topic, recording_.prefix()) && filter_.has(message))
-        bag_->write(topic, message.getTime(), message);
-    }
+    filling_ == Filling::Whole ? copyRest() : sendEnd(simulation);
     bag_->close();
     rosbag::Bag whole(file_ + ".active", rosbag::bagmode::Read);
     count_ = rosbag::View(whole).size();

@@ -31,8 +31,14 @@ class SessionFilter {
   ros::Time from_{ros::TIME_MIN}, to_{ros::TIME_MAX};
 };
 
-/// Makes a whole recording of a thinned one: what the recorder kept whole is copied, and what a replay computes
-/// (recordingRules()) is written anew, message by message as the simulator sent it. Beside the listener's calls:
+/// What a replay is written as.
+enum class Filling {
+  Whole,      ///< what the recorder kept whole is copied, and what a replay computes (recordingRules()) written anew
+  NewSession  ///< all of it is written anew, with the hashes of this build, and thinned as a recorder does. The same
+              ///< inputs give the same bytes: times that depend on the machine are left out.
+};
+
+/// Makes a recording of a replay, message by message as the simulator sent it. Beside the listener's calls:
 ///
 ///   BagFiller filler(recording, "whole.bag");
 ///   Replay replay(recording, filler);
@@ -47,11 +53,12 @@ class BagFiller : public Replay::Listener {
   /// The calls of the listener and finish() throw an Error if the disk is full.
   /// @throws Error if the file is there already or cannot be written, or if the recording has other sessions in the
   /// namespace that overlap in time or have no identity, so that the rest of the messages cannot be told apart
-  BagFiller(const Recording& recording, const std::string& file);
+  BagFiller(const Recording& recording, const std::string& file, Filling filling = Filling::Whole);
   ~BagFiller() override;
 
   void newModel(const TimedSimulation& simulation) override;
   void newState(const TimedSimulation& simulation) override;
+  void beforeStep(const TimedSimulation& simulation) override;
   void afterStep(const TimedSimulation& simulation) override;
 
   /// Writes what the simulator sends when it ends, copies the rest and ends the file.
@@ -62,9 +69,12 @@ class BagFiller : public Replay::Listener {
 
  private:
   void publish(const TimedSimulation& simulation, const std::function<void()>& send);
+  void copyRest();
+  void sendEnd(const TimedSimulation& simulation);
   [[noreturn]] void fail(const std::string& why);
 
   const Recording& recording_;
+  Filling filling_;
   SessionFilter filter_;
   std::unique_ptr<rosbag::Bag> bag_;
   std::string file_;

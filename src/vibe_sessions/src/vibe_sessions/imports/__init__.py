@@ -1,0 +1,1 @@
+"""Recorded motions of people and of other robots, performed as sessions."""

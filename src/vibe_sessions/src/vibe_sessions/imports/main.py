@@ -1,0 +1,70 @@
+"""Imports a recorded motion as a session."""
+import argparse
+import os
+import sys
+
+import yaml
+
+from vibe_sessions.cohort_options import _Parser
+from vibe_sessions.headless import SessionError
+from vibe_sessions.imports.map_file import read_map
+from vibe_sessions.imports.motion_file import open_motion
+from vibe_sessions.imports.resampling import inputs_of
+from vibe_sessions.imports.session import record, write_commands
+from vibe_sessions.whole_file import write_whole
+
+DESCRIPTION = """\
+Moves the scope as a person or another robot moved: a CSV or a bag, of which a map (YAML) says what moves which joint, in
+which unit. DIR gets commands.bag, session.bag, a report, and import.txt: what was not used, left out or clamped. Pages:
+docs/import.md."""
+EPILOG = "Exit status: 0; 1 if the session or its report failed; 2 if motion, map or call are wrong; 130 if interrupted."
+
+
+def parse(words):
+    parser = _Parser(prog="import", allow_abbrev=False, description=DESCRIPTION, epilog=EPILOG)
+    parser.add_argument("motion", metavar="FILE", help="a CSV with a line of names, or a bag")
+    parser.add_argument("--map", metavar="FILE", required=True, help="what its columns or topics mean")
+    parser.add_argument("--output", metavar="DIR", required=True, help="folder to write to; new or empty")
+    return parser.parse_args(words)
+
+
+def make_folder(folder):
+    try:
+        os.makedirs(folder, exist_ok=True)
+        if os.listdir(folder):
+            raise SessionError(f"'{folder}' is not empty; name another folder.")
+    except OSError as error:
+        raise SessionError(f"Cannot write into '{folder}': {error.strerror}.") from None
+
+
+def perform(options):
+    made = read_map(options.map)
+    motion = open_motion(options.motion, made.time)
+    notes = list(motion.notes)
+    period, joints, buttons = inputs_of(motion, made, notes)
+    notes += motion.unused()
+    make_folder(options.output)
+    place = lambda name: os.path.join(options.output, name)  # noqa: E731
+    print("".join(f"import: {note}\n" for note in notes), end="", file=sys.stderr, flush=True)
+    write_whole(place("import.txt"), "".join(f"{note}\n" for note in notes))
+    about = {"notes": f"imported from {os.path.basename(options.motion)} by {os.path.basename(options.map)}"}
+    write_whole(place("session.about.yaml"), yaml.safe_dump(about, allow_unicode=True))
+    write_commands(place("commands.bag"), made.scene, period, joints, buttons)
+    print(f"{len(joints)} steps, {len(joints) * period:.2f} s")
+    print(f"state hash: {record(options.output)}", flush=True)
+    from vibe_sessions.report.main import main as report  # takes a second to import
+    return report([place("session.bag")])
+
+
+def main(words):
+    try:
+        return perform(parse(words))
+    except SessionError as error:
+        sys.stderr.write(f"import: {error}\n")
+        return 2
+    except OSError as error:
+        sys.stderr.write(f"import: '{error.filename or ''}' cannot be written: {error.strerror}.\n")
+        return 1
+    except KeyboardInterrupt:
+        sys.stderr.write("\nimport: interrupted; remove the folder and call again.\n")
+        return 130
