@@ -15,7 +15,7 @@ const EXPECTED = [
   ["replay", "docs/tutorials/record_and_replay"], ["rosbag", "docs/tutorials/record_and_replay"],
   ["snapshot", "docs/tutorials/record_and_replay"], ["report", "docs/sessions"], ["headset", "docs/web"], ["phone", "docs/web"],
   ["gamepad", "docs/tutorials/drive_by_hand"], ["latency", "docs/latency"], ["depth image", "docs/ground_truth"],
-  ["stereo", "docs/endoscope_camera"], ["cluster", "docs/cohorts"], ["licence", "README"],
+  ["import", "docs/import"], ["CSV motion", "docs/import"], ["baselines", "docs/data_set"], ["stereo", "docs/endoscope_camera"], ["cluster", "docs/cohorts"], ["licence", "README"],
   ["cite", "README"], ["parameters of nodes", "reference/parameters"], ["insuflator", "docs/scenes"],
 ];
 

@@ -136,7 +136,8 @@ def clone(options):
         demos = list(file["data"].values())
         rows = np.concatenate([np.hstack([demo["obs"][name] for name in INPUTS]) for demo in demos]).astype(float)
         wanted = np.concatenate([demo["actions"] for demo in demos]).astype(float)
-    np.savez(options.policy, *fit(rows, wanted, options.epochs, least=SCALE))
+    np.savez(options.policy + ".part.npz", *fit(rows, wanted, options.epochs, least=SCALE))
+    os.replace(options.policy + ".part.npz", options.policy)
     print(f"\n{len(demos)} episodes, {len(rows)} actions: {options.policy}")
 
 

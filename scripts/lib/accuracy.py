@@ -20,7 +20,7 @@ import measured_policy  # noqa: F401: likewise
 import measured_sessions  # noqa: F401: likewise
 import measured_steps  # noqa: F401: likewise
 from measured_sections import SESSION_TEXT, Runner, sections
-from measured_store import GUARD, ITSELF, Store, differences
+from measured_store import GUARD, ITSELF, Store, differences, open_whole
 from measured_tables import TABLES, block
 
 
@@ -86,7 +86,7 @@ def measure(work, section, part):
     print(", took {:.0f} s of processor time".format(seconds), flush=True)
     if (section.name, part.name) == ("sessions", "first"):
         os.makedirs(work.store.folder, exist_ok=True)
-        with open(os.path.join(work.store.folder, SESSION_TEXT), "w", encoding="utf-8") as text:
+        with open_whole(os.path.join(work.store.folder, SESSION_TEXT)) as text:
             text.write(said)
     return stamped(work, part, rows, seconds)
 
@@ -144,7 +144,7 @@ def render(work):
     for name, text in pages(work):
         filled = measured_pages.fill(text, lambda name: block(work.store, name))
         if filled != text:
-            with open(os.path.join(work.root, name), "w", encoding="utf-8") as out:
+            with open_whole(os.path.join(work.root, name)) as out:
                 out.write(filled)
 
 

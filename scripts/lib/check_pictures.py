@@ -19,6 +19,9 @@ import hashlib
 import pathlib
 import sys
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "src/vibe_sessions/src"))
+from vibe_sessions.whole_file import open_whole  # noqa: E402
+
 
 def digest(root, shows):
     """Of paths and bytes of files and folders, as 12 hexadecimal digits."""
@@ -64,7 +67,7 @@ def main():
         if row["picture"] in arguments.made:
             row.update(date=datetime.date.today().isoformat(), digest=digest(arguments.root, row["shows"]))
     if arguments.made:
-        with open(folder / "made.csv", "w", newline="", encoding="utf-8") as file:
+        with open_whole(folder / "made.csv", newline="") as file:
             writer = csv.DictWriter(file, rows[0], lineterminator="\n")
             writer.writeheader()
             writer.writerows(rows)

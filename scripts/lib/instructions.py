@@ -8,6 +8,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../src/vibe_sessions/src"))
+from vibe_sessions.whole_file import open_whole  # noqa: E402
+
 SCENE = "base: package://vibe_core/scenes/stomach.yaml\nname: few\ngeometry: {particles: 900}\n"
 STEP = "vibe::Simulation::step(vibe::StepInput const&)"
 COUNTED = "vibe::benchmarks::countedStep"
@@ -72,7 +75,7 @@ def count(devel, states, scene, folder):
 
 
 def write(rows, file):
-    with open(file, "w", newline="", encoding="utf-8") as stream:
+    with open_whole(file, newline="") as stream:
         writer = csv.DictWriter(stream, rows[0], lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
@@ -96,7 +99,7 @@ def main(words):
     with tempfile.TemporaryDirectory(prefix="vibe_instructions.") as folder:
         scene = options.scene or os.path.join(folder, "few.yaml")
         if not options.scene:
-            with open(scene, "w", encoding="utf-8") as out:
+            with open(scene, "w", encoding="utf-8") as out:  # not whole: scratch
                 out.write(SCENE)
         rows = count(options.devel, options.states, scene, folder)
     show(rows)

@@ -199,7 +199,7 @@ def write_scene(root, name, folder):
     else:
         scene = "base: {}\nname: {}\n{}".format(STOMACH, name, added)
     file = os.path.join(folder, name + ".yaml")
-    with open(file, "w", encoding="utf-8") as out:
+    with open(file, "w", encoding="utf-8") as out:  # not whole: scratch
         out.write(scene)
     return file
 

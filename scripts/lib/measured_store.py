@@ -4,6 +4,10 @@ import csv
 import hashlib
 import math
 import os
+import sys
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../src/vibe_sessions/src"))
+from vibe_sessions.whole_file import open_whole  # noqa: E402
 
 # columns that the store adds; `epoch` is that of the guard when the row was measured
 PROVENANCE = ("part", "date", "version", "epoch", "machine", "load", "cpu_s", "command")
@@ -37,11 +41,10 @@ class Store:
         rows = sorted(kept + rows, key=lambda row: order.index(row["part"]))
         columns = list(dict.fromkeys(name for row in rows for name in row if name not in PROVENANCE))
         os.makedirs(self.folder, exist_ok=True)
-        with open(self.file(section) + ".new", "w", newline="", encoding="utf-8") as stream:
+        with open_whole(self.file(section), newline="") as stream:
             writer = csv.DictWriter(stream, columns + list(PROVENANCE), restval="", lineterminator="\n")
             writer.writeheader()
             writer.writerows(rows)
-        os.replace(self.file(section) + ".new", self.file(section))
         self.epoch = self.find_epoch()
 
     def find_epoch(self):

@@ -152,10 +152,10 @@ def quoted(value):
 
 def write(tests, folder, scratch):
     """Writes the list of tests that ctest reads in a folder, and an empty log for each."""
-    with open(os.path.join(folder, "CTestTestfile.cmake"), "w", encoding="utf-8") as file:
+    with open(os.path.join(folder, "CTestTestfile.cmake"), "w", encoding="utf-8") as file:  # not whole: scratch
         for test in tests:
             test.log = os.path.join(folder, test.name.replace("/", "_") + ".log")
-            with open(test.log, "w", encoding="utf-8"):
+            with open(test.log, "w", encoding="utf-8"):  # not whole: a log
                 pass
             words = [sys.executable, "-BS", RUNNER, scratch, test.log, test.result_file]
             properties = dict(test.properties, LABELS=test.kind)

@@ -3,7 +3,7 @@
 # cost: 60
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-for name in door rooms names launch links pictures catkin bash python; do
+for name in door rooms names writers launch links pictures catkin bash python; do
   check "lint $name" "$root/scripts/lint" --only "$name"
 done
 
@@ -139,6 +139,25 @@ check 'lint sees a function in two sources of a folder' findsName very.cpp 'doub
 }' "'used' stands in use.cpp, too"
 check 'lint sees a comment on a parameter that has another name' findsName very.hpp '/// @param lack  [m]
 double tension(double residual);' "'@param lack' is no parameter of what follows"
+
+# findsWriter FILE LINE: a file passes whose writer is whole or says why not; with another line lint must name it
+findsWriter() {
+  local tree
+  tree=$(copyOfTree)
+  printf 'with whole(path) as part, open(part, "w") as file:\n    pass\n# not whole: a log\nopen(log, "a")\nopen(path)\n' >"$tree/src/vibe_core/good.py"
+  printf 'WholeFile whole(file, "Table");\nstd::ofstream out(whole.part());\nstd::ifstream in(file);\n' >"$tree/src/vibe_core/src/good.cpp"
+  "$tree/scripts/lint" --only writers || { echo 'finds a problem where none is'; return 1; }
+  printf '\n\n%s\n' "$2" >"$tree/src/vibe_core/src/$1"
+  refuses 1 'not clean: writers' bash -c '"$1" --only writers 2>&1 >"$2"' - "$tree/scripts/lint" "$tree/said" &&
+    grep -F "src/vibe_core/src/$1:3: writes a file that may be left half" "$tree/said"
+}
+seesWriters() {
+  findsWriter bad.py 'with open(path, "w", encoding="utf-8") as file:' && findsWriter bad.py 'figure.savefig(picture)' &&
+    findsWriter bad.py 'np.savez(file, *parts)' && findsWriter bad.py 'file.write_text(text)' &&
+    findsWriter bad.cpp '  std::ofstream out(file);' && findsWriter bad.hpp '  std::ofstream out_;' &&
+    findsWriter bad.cpp '  if (!cv::imwrite(file, image)) fail();' && findsWriter bad.cpp 'FILE* f = std::fopen(name, mode);'
+}
+check 'lint sees files that may be left half' seesWriters
 
 # findsLink LINE PATTERN: two pages pass; with a line in one of them lint must name the problem
 findsLink() {

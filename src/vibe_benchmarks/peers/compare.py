@@ -14,6 +14,7 @@ import tempfile
 
 import scenes
 from scenes import HERE
+from vibe_sessions.whole_file import open_whole
 
 ROOT = os.path.normpath(os.path.join(HERE, *[os.pardir] * 3))
 sys.path.append(os.path.join(ROOT, "scripts", "lib"))
@@ -91,7 +92,7 @@ def keep(rows, fresh):
     rows[:] = [r for r in rows if key(r) not in replaced and (not r["setting"] or r["setting"] in known.get(r["engine"], [r["setting"]]))]
     rows += fresh
     rows.sort(key=lambda r: (scenes.NAMES.index(r["scene"]), r["size"] == "large"))
-    with open(CSV, "w", newline="", encoding="utf-8") as stream:
+    with open_whole(CSV, newline="") as stream:
         writer = csv.DictWriter(stream, COLUMNS, restval="", lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)

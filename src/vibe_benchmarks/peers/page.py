@@ -12,6 +12,7 @@ from matplotlib.ticker import FormatStrFormatter  # noqa: E402
 import scenes  # noqa: E402
 from compare import NEAR, chosen, number, own_time  # noqa: E402
 from measured_text import day, digits, percent, sentence, table  # noqa: E402
+from vibe_sessions.whole_file import open_whole, whole  # noqa: E402
 
 COLOURS = {"ViBE": "tab:blue", "MuJoCo flex": "tab:orange", "Newton VBD": "tab:green", "Newton XPBD": "tab:olive",
            "Newton Style3D": "tab:cyan", "PyBullet": "tab:red"}  # fmt: skip
@@ -95,7 +96,8 @@ def draw(rows, file):
     keys += [plt.Line2D([], [], color="0.3", marker=m, mfc=f, ls=s, label=t) for m, f, s, t in
              (("o", "0.3", "-", "1,000 nodes"), ("s", "white", ":", "3,600 nodes"))]  # fmt: skip
     figure.legend(handles=keys, loc="outside upper center", ncols=8, frameon=False)
-    figure.savefig(file, dpi=110)
+    with whole(file) as part:
+        figure.savefig(part, dpi=110)
 
 
 def write(rows, root):
@@ -108,5 +110,5 @@ def write(rows, root):
                               lambda found: f"{found[1]}{made}\n{found[2]}", text, flags=re.DOTALL)  # fmt: skip
         if count != 1:
             raise ValueError(f"{file} has no place for '{name}'; restore its marks")
-    with open(file, "w", encoding="utf-8") as stream:
+    with open_whole(file) as stream:
         stream.write(text)

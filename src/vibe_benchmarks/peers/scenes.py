@@ -2,6 +2,7 @@
 
 import csv
 import os
+import sys
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,6 +11,7 @@ import beams
 from meshes import grid, interpolation, ringed_plate, sphere
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.append(os.path.join(HERE, "../../vibe_sessions/src"))  # for whole_file, which needs the standard library only
 REFERENCE = os.path.join(os.path.dirname(HERE), "reference")
 FRAME = 1 / 60  # of recorded positions [s]
 GRAVITY = 9.81

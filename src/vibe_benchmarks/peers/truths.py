@@ -11,6 +11,7 @@ import scenes
 from meshes import grid, prisms, ringed_plate
 from scenes import BALL, CAP, HERE, SOUTH, STRIP, WIDTH
 from solid import Solid
+from vibe_sessions.whole_file import open_whole
 
 COLUMNS = ("scene", "x", "y", "z", "ux", "uy", "uz", "force", "uncertainty")
 T = 3.5e-3  # thickness [m]
@@ -141,7 +142,7 @@ def main():
     (coarse, weak), (fine, strong) = (dragged(*mesh, points) for mesh in ((14, 32), (20, 48)))
     out += rows("drag", points, fine, coarse, (strong, weak))
     out += beam_checks()
-    with open(os.path.join(HERE, "truths.csv"), "w", newline="", encoding="utf-8") as stream:
+    with open_whole(os.path.join(HERE, "truths.csv"), newline="") as stream:
         stream.write("# made by truths.py: neo-Hookean quadratic elements of scikit-fem; lengths in m, forces in N\n")
         writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
         writer.writeheader()

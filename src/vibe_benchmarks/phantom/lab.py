@@ -3,6 +3,7 @@ import numpy as np
 
 import sheet
 from protocol import COMPARED, FORCES, QUANTITIES, REPEATS, coupon_force, deviation
+from vibe_sessions.whole_file import open_whole
 
 FAULTS = {"leak": "the pressure falls by 1.2 mmHg in a minute", "unit": "the pressures were read in cmH2O",
           "swap": "settings and readings of press are swapped", "offset": "the force gauge shows 0.25 N too much",
@@ -39,4 +40,5 @@ def write(file, found, fault=None):
         for row in rows:
             if row[0] == "press":
                 row[1], row[3] = row[3], row[1]
-        file.write_text("\n".join(",".join(row) for row in rows) + "\n")
+        with open_whole(file) as stream:
+            stream.write("\n".join(",".join(row) for row in rows) + "\n")

@@ -9,6 +9,7 @@ import numpy as np
 import lab
 import sheet
 from protocol import MODULUS, QUANTITIES, SCALE, WALL, modulus
+from vibe_sessions.whole_file import open_whole
 
 REMEDIES = {"vtk": "install python3-vtk9", "scipy": "install python3-scipy", "matplotlib": "install python3-matplotlib",
             "vibe": "run scripts/build --part python"}
@@ -26,7 +27,8 @@ def make_mould(arguments):
 
 def make_scene(arguments):
     import twin
-    arguments.out.write_text(twin.scene(arguments.modulus, arguments.wall, arguments.scale))
+    with open_whole(arguments.out) as stream:
+        stream.write(twin.scene(arguments.modulus, arguments.wall, arguments.scale))
     return 0
 
 

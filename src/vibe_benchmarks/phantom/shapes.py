@@ -4,6 +4,7 @@ import struct
 import numpy as np
 import vtk
 from vtk.util import numpy_support
+from vibe_sessions.whole_file import open_whole
 
 
 def polydata(points, triangles):
@@ -97,4 +98,5 @@ def write_stl(file, points, triangles):
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     record["normal"] = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
     record["corners"] = corners
-    file.write_bytes(b"ViBE phantom [mm]".ljust(80) + struct.pack("<I", len(corners)) + record.tobytes())
+    with open_whole(file, "wb") as stream:
+        stream.write(b"ViBE phantom [mm]".ljust(80) + struct.pack("<I", len(corners)) + record.tobytes())

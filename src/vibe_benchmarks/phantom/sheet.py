@@ -4,6 +4,7 @@ import difflib
 import math
 
 from protocol import QUANTITIES, REPEATS
+from vibe_sessions.whole_file import open_whole
 
 COLUMNS = ["measurement", "at", "at_unit", "reading", "unit", "repeat"]
 HEADER = """# Readings of a silicone stomach; the protocol is docs/phantom.md. Lines that begin with # are comments.
@@ -18,7 +19,7 @@ class SheetError(Exception):
 
 def write(file, readings=None):
     """An empty sheet, or one with readings: those of {(measurement, at, repeat): reading}."""
-    with open(file, "w", newline="") as stream:
+    with open_whole(file, newline="") as stream:
         for name, quantity in QUANTITIES.items():
             stream.write((HEADER if name == "coupon" else "") + f"# {name}: {quantity.what}\n")
             if name == "coupon":

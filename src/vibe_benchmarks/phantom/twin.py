@@ -6,6 +6,7 @@ import numpy as np
 
 import vibe
 from protocol import FORCES, QUANTITIES
+from vibe_sessions.whole_file import open_whole
 
 MMHG = 133.322  # [Pa]
 SPRING = 300.0  # of the pull of vibe.Simulation [N/m]
@@ -138,11 +139,13 @@ def predict(text, folder):
     if kept.exists():
         return json.loads(kept.read_text())
     file = kept.with_suffix(".yaml")
-    file.write_text(text)
+    with open_whole(file) as stream:
+        stream.write(text)
     bench = Bench(vibe.load(file, gas={"regulated_pressure": "100 mmHg"}))  # it is filled by volume
     at = {name: QUANTITIES[name].at for name in ["fill"] + FORCES}
     found = {"fill": bench.filled(at["fill"]), "press": bench.pulled(at["press"], -1),
              "pull": bench.pulled(at["pull"], 1), "cinch": bench.cinched(at["cinch"])}
     found = {name: [round(float(value), 4) for value in values] for name, values in found.items()}
-    kept.write_text(json.dumps(found))
+    with open_whole(kept) as stream:
+        json.dump(found, stream)
     return found

@@ -1,7 +1,7 @@
 // Measures steps in contact: speed beside the error against a time-converged motion, and the hard cases.
 #include <algorithm>
-#include <fstream>
 #include <iostream>
+#include <sstream>
 #include <string>
 
 #include "contact/contact_table.hpp"
@@ -190,7 +190,7 @@ void runStates(const Options& options) {
 void runHard(const Options& options) {
   const Scene scene = sceneOf(options);
   HardCases cases(scene, readTextFile(resolveAddress(scene.scope->urdf), "URDF"), options.brief, std::cerr);
-  std::ofstream steps(options.steps);
+  std::ostringstream steps;
   if (!options.steps.empty()) writeHardStepHeader(steps);
   const HardOutput output{options.steps.empty() ? nullptr : &steps, nullptr, options.first_crossing};
   std::vector<HardResult> results;
@@ -205,6 +205,7 @@ void runHard(const Options& options) {
       run(cases.prepare(name, seed));
   for (const std::string& script : options.scripts) run(cases.session(script, options.duration));
   save(options.csv, [&](std::ostream& out) { writeHardResults(results, out); });
+  save(options.steps, [&](std::ostream& out) { out << steps.str(); });
 }
 
 void runWays(const Options& options) {

@@ -28,6 +28,7 @@ import sys
 import tempfile
 
 import yaml
+from vibe_sessions.whole_file import open_whole
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 FOLDER = os.path.join(HERE, "..", "measurements")
@@ -97,7 +98,7 @@ def run_case(case, log):
     """Samples of a case of vibe_bench, by name and level."""
     with tempfile.TemporaryDirectory(prefix="vibe_experiment.") as folder:
         file, values = os.path.join(folder, "case.yaml"), os.path.join(folder, "values.csv")
-        with open(file, "w", encoding="utf-8") as out:
+        with open(file, "w", encoding="utf-8") as out:  # not whole: scratch
             yaml.safe_dump(case, out)
         program = os.path.join(os.environ.get("VIBE_DEVEL", os.path.join(HERE, "../../../devel")),
                                "lib/vibe_benchmarks/vibe_bench")
@@ -159,7 +160,7 @@ def main(words):
         rows = list(predictions(arguments.experiment, read(arguments.experiment), sys.stderr))
     except (OSError, ValueError) as failure:
         sys.exit(f"experiment {arguments.experiment}: {failure}")
-    with open(1 if arguments.csv == "-" else arguments.csv, "w", newline="", encoding="utf-8") as out:
+    with open_whole("/dev/stdout" if arguments.csv == "-" else arguments.csv, newline="") as out:
         writer = csv.DictWriter(out, COLUMNS, lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iomanip>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -30,7 +32,7 @@ using namespace vibe;
 
 struct Options {
   std::string scene = "package://vibe_core/scenes/stomach.yaml";
-  std::string script, mesh, csv, measures, snapshot;
+  std::string script, mesh, csv, inputs, contacts, measures, snapshot;
   double duration = 0;
   int threads = 1;
   std::optional<double> novice;
@@ -49,6 +51,9 @@ void addOptions(OptionList& line, Options& o) {
       .typeName("S")
       .check(finiteFrom(0));
   line.option("--csv", o.csv, "write one row per step there (- for standard output)").typeName("FILE");
+  line.option("--inputs", o.inputs, "write the input of each step there, as CSV with all digits").typeName("FILE");
+  line.option("--contacts", o.contacts, "write the forces of the tissue on the tool there, one by one, as CSV")
+      .typeName("FILE");
   line.option("--measures", o.measures, "write the measures by name there, as JSON").typeName("FILE");
   line.option("--snapshot", o.snapshot, "write the last state there").typeName("FILE");
   line.option("--threads", o.threads, "threads inside a step (default: 1); the result is the same")
@@ -153,6 +158,52 @@ SessionOutcome outcomeOf(const SessionMetrics& metrics, const std::vector<Suture
   return outcome;
 }
 
+/// A table with rows for each step.
+struct StepTable {
+  StepTable(const std::string& file, const std::string& columns, int digits)
+      : whole(file, "The table"), out(whole.part()) {
+    out << columns << '\n' << std::setprecision(digits);
+  }
+  void finish() {
+    out.close();
+    whole.finish(out.good());
+  }
+
+  WholeFile whole;
+  std::ofstream out;  // of whole.part()
+};
+
+std::unique_ptr<StepTable> inputTable(const std::string& file) {
+  if (file.empty()) return nullptr;
+  std::string columns = "step";
+  for (const char* name : kJointNames) columns += std::string(",") + name;
+  for (const char* name : kButtonNames) columns += std::string(",") + name;
+  return std::make_unique<StepTable>(file, columns, std::numeric_limits<double>::max_digits10);
+}
+
+std::unique_ptr<StepTable> contactTable(const std::string& file) {
+  constexpr int kDigits = 7;
+  if (file.empty()) return nullptr;
+  return std::make_unique<StepTable>(
+      file, "step,grip,x,y,z,normal_x,normal_y,normal_z,gap,force_x,force_y,force_z,triangle,region", kDigits);
+}
+
+void writeInput(const Simulation& simulation, std::ostream& out) {
+  out << simulation.stepCount() - 1;
+  for (const double joint : simulation.input().joints) out << ',' << joint;
+  for (const std::uint8_t button : simulation.input().buttons) out << ',' << int{button};
+  out << '\n';
+}
+
+void writeContacts(const Simulation& simulation, std::ostream& out) {
+  for (const ToolContact& c : simulation.contacts()) {
+    out << simulation.stepCount() - 1 << ',' << (c.kind == ToolContact::Kind::Grip);
+    for (const Eigen::Vector3d& v : {c.point, c.normal}) out << ',' << v.x() << ',' << v.y() << ',' << v.z();
+    out << ',' << c.gap << ',' << c.force.x() << ',' << c.force.y() << ',' << c.force.z() << ',' << c.triangle << ','
+        << toString(c.region) << '\n';
+  }
+}
+
 void writeMeasures(const std::string& file, const Simulation& simulation, const Trainee* trainee) {
   SessionOutcome outcome = outcomeOf(simulation.metrics(), simulation.state().procedure.sutures, trainee);
   outcome.steps = simulation.stepCount();
@@ -172,6 +223,7 @@ void run(const Options& o) {
     if (!warning.empty()) std::fprintf(stderr, "%s\n", warning.c_str());
   const double duration = durationOf(o, script.get(), trainee.get());
   const std::unique_ptr<SessionCsv> csv = o.csv.empty() ? nullptr : std::make_unique<SessionCsv>(o.csv);
+  const auto inputs = inputTable(o.inputs), contacts = contactTable(o.contacts);
   const bool show = !o.quiet && isatty(STDERR_FILENO) == 1;
 
   SimulationSettings settings;
@@ -187,6 +239,8 @@ void run(const Options& o) {
   };
   const auto observer = [&](const Simulation& s) {
     if (csv) csv->write(*model, s.state(), s.events());
+    if (inputs) writeInput(s, inputs->out);
+    if (contacts) writeContacts(s, contacts->out);
     if (!o.quiet) printEvents(s.events(), show);
     const std::string doing = trainee ? trainee->activity() : script ? script->phaseAt(s.time()) : "";
     if (show && s.stepCount() % 30 == 1) printProgress(s.time(), duration, doing);
@@ -194,6 +248,8 @@ void run(const Options& o) {
   long left = duration > 0 ? std::lround(duration / simulation.stepPeriod()) : std::numeric_limits<long>::max();
   while (left-- > 0 && !(trainee && trainee->done())) simulation.run(1, inputAt, observer);
   if (csv) csv->finish();
+  for (StepTable* table : {inputs.get(), contacts.get()})
+    if (table != nullptr) table->finish();
   if (show) std::fprintf(stderr, "\r%-60s\r", "");
   if (!o.snapshot.empty()) simulation.saveSnapshot(o.snapshot);
   if (!o.measures.empty()) writeMeasures(o.measures, simulation, trainee.get());

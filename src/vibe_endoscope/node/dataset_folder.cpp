@@ -1,5 +1,8 @@
 #include "dataset_folder.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <QImage>
 #include <cstdio>
 #include <filesystem>
@@ -20,7 +23,7 @@ using Json = nlohmann::ordered_json;  // writes numbers so that they read back e
 void savePng(const std::string& file, const std::uint8_t* pixels, int width, int height, QImage::Format format) {
   const int channels = format == QImage::Format_RGB888 ? 3 : 1;
   const QImage image(pixels, width, height, channels * width, format);
-  if (!image.save(QString::fromStdString(file), "PNG"))
+  if (!image.save(QString::fromStdString(file), "PNG"))  // not whole: the folder is
     throw std::runtime_error("'" + file +
                              "' cannot be written; make room if the disk is full, or give another --output.");
 }
@@ -76,7 +79,8 @@ std::string hex(std::uint64_t number) {
 
 }  // namespace
 
-DatasetFolder::DatasetFolder(const DatasetOptions& options) : options_(options) {
+DatasetFolder::DatasetFolder(const DatasetOptions& options)
+    : options_(options), folder_(options.output + "/.part-dataset") {
   namespace fs = std::filesystem;
   std::error_code problem;
   is_new_ = !fs::exists(options.output, problem);
@@ -87,6 +91,7 @@ DatasetFolder::DatasetFolder(const DatasetOptions& options) : options_(options) 
   for (const auto& entry : fs::directory_iterator(options.output))
     if (isOfDataSet(entry.path()))
       throw std::runtime_error("The folder '" + options.output + "' is not empty; give another --output or remove it.");
+  fs::remove_all(folder_, problem);  // of a call that was killed
   const std::vector<std::string> lenses =
       options.stereo ? std::vector<std::string>{"left/", "right/"} : std::vector<std::string>{""};
   for (const std::string& lens : lenses)
@@ -96,12 +101,12 @@ DatasetFolder::DatasetFolder(const DatasetOptions& options) : options_(options) 
                                    {"labels", options.labels},
                                    {"flow", options.flow},
                                    {"flow_visible", options.flow}})
-      if (on) fs::create_directories(options.output + "/" + lens + kind);
-  if (options.particles) fs::create_directories(options.output + "/particles");
-  if (options.particles) fs::create_directories(options.output + "/topology");
-  if (options.sutures) fs::create_directories(options.output + "/sutures");
-  times_.open(options.output + "/times.txt");
-  poses_.open(options.output + "/poses.txt");
+      if (on) fs::create_directories(folder_ + "/" + lens + kind);
+  if (options.particles) fs::create_directories(folder_ + "/particles");
+  if (options.particles) fs::create_directories(folder_ + "/topology");
+  if (options.sutures) fs::create_directories(folder_ + "/sutures");
+  times_.open(folder_ + "/times.txt");  // not whole: the folder is
+  poses_.open(folder_ + "/poses.txt");
   times_ << "# number of the image, stamp [s]\n";
   poses_
       << "# stamp [s], tx ty tz [m], qx qy qz qw: pose of the camera (z forward, x right, y down) in the frame of the "
@@ -113,10 +118,7 @@ DatasetFolder::~DatasetFolder() {
   namespace fs = std::filesystem;
   times_.close(), poses_.close();
   std::error_code ignored;
-  std::vector<fs::path> ours;
-  for (const auto& entry : fs::directory_iterator(options_.output, ignored))
-    if (isOfDataSet(entry.path())) ours.push_back(entry.path());
-  for (const fs::path& path : ours) fs::remove_all(path, ignored);
+  fs::remove_all(folder_, ignored);
   if (is_new_) fs::remove(options_.output, ignored);  // if nothing else is in it
 }
 
@@ -124,7 +126,7 @@ std::string DatasetFolder::fileOf(const std::string& lens, const char* kind, std
                                   const char* ending) const {
   char name[16];
   std::snprintf(name, sizeof name, "%06zu", number);
-  return options_.output + "/" + lens + kind + "/" + name + ending;
+  return folder_ + "/" + lens + kind + "/" + name + ending;
 }
 
 void DatasetFolder::addImage(std::size_t number, const ros::Time& stamp, const Eigen::Isometry3d& camera) {
@@ -179,7 +181,7 @@ void DatasetFolder::writeParticles(std::size_t number, const sensor_msgs::PointC
 }
 
 void DatasetFolder::writeTopology(const vibe_msgs::TissueTopology& topology) {
-  const std::string folder = options_.output + "/topology/";
+  const std::string folder = folder_ + "/topology/";
   writeNpy(folder + "triangles.npy", {topology.triangles.size() / 3, 3}, topology.triangles);
   const std::vector<float> rest(topology.rest_positions.begin(), topology.rest_positions.end());
   writeNpy(folder + "rest_positions.npy", {rest.size() / 3, 3}, rest);
@@ -199,7 +201,7 @@ void DatasetFolder::writeSutures(std::size_t number, const vibe_msgs::SutureArra
 }
 
 void DatasetFolder::writeText(const std::string& name, const std::string& text) {
-  std::ofstream out(options_.output + "/" + name);
+  std::ofstream out(folder_ + "/" + name);  // not whole: the folder is
   out << text;
   out.close();
   if (!out)
@@ -277,7 +279,22 @@ void DatasetFolder::finish(const vibe_msgs::SessionInfo& info, const std::string
   writeText("intrinsics.json", intrinsics());
   writeText("labels.json", labels);
   writeText("dataset.json", description(info, frame));
+  putInPlace();
   is_finished_ = true;
+}
+
+void DatasetFolder::putInPlace() const {
+  namespace fs = std::filesystem;
+  const int descriptor = ::open(folder_.c_str(), O_RDONLY | O_CLOEXEC);
+  ::syncfs(descriptor);  // thousands of files at once
+  ::close(descriptor);
+  const fs::path last = fs::path(folder_) / "dataset.json";
+  std::vector<fs::path> made;
+  for (const auto& entry : fs::directory_iterator(folder_))
+    if (entry.path() != last) made.push_back(entry.path());
+  made.push_back(last);
+  for (const fs::path& path : made) fs::rename(path, options_.output / path.filename());
+  fs::remove(folder_);
 }
 
 }  // namespace vibe::endoscope

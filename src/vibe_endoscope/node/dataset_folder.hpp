@@ -16,12 +16,13 @@ namespace vibe::endoscope {
 ///
 /// Each lens has a folder ("" with one lens, "left/", "right/") with one folder for each kind of image; files are named
 /// by the number of the image from 000000. Indexes and descriptions are text files in the folder of the data set.
+/// All is written into its folder .part-dataset and moved up by finish(), so that nobody takes half a data set for one.
 class DatasetFolder {
  public:
   /// Creates the folder.
   /// @throws std::runtime_error  it is there and not empty, or cannot be made
   explicit DatasetFolder(const DatasetOptions& options);
-  /// Removes everything again unless finish() has written all of it: half a data set is none.
+  /// Removes everything again unless finish() has written all of it.
   ~DatasetFolder();
   DatasetFolder(const DatasetFolder&) = delete;
   DatasetFolder& operator=(const DatasetFolder&) = delete;
@@ -36,7 +37,7 @@ class DatasetFolder {
   void writeParticles(std::size_t number, const sensor_msgs::PointCloud2& particles);
   void writeTopology(const vibe_msgs::TissueTopology& topology);
   void writeSutures(std::size_t number, const vibe_msgs::SutureArray& sutures);
-  /// What describes the whole: intrinsics.json, labels.json, and last dataset.json.
+  /// What describes the whole: intrinsics.json, labels.json, and dataset.json, which comes into place last.
   /// @param frame  of the poses
   void finish(const vibe_msgs::SessionInfo& info, const std::string& labels, const std::string& frame);
 
@@ -46,9 +47,12 @@ class DatasetFolder {
   std::string intrinsics() const;
   std::string description(const vibe_msgs::SessionInfo& info, const std::string& frame) const;
 
+  void putInPlace() const;
+
   DatasetOptions options_;
+  std::string folder_;  // that is written to
   bool is_new_ = false, is_finished_ = false;
-  std::ofstream times_, poses_;
+  std::ofstream times_, poses_;  // not whole: the folder is
   std::size_t images_ = 0;
   double first_ = 0, last_ = 0;              // stamps [s]
   std::array<std::uint64_t, 256> pixels_{};  // per label

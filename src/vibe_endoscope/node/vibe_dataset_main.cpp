@@ -5,6 +5,7 @@
 #include <rviz/ogre_helpers/render_system.h>
 
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <optional>
@@ -105,6 +106,7 @@ void run(const endoscope::DatasetOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is then an error like a full disk
   endoscope::DatasetOptions options;
   const int status = endoscope::readDatasetOptions(argc, argv, options);
   if (status >= 0) return status;

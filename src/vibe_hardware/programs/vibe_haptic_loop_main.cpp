@@ -37,9 +37,9 @@ void addOptions(OptionList& line, Options& o) {
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-File openCsv(const std::string& file) {
-  File out(std::fopen(file.c_str(), "w"), std::fclose);
-  if (!out) throw std::runtime_error(file + " cannot be written; choose another file.");
+File openCsv(const std::string& part) {
+  File out(std::fopen(part.c_str(), "w"), std::fclose);
+  if (!out) throw std::runtime_error(part + " cannot be written; choose another file.");
   return out;
 }
 
@@ -75,18 +75,24 @@ void run(const Options& o) {
   struct Part {
     Rendering rendering;
     const char* name;
+    std::unique_ptr<WholeFile> whole;
     File csv;
   };
   std::vector<Part> parts;
-  parts.push_back({Rendering::Spring, "spring", File(nullptr, std::fclose)});
-  parts.push_back({Rendering::Held, "held", File(nullptr, std::fclose)});
-  if (!o.csv.empty())  // before the loop runs, which takes minutes
-    for (Part& part : parts) part.csv = openCsv(o.csv + "." + part.name + ".csv");
-  for (const Part& part : parts) {
+  parts.push_back({Rendering::Spring, "spring", nullptr, File(nullptr, std::fclose)});
+  parts.push_back({Rendering::Held, "held", nullptr, File(nullptr, std::fclose)});
+  for (Part& part : parts) {  // before the loop runs, which takes minutes
+    if (o.csv.empty()) break;
+    part.whole = std::make_unique<WholeFile>(o.csv + "." + part.name + ".csv", "The table");
+    part.csv = openCsv(part.whole->part());
+  }
+  for (Part& part : parts) {
     settings.rendering = part.rendering;
     const HapticLoopResult result = runHapticLoop(scene, settings);
     print(part.name, result);
-    if (part.csv) writeCsv(part.csv.get(), result);
+    if (!part.csv) continue;
+    writeCsv(part.csv.get(), result);
+    part.whole->finish(std::ferror(part.csv.get()) == 0 && std::fclose(part.csv.release()) == 0);
   }
 }
 

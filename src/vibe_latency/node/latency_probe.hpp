@@ -36,7 +36,7 @@ class EventTable {
     std::vector<double> values;
   };
   std::string file_;
-  std::ofstream out_;
+  std::ofstream out_;  // not whole: a log
   std::mutex mutex_;
   std::vector<Row> rows_;
 

@@ -173,6 +173,8 @@ class SentencesTest(ImportTest):
     def test_wrong_units(self):
         in_mm = [[t, 1e3 * depth, *rest] for t, depth, *rest in wave()]
         self.assertIn("A possible cause is the unit, m; in mm they would fit", self.said(in_mm))
+        scaled = self.said(in_mm, MAP.replace("from: depth,", "from: depth, scale: 0.001,"))
+        self.assertNotIn("possible cause", scaled)
         in_deg = [[t, depth, math.degrees(roll), *rest] for t, depth, roll, *rest in wave()]
         self.assertIn("A possible cause is the unit, rad; in deg they would fit", self.said(in_deg))
         self.assertRegex(self.said(wave(), length="mm"), "'insertion' moves by .* mm in all. A possible cause is the unit, mm; in m")
@@ -196,7 +198,7 @@ class SentencesTest(ImportTest):
                 (("from: depth", "from: dept"), "has no column 'dept'; did you mean 'depth'?"),
                 (("unit: {length}", "unit: deg"), "'deg' is no unit of 'insertion', which is in m"),
                 (("unit: {length}", "unit: furlong"), "unknown unit 'furlong'"),
-                (("sign: -1", "sign: 2"), "the sign '2' of 'tip_up_down' is neither 1 nor -1"),
+                (("sign: -1", "sign: 2"), "the sign '2' is neither 1 nor -1"),
                 (("buttons:", "butons:"), "unknown key 'butons' of a map; did you mean 'buttons'?"),
                 (("scene: {scene}", "scene: nowhere.yaml"), "there is no scene 'nowhere.yaml'"),
                 (("from: t,", "from: tt,"), "has no column 'tt'")):

@@ -7,6 +7,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_vision/calibrate/board_guide.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
@@ -67,7 +68,8 @@ class BoardTaker {
     if (std::filesystem::exists(file)) throw Error(file + ": is there already; give another folder");
     const cv::Mat grey(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.data),
                        static_cast<std::size_t>(image.stride));
-    if (!cv::imwrite(file, grey)) throw Error(file + ": cannot be written; check the folder and the space on the disk");
+    writeWhole(
+        file, [&](const std::string& part) { return cv::imwrite(part, grey); }, "The picture");
   }
 };
 

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <vector>
 
 #include "program_options.hpp"
-#include "vibe_core/program/error.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_vision/camera/capture.hpp"
 
 namespace vision = vibe::vision;
@@ -63,10 +62,10 @@ void printReport(const std::vector<Times>& times, const vision::Capture& capture
 }
 
 void writeTable(const std::string& file, const std::vector<Times>& times) {
-  std::ofstream table(file);
+  std::ostringstream table;
   table << std::setprecision(17) << "sequence,stamp,arrival,taken\n";
   for (const Times& t : times) table << t.sequence << ',' << t.stamp << ',' << t.arrival << ',' << t.taken << '\n';
-  if (!table.flush()) throw vibe::Error(file + ": cannot be written; check the folder.");
+  vibe::writeFile(file, table.str(), "The table");
 }
 
 bool check(const Options& options) {

@@ -1,13 +1,13 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <fstream>
 #include <iostream>
 #include <random>
 #include <thread>
 #include <vector>
 
 #include "program_options.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_vision/camera/fake_camera.hpp"
 
@@ -31,9 +31,7 @@ struct Options {
 };
 
 void writeConfig(const std::string& file, const vision::SyntheticScene& scene) {
-  std::ofstream stream(file);
-  stream << vision::toYaml(vision::nominalConfig(scene));
-  if (!stream.flush()) throw vibe::Error(file + ": cannot be written; check the folder.");
+  vibe::writeFile(file, vision::toYaml(vision::nominalConfig(scene)), "The configuration");
 }
 
 constexpr double kShortestBlink = 0.25, kLongestBlink = 0.5;  // between two [s]

@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "program_options.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_vision/sheet/marker_sheet.hpp"
 
@@ -63,9 +64,8 @@ void writePng(const vision::MarkerSheet& sheet, const std::string& file) {
     vision::SheetRaster raster = sheet.raster(i, kPreview);
     const cv::Mat image(raster.height, raster.width, CV_8U, raster.value.data());
     const std::string name = stem + "-" + std::to_string(i + 1) + ".png";
-    if (!cv::imwrite(name, image)) {
-      throw vibe::Error(name + ": cannot be written; give a file in an existing folder that you may write to");
-    }
+    vibe::writeWhole(
+        name, [&](const std::string& part) { return cv::imwrite(part, image); }, "The sheet");
     std::printf("%s\n", name.c_str());
   }
 }

@@ -1,12 +1,12 @@
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "program_options.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
 
@@ -41,8 +41,10 @@ class Recording {
     char name[32];
     std::snprintf(name, sizeof name, "frame_%06llu.png", static_cast<unsigned long long>(frame.sequence));
     const std::string file = folder_ / name;
-    if (!cv::imwrite(file, image, {cv::IMWRITE_PNG_COMPRESSION, 1}))
-      throw vibe::Error(file + ": cannot be written; check the folder and the space on the disk.");
+    const auto write = [&](const std::string& part) {
+      return cv::imwrite(part, image, {cv::IMWRITE_PNG_COMPRESSION, 1});
+    };
+    vibe::writeWhole(file, write, "The picture");
   }
 
  private:
@@ -50,22 +52,15 @@ class Recording {
   cv::VideoWriter video_;
 };
 
-std::ofstream openTable(const std::filesystem::path& file) {
-  std::ofstream table(file);
-  if (!table) throw vibe::Error(file.string() + ": cannot be written; check the folder.");
-  table << std::setprecision(17);
-  return table;
-}
-
 void render(const Options& options) {
   const vision::SyntheticScene scene = vision::namedScene(options.scene);
   std::error_code failed;
   std::filesystem::create_directories(options.out, failed);
   if (failed) throw vibe::Error(options.out + ": the folder cannot be made: " + failed.message() + ".");
   const std::filesystem::path folder(options.out);
-  std::ofstream stamps = openTable(options.format == "video" ? folder / "video.mkv.csv" : folder / "frames.csv");
-  std::ofstream truth = openTable(folder / "truth.csv");
-  openTable(folder / "config.yaml") << vision::toYaml(vision::nominalConfig(scene));
+  std::ostringstream stamps, truth;
+  stamps << std::setprecision(17), truth << std::setprecision(17);
+  vibe::writeFile(folder / "config.yaml", vision::toYaml(vision::nominalConfig(scene)), "The configuration");
   stamps << "sequence,stamp,exposure\n";
   truth << vision::kTruthColumns;
 
@@ -79,6 +74,8 @@ void render(const Options& options) {
       vision::writeTruth(truth, rendered.frame.sequence, rendered.frame.stamp, scene.instruments[i].nominal.name,
                          rendered.truth[i]);
   }
+  vibe::writeFile(folder / (options.format == "video" ? "video.mkv.csv" : "frames.csv"), stamps.str(), "The table");
+  vibe::writeFile(folder / "truth.csv", truth.str(), "The truth");
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "program_options.hpp"
 #include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 #include "vibe_vision/record/annotation.hpp"
@@ -66,7 +67,8 @@ class Annotator {
     if (is_video_) return addToVideo(picture);
     char name[40];
     std::snprintf(name, sizeof name, "/frame_%06llu.png", static_cast<unsigned long long>(count_++));
-    if (!cv::imwrite(target_ + name, picture)) fail();
+    vibe::writeWhole(
+        target_ + name, [&](const std::string& part) { return cv::imwrite(part, picture); }, "The picture");
   }
 
  private:

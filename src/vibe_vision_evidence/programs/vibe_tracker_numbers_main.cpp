@@ -1,7 +1,8 @@
-#include <fstream>
 #include <iostream>
+#include <sstream>
 
 #include "numbers/number_study.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/program/command_line.hpp"
 #include "vibe_core/program/error.hpp"
 
@@ -23,11 +24,9 @@ int run(Options options) {
   }
   if (options.study.scenes.empty()) options.study.scenes = studyScenes();
   const auto effects = studyNumbers(options.study, [](const std::string& scene) { std::cerr << scene << "\n"; });
-  std::ofstream file;
-  if (!options.csv.empty()) file.open(options.csv);
-  if (!options.csv.empty() && !file)
-    throw Error("--csv: cannot write to '" + options.csv + "'; name a file in a folder that exists");
-  writeEffects(options.csv.empty() ? std::cout : file, effects);
+  std::ostringstream table;
+  writeEffects(options.csv.empty() ? std::cout : table, effects);
+  if (!options.csv.empty()) writeFile(options.csv, table.str(), "The table");
   return 0;
 }
 

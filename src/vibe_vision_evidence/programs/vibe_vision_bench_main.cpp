@@ -1,9 +1,11 @@
 #include <fstream>
 #include <iostream>
+#include <memory>
 #include <opencv2/core/utility.hpp>
 
 #include "bench/bench_cell.hpp"
 #include "bench/doubt_table.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/program/command_line.hpp"
 #include "vibe_core/program/error.hpp"
 
@@ -51,8 +53,9 @@ int run(const Options& options) {
     writeDoubts(std::cout, doubtTable(options.scenes, options.bench.seeds, options.bench.frames));
     return 0;
   }
-  std::ofstream file;
-  if (!options.csv.empty()) file.open(options.csv);
+  const auto whole = options.csv.empty() ? nullptr : std::make_unique<WholeFile>(options.csv, "--csv");
+  std::ofstream file;  // of the part that is written to
+  if (whole) file.open(whole->part());
   if (!file) throw Error("--csv: cannot write to '" + options.csv + "'; name a file in a folder that exists");
   if (!pinThread()) std::cerr << "The thread cannot be pinned to one processor: times may vary more.\n";
   std::ostream& csv = options.csv.empty() ? std::cout : file;
@@ -61,6 +64,7 @@ int run(const Options& options) {
     std::cerr << cell.scene << "\n";
     writeCsv(csv, runCell(cell, options.bench));
   }
+  if (whole) file.close(), whole->finish(file.good());
   return 0;
 }
 

@@ -3,6 +3,8 @@ import csv
 import math
 import re
 
+from vibe_sessions.whole_file import open_whole
+
 
 def readRows(path):
     """One dictionary per cell and method: scene and method as text, the rest as numbers, NaN where nothing is."""
@@ -34,5 +36,5 @@ def updatePage(path, tables):
                               lambda m, text=text: f'{m[1]}{text}\n{m[2]}', page, flags=re.DOTALL)
         if count != 1:
             raise SystemExit(f"'{path}' has {count} places '<!-- bench: {name} -->'; it needs exactly one.")
-    with open(path, 'w', encoding='utf-8') as file:
+    with open_whole(path) as file:
         file.write(page)

@@ -15,6 +15,7 @@ import tempfile
 import time
 
 from vibe_bringup.graph import Graph
+from vibe_sessions.whole_file import open_whole
 
 HEADER = struct.Struct("<4sHBxIfQdff")
 STAGES = ["half_exposure", "transport", "wait", "track", "predict_and_send"]
@@ -97,7 +98,7 @@ def main():
             rows = list(rows_of(*record(graph, arguments, folder)))
         finally:
             graph.stop_all()
-    with open(arguments.table, "w", newline="") as file:
+    with open_whole(arguments.table, newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["frame"] + STAGES)
         writer.writerows(rows)

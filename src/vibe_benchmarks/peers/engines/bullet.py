@@ -35,7 +35,7 @@ class Engine:
         stiffness = math.sqrt(3) / 2 * scene.young * scene.thickness  # of springs in equilateral triangles [N/m]
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "wall.obj")
-            with open(file, "w", encoding="utf-8") as stream:
+            with open(file, "w", encoding="utf-8") as stream:  # not whole: scratch
                 stream.writelines("v {:.9g} {:.9g} {:.9g}\n".format(*n) for n in scene.nodes)
                 stream.writelines("f {} {} {}\n".format(*t) for t in scene.triangles + 1)
             self.wall = p.loadSoftBody(

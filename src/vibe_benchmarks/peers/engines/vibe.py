@@ -29,11 +29,11 @@ def cannot(scene):
 def case(scene, settings, folder):
     """The case file of a scene, beside its mesh."""
     def save(name, rows, form):
-        np.savetxt(os.path.join(folder, name), rows, form)
+        np.savetxt(os.path.join(folder, name), rows, form)  # not whole: scratch
 
     save("nodes.txt", scene.nodes, "%.12g")
     save("tris.txt", scene.triangles, "%d")
-    with open(os.path.join(folder, "sets.txt"), "w", encoding="utf-8") as stream:
+    with open(os.path.join(folder, "sets.txt"), "w", encoding="utf-8") as stream:  # not whole: scratch
         for name, hold in scene.holds.items():
             stream.write(f"{name}: {' '.join(map(str, np.sort(hold.nodes)))}\n")
         for node in scene.record:
@@ -82,7 +82,7 @@ def bench(scene, settings, limit, duration):
         file, values = os.path.join(folder, "case.yaml"), os.path.join(folder, "values.csv")
         written = case(scene, settings, folder)
         written["transient"]["duration"] = duration
-        with open(file, "w", encoding="utf-8") as stream:
+        with open(file, "w", encoding="utf-8") as stream:  # not whole: scratch
             yaml.safe_dump(written, stream, sort_keys=False)
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         done = subprocess.run([BENCH, "--case", file, "--values", values], capture_output=True, text=True,

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
+#include <sstream>
 
 #include "vibe_core/clocks/step_timer.hpp"
-#include "vibe_core/program/error.hpp"
+#include "vibe_core/files/files.hpp"
 
 namespace vibe::benchmarks {
 namespace {
@@ -100,10 +100,9 @@ void printTable(const std::vector<ResultRow>& rows, std::ostream& out) {
 void save(const std::string& file, const std::function<void(std::ostream&)>& write) {
   if (file.empty()) return;
   if (file == "-") return write(std::cout);
-  std::ofstream out(file);
-  write(out);
-  out.close();
-  if (!out) throw Error(file + ": cannot be written; give --csv a path in a writable folder.");
+  std::ostringstream text;
+  write(text);
+  writeFile(file, text.str(), "The table");
 }
 
 double threadMilliseconds() {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
+#include <sstream>
 
 #include "fem/case_runner.hpp"
 #include "vibe_core/files/files.hpp"
@@ -151,7 +151,8 @@ struct Table {
   CaseProbe probe{plate};
   std::size_t tension = 0, field = 1;
   std::vector<ResultRow> rows;
-  std::ofstream profile;
+  std::ostringstream profile;
+  bool has_profile = false;
 
   double distanceAt(double level) const {
     const double rest = 2 * plate.benchCase().spots.at(bench_case.cinch->first).centre.norm();
@@ -174,7 +175,7 @@ struct Table {
   }
 
   void addProfile(const std::string& method, const std::string& setting, const MotionView& motion, double force) {
-    if (!profile.is_open()) return;
+    if (!has_profile) return;
     for (int n = 0; n < plate.nodeCount(); ++n)
       if (std::abs(plate.mesh().nodes[n].y()) < 1e-9)
         profile << method << ",\"" << setting << "\"," << motion.x[0][n] << ',' << motion.x[2][n] << ',' << force
@@ -246,15 +247,13 @@ void runConstraint(Table& table, std::ostream& log) {
 std::vector<ResultRow> runPulling(const std::string& profile, std::ostream& log) {
   Table table;
   if (!profile.empty()) {
-    table.profile.open(profile);
+    table.has_profile = true;
     table.profile << "method,setting,x,z,tension\n";
   }
   log << "pulling two bites together, " << table.plate.nodeCount() << " particles\n";
   runConstraint(table, log);
   for (const PullWay& way : kWays) runWay(way, table, log);
-  table.profile.close();
-  if (!profile.empty() && !table.profile)
-    throw Error(profile + ": cannot be written; give --profile a path in a writable folder.");
+  if (!profile.empty()) writeFile(profile, table.profile.str(), "The table of mid-lines");
   return table.rows;
 }
 

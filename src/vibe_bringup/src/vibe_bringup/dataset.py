@@ -1,6 +1,8 @@
 """A data set for computer vision from a recorded session: images of the endoscope with their truth."""
 
+import glob
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -55,7 +57,7 @@ def parse(words):
     output = os.path.realpath(arguments.output)
     if os.path.exists(output) and not os.path.isdir(output):
         made.error("--output: '{}' is not a folder".format(output))
-    if os.path.isdir(output) and os.listdir(output):
+    if os.path.isdir(output) and [name for name in os.listdir(output) if not name.startswith(".")]:
         made.error("--output: '{}' is not empty".format(output))
     arguments.output = made.check_output(output)
     return arguments
@@ -79,7 +81,7 @@ def fill_recording(arguments, scratch):
     said = os.path.join(scratch, "said.txt")
     print("repeating " + arguments.bag, flush=True)
     command = ["rosrun", "vibe_sim", "vibe_replay", "--fill", os.path.join(scratch, "whole.bag"), arguments.bag]
-    with open(said, "w", encoding="utf-8") as file:
+    with open(said, "w", encoding="utf-8") as file:  # not whole: scratch
         status = subprocess.run(command, stdout=file, stderr=subprocess.STDOUT, check=False).returncode
     if status == 3:
         print("note: the recording has no hashes to compare all steps with; the data sheet says so", flush=True)
@@ -102,6 +104,8 @@ def write_images(arguments, scratch):
 
 
 def make(arguments):
+    for left in glob.glob(os.path.join(glob.escape(arguments.output), ".making-*")):  # by a call that was killed
+        shutil.rmtree(left)
     with tempfile.TemporaryDirectory(prefix=".making-", dir=arguments.output) as scratch:
         replayed = fill_recording(arguments, scratch)
         write_images(arguments, scratch)

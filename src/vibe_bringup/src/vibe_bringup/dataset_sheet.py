@@ -8,6 +8,7 @@ import os
 
 import numpy
 from PIL import Image
+from vibe_sessions.whole_file import open_whole, whole
 
 NAN_COLOUR = (0, 0, 0)
 
@@ -228,7 +229,8 @@ these images say nothing about patients.
 def describe(folder, replayed):
     """Describes the data set in a folder; `replayed` says how well the recording repeated."""
     data, intrinsics, table = (read(folder, name) for name in ("dataset.json", "intrinsics.json", "labels.json"))
-    with open(os.path.join(folder, "README.md"), "w", encoding="utf-8") as file:
+    with open_whole(os.path.join(folder, "README.md")) as file:
         file.write(sheet(data, intrinsics, table, replayed))
     first_lens = os.path.join(folder, "left") if data["stereo"] else folder
-    strip(first_lens, liveliest(first_lens, data["images"]), table).save(os.path.join(folder, "preview.png"))
+    with whole(os.path.join(folder, "preview.png")) as part:
+        strip(first_lens, liveliest(first_lens, data["images"]), table).save(part)

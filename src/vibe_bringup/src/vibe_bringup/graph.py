@@ -65,7 +65,7 @@ class Process:
     def __init__(self, name, command, log, env, patience=10.0, essential=True, visible=False):
         self.name, self.log, self.patience, self.essential = name, log, patience, essential
         self.copies = []
-        with open(log, "ab") as output:
+        with open(log, "ab") as output:  # not whole: a log
             self.process = subprocess.Popen(
                 command,
                 env=env,
@@ -81,7 +81,7 @@ class Process:
                 self.copies[-1].start()
 
     def copy(self, source, ours):
-        with open(self.log, "ab", buffering=0) as log:
+        with open(self.log, "ab", buffering=0) as log:  # not whole: a log
             while True:
                 data = os.read(source.fileno(), 65536)
                 if not data:

@@ -10,6 +10,7 @@ import tempfile
 import time
 
 import yaml
+from vibe_sessions.whole_file import open_whole
 
 from . import places
 from .graph import Graph, GraphError
@@ -87,7 +88,7 @@ class Measurement:
             "processor": processor(),
             "cores": os.cpu_count(),
         }
-        with open(self.path("setup.json"), "w", encoding="utf-8") as file:
+        with open_whole(self.path("setup.json")) as file:
             json.dump(setup, file, indent=1)
 
     def scene(self):
@@ -97,7 +98,7 @@ class Measurement:
         if self.arguments.particles:
             scene["geometry"] = {"particles": self.arguments.particles}
         path = self.path("scene.yaml")
-        with open(path, "w", encoding="utf-8") as file:
+        with open_whole(path) as file:
             yaml.safe_dump(scene, file)
         return path
 
@@ -151,7 +152,7 @@ class Measurement:
         lamp = dict(LAMP, Joint=self.joint, Threshold=self.base + 0.5 * self.jump, Topic=topic)
         config["Visualization Manager"]["Displays"].append(lamp)
         path = self.path("latency.rviz")
-        with open(path, "w", encoding="utf-8") as file:
+        with open_whole(path) as file:
             yaml.safe_dump(config, file)
         return path
 

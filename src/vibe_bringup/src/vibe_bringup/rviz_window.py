@@ -52,7 +52,7 @@ class RvizWindow:
         config = self.config
         if self.view:
             config = os.path.join(self.folder, "view.rviz")
-            with open(self.config, encoding="utf-8") as given, open(config, "w", encoding="utf-8") as derived:
+            with open(self.config, encoding="utf-8") as given, open(config, "w", encoding="utf-8") as derived:  # not whole: scratch
                 yaml.safe_dump(with_view(yaml.safe_load(given), self.view), derived)
         # the splash screen would be in the way of the first picture
         command = [*program, "--splash-screen", "", "-d", config]
@@ -64,7 +64,7 @@ class RvizWindow:
         self.graph.env.update(LIBGL_ALWAYS_SOFTWARE="1", QT_X11_NO_MITSHM="1", XDG_RUNTIME_DIR=self.folder)
         number = os.path.join(self.folder, "display")
         command = 'exec Xvfb -displayfd 7 -screen 0 "$1"x24 -nolisten tcp 7>"$2"'
-        open(number, "wb").close()
+        open(number, "wb").close()  # not whole: scratch
         self.graph.start(self.name + "_xvfb", ["sh", "-c", command, "sh", SIZE, number])
         wait_for(lambda: self.graph.check_alive() and os.path.getsize(number) > 1, "Xvfb named no display")
         with open(number, encoding="ascii") as text:

@@ -12,6 +12,7 @@ import sys
 import time
 
 import yaml
+from vibe_sessions.whole_file import open_whole
 
 from . import places
 from .drivers import DRIVERS
@@ -63,7 +64,7 @@ class Session:
         """What people say of the session, for its report, where they can change it afterwards."""
         about = {key: getattr(self.arguments, key) for key in ("person", "notes") if getattr(self.arguments, key)}
         if about:
-            with open(os.path.join(self.output, "session.about.yaml"), "w", encoding="utf-8") as file:
+            with open_whole(os.path.join(self.output, "session.about.yaml")) as file:
                 yaml.safe_dump(about, file, allow_unicode=True)
 
     def start(self):
@@ -143,7 +144,7 @@ class Session:
             if self.driver.needs_rviz:
                 raise GraphError(death)
             self.rviz_death = death
-            with open(self.rviz.log, "a", encoding="utf-8") as log:
+            with open(self.rviz.log, "a", encoding="utf-8") as log:  # not whole: a log
                 print("rviz died with status {}".format(self.rviz.status()), file=log)  # for scripts/doctor
             print("rviz died; the session goes on without it.", flush=True)
         return self.rviz.status() == 0 and not self.driver.simulated_time and self.page is None

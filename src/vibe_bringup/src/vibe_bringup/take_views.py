@@ -17,6 +17,7 @@ import rospy
 from PIL import Image as Picture
 from sensor_msgs.msg import CameraInfo, Image
 from std_msgs.msg import String
+from vibe_sessions.whole_file import whole
 
 from . import places
 from .graph import GraphError
@@ -41,7 +42,7 @@ def scene_with(changes, folder):
         if count != 1:
             raise GraphError("the scene {} has no single key '{}'".format(file, key))
     changed = os.path.join(folder, "scene.yaml")
-    with open(changed, "w", encoding="utf-8") as scene:
+    with open(changed, "w", encoding="utf-8") as scene:  # not whole: scratch
         scene.write(text)
     return changed
 
@@ -143,14 +144,15 @@ class ViewSession(PictureSession):
     def save(self, stamp, file):
         """The picture, and its truth as FILE.npz: labels, depth, and the names of the labels by their numbers."""
         images = {t: array_of(self.messages[t][stamp]) for t, kind in self.topics.items() if kind is Image}
-        Picture.fromarray(images["image_raw"]).save(file)
+        with whole(file) as part:
+            Picture.fromarray(images["image_raw"]).save(part)
         if "labels" in images:
             table = json.loads(next(iter(self.messages["label_table"].values())).data)
             names = numpy.full(256, "", dtype=object)
             for row in table:
                 names[row["number"]] = row["name"]
-            numpy.savez_compressed(os.path.splitext(file)[0] + ".npz", labels=images["labels"],
-                                   depth=images["depth/image_raw"], names=names.astype(str))  # fmt: skip
+            with whole(os.path.splitext(file)[0] + ".npz") as part:
+                numpy.savez_compressed(part, labels=images["labels"], depth=images["depth/image_raw"], names=names.astype(str))
 
 
 def take_session(arguments, name, views):
@@ -171,7 +173,8 @@ def make_sheet(arguments):
     sheet = Picture.new("RGB", (COLUMNS * width, rows * height))
     for number, picture in enumerate(pictures):
         sheet.paste(picture.resize((width, height)), (number % COLUMNS * width, number // COLUMNS * height))
-    sheet.save(os.path.join(arguments.output, "eye_views.png"))
+    with whole(os.path.join(arguments.output, "eye_views.png")) as part:
+        sheet.save(part)
 
 
 def take_all(arguments):

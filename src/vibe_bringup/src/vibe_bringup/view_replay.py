@@ -16,7 +16,7 @@ def rviz_config(folder):
         text = file.read()
     panel = "Panels:\n  - Class: vibe_rviz_plugins/Replay\n    Name: Replay\n"
     path = os.path.join(folder, "replay.rviz")
-    with open(path, "w", encoding="utf-8") as file:
+    with open(path, "w", encoding="utf-8") as file:  # not whole: scratch
         file.write(text.replace("Panels:\n", panel, 1))
     return path
 

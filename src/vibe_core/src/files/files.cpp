@@ -1,6 +1,7 @@
 #include "vibe_core/files/files.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -9,9 +10,12 @@
 #include <optional>
 #include <regex>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include <dlfcn.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include "program/own_place.hpp"
 #include "vibe_core/program/error.hpp"
@@ -93,27 +97,52 @@ std::string readTextFile(const std::string& file, const std::string& what) {
 
 namespace {
 
-bool write(const std::string& file, const std::string& content) {
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << content;
-  out.close();
-  return static_cast<bool>(out);
+// From memory to the disk; a file system that cannot is none that loses power.
+bool flush(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const bool flushed = ::fsync(descriptor) == 0 || errno == EINVAL;
+  ::close(descriptor);
+  return flushed;
 }
 
 }  // namespace
 
-void writeFile(const std::string& file, const std::string& content, const std::string& what) {
+WholeFile::WholeFile(std::string file, std::string what) : file_(std::move(file)), what_(std::move(what)) {
   std::error_code unknown;
-  const std::filesystem::path target = std::filesystem::weakly_canonical(file, unknown);  // a link stays a link
-  const bool special = std::filesystem::exists(target, unknown) && !std::filesystem::is_regular_file(target, unknown);
-  const std::string place = target.empty() ? file : target.string(), part = special ? place : place + ".part";
-  if (!write(part, content)) {
-    if (!special) std::remove(part.c_str());
-    throw Error(what + " '" + file + "' could not be written; check that the folder exists and has room.");
-  }
-  if (special || std::rename(part.c_str(), place.c_str()) == 0) return;
-  std::remove(part.c_str());
-  throw Error(what + " '" + file + "' could not be put in place; check the permissions of its folder.");
+  target_ = std::filesystem::weakly_canonical(file_, unknown);
+  if (target_.empty()) target_ = file_;
+  is_special_ = std::filesystem::exists(target_, unknown) && !std::filesystem::is_regular_file(target_, unknown);
+  part_ = is_special_ ? target_ : target_.parent_path() / (".part-" + target_.filename().string());
+}
+
+WholeFile::~WholeFile() {
+  if (!is_special_ && !is_finished_) std::remove(part_.c_str());
+}
+
+void WholeFile::finish(bool written) {
+  if (!written || (!is_special_ && !flush(part_)))
+    throw Error(what_ + " '" + file_ + "' could not be written; check that the folder exists and has room.");
+  if (!is_special_ && std::rename(part_.c_str(), target_.c_str()) != 0)
+    throw Error(what_ + " '" + file_ + "' could not be put in place; check the permissions of its folder.");
+  is_finished_ = true;
+  if (!is_special_) flush(target_.parent_path());
+}
+
+void writeWhole(const std::string& file, const std::function<bool(const std::string& part)>& write,
+                const std::string& what) {
+  WholeFile whole(file, what);
+  whole.finish(write(whole.part()));
+}
+
+void writeFile(const std::string& file, const std::string& content, const std::string& what) {
+  const auto write = [&content](const std::string& part) {
+    std::ofstream out(part, std::ios::binary | std::ios::trunc);
+    out << content;
+    out.close();
+    return static_cast<bool>(out);
+  };
+  writeWhole(file, write, what);
 }
 
 namespace fs = std::filesystem;

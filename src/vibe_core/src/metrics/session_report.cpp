@@ -25,10 +25,12 @@ void writeProcedure(const ProcedureState& procedure, std::ostream& out) {
 }  // namespace
 
 SessionCsv::SessionCsv(const std::string& file) : out_(&file_) {
-  if (file == "-")
+  if (file == "-") {
     out_ = &std::cout;
-  else
-    file_.open(file, std::ios::trunc);
+  } else {
+    whole_ = std::make_unique<WholeFile>(file, "The CSV");
+    file_.open(whole_->part(), std::ios::trunc);
+  }
   out_->precision(9);
   *out_ << "step,time";
   for (const char* name : kJointNames) *out_ << ',' << name;
@@ -59,6 +61,7 @@ void SessionCsv::write(const Model& model, const State& state, const std::vector
 void SessionCsv::finish() {
   out_->flush();
   check();
+  if (whole_) file_.close(), whole_->finish(file_.good());
 }
 
 void SessionCsv::check() const {

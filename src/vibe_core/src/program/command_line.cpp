@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -182,6 +183,7 @@ CommandLine::CommandLine(std::unique_ptr<CLI::App> app) : OptionList(*app), owne
 CommandLine::~CommandLine() = default;
 
 int CommandLine::run(int argc, const char* const* argv, const std::function<int()>& work) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is then an error like a full disk
   app_->set_help_flag("-h,--help", "print this text and end");
   app_->get_formatter()->column_width(kColumn);
   std::string problem;

@@ -18,7 +18,7 @@ TEST(WriteFile, ReplacesWhatWasThereAndLeavesNothingElse) {
   writeFile(file, "a long first version", "File");
   writeFile(file, std::string("new\0er", 6), "File");
   EXPECT_EQ(readTextFile(file, "file"), std::string("new\0er", 6));
-  EXPECT_FALSE(fs::exists(file + ".part"));
+  EXPECT_FALSE(fs::exists(folder.path() + "/.part-state"));
 }
 
 TEST(WriteFile, ALinkStaysALink) {

@@ -18,7 +18,7 @@ void writeArray(const std::string& file, const std::vector<std::size_t>& shape, 
   constexpr std::size_t kPrefix = 10;
   header.resize((kPrefix + header.size() + kAlign) / kAlign * kAlign - kPrefix, ' ');
   header.back() = '\n';
-  std::ofstream out(file, std::ios::binary);
+  std::ofstream out(file, std::ios::binary);  // not whole: the folder of the data set is
   out.write("\x93NUMPY\x01\x00", 8);
   out.put(static_cast<char>(header.size() & 0xff)).put(static_cast<char>(header.size() >> 8));
   out.write(header.data(), static_cast<std::streamsize>(header.size()));

@@ -172,7 +172,7 @@ std::unique_ptr<PadSource> playPadRecording(PadRecording recording) {
 namespace {
 
 std::FILE* openFile(const std::string& file, const char* mode) {
-  std::FILE* result = std::fopen(file.c_str(), mode);
+  std::FILE* result = std::fopen(file.c_str(), mode);  // not whole: a log
   if (result == nullptr)
     throw Error("Cannot write the pad recording '" + file + "' (" + std::strerror(errno) + "); choose another file.");
   return result;

@@ -9,6 +9,7 @@ from vibe_sessions.cohort_local import run_local
 from vibe_sessions.cohort_options import DEFAULTS, parse
 from vibe_sessions.cohort_plan import Plan
 from vibe_sessions.cohort_progress import Progress
+from vibe_sessions.cohort_session import perform as perform_session
 from vibe_sessions.cohort_store import Store
 from vibe_sessions.headless import SessionError
 
@@ -23,19 +24,19 @@ def plan_for(options, store):
                                         **{key: there[key] for key in ("novice", "first_seed", "count", "duration")}))
 
 
-def outcomes(sessions, options):
+def outcomes(sessions, options, work):
     if options.scheduler:
         from vibe_sessions.cohort_dask import run_dask  # takes a second to import
-        return run_dask(sessions, options.scheduler, options.jobs or 0)
-    return run_local(sessions, options.jobs or len(os.sched_getaffinity(0)))
+        return run_dask(sessions, options.scheduler, options.jobs or 0, work)
+    return run_local(sessions, options.jobs or len(os.sched_getaffinity(0)), work)
 
 
-def perform_all(plan, store, options):
-    """Returns the sessions that failed, in the order of the plan: [(key, reason)]."""
+def perform_all(plan, store, options, work=perform_session):
+    """work(session, stopped) makes the row of a session. Returns the sessions that failed, in the order of the plan: [(key, reason)]."""
     finished = sum(store.has(session) for session in plan.sessions())
     progress, failures = Progress(len(plan), finished), {}
     open_sessions = (session for session in plan.sessions() if not store.has(session))
-    results = outcomes(open_sessions, options)
+    results = outcomes(open_sessions, options, work)
     try:
         for session, row, reason in results:
             if row is None:

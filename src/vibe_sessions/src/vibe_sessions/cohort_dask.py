@@ -7,14 +7,13 @@ import uuid
 from distributed import Client, as_completed, get_worker
 from distributed.scheduler import KilledWorker
 
-from vibe_sessions.cohort_session import perform
 from vibe_sessions.headless import Killed, SessionError
 
 ATTEMPTS = 3  # the first and two more
 PATIENCE = 30  # for the scheduler and for the first worker [s]
 
 
-def perform_on_worker(session):
+def perform_on_worker(session, work):
     """Runs on a worker: (row or None, reason, address of the worker if the child was killed there)."""
     worker = get_worker()
     key = worker.get_current_task()
@@ -24,7 +23,7 @@ def perform_on_worker(session):
         return task is None or task.state == "cancelled"
 
     try:
-        return perform(session, stopped), "", None
+        return work(session, stopped), "", None
     except Killed as death:
         return None, str(death), worker.address
     except SessionError as error:
@@ -55,15 +54,15 @@ def connect(address):
 class _Flight:
     """Sessions on their way. Few are at any time, however many there are."""
 
-    def __init__(self, client, sessions, jobs):
-        self._client, self._sessions, self._jobs = client, iter(sessions), jobs
+    def __init__(self, client, sessions, jobs, work):
+        self._client, self._sessions, self._jobs, self._work = client, iter(sessions), jobs, work
         self._run, self._futures = uuid.uuid4().hex[:8], as_completed(loop=client.loop)
         self._session, self._attempt = {}, {}  # by the key of the future
 
     def launch(self, session, attempt=1, avoid=None):
         others = [worker for worker in self._client.scheduler_info()["workers"] if worker != avoid] if avoid else []
         key = f"{session.key}-{self._run}-{attempt}"
-        future = self._client.submit(perform_on_worker, session, key=key, pure=False, workers=others or None,
+        future = self._client.submit(perform_on_worker, session, self._work, key=key, pure=False, workers=others or None,
                                      allow_other_workers=bool(others))
         self._session[key], self._attempt[key] = session, attempt
         self._futures.add(future)
@@ -103,7 +102,7 @@ class _Flight:
                 self._client.cancel(list(self._futures.futures), force=True)
 
 
-def run_dask(sessions, address, jobs):
+def run_dask(sessions, address, jobs, work):
     """Yields (session, row or None, reason) as sessions end; closing the generator cancels what is under way.
 
     Args:
@@ -111,7 +110,7 @@ def run_dask(sessions, address, jobs):
     """
     client = connect(address)
     try:
-        flight = _Flight(client, sessions, jobs)
+        flight = _Flight(client, sessions, jobs, work)
         flight.fill()
         try:
             yield from flight.results()

@@ -3,17 +3,16 @@ import concurrent.futures
 import itertools
 import threading
 
-from vibe_sessions.cohort_session import perform
 from vibe_sessions.headless import Killed, SessionError, Stopped
 
 ATTEMPTS = 3  # the first and two more
 
 
-def perform_patiently(session, stopped):
+def perform_patiently(session, stopped, work):
     """(row or None, reason). Again, in a new process, if the child was killed."""
     for _ in range(ATTEMPTS):
         try:
-            return perform(session, stopped), ""
+            return work(session, stopped), ""
         except Killed as error:
             death = str(error)
         except Stopped:
@@ -25,7 +24,7 @@ def perform_patiently(session, stopped):
     return None, f"{death} Tried {ATTEMPTS} times."
 
 
-def run_local(sessions, jobs):
+def run_local(sessions, jobs, work):
     """Yields (session, row or None, reason) as sessions end; closing the generator ends what is under way."""
     sessions, halt = iter(sessions), threading.Event()
     with concurrent.futures.ThreadPoolExecutor(jobs) as crew:
@@ -33,7 +32,7 @@ def run_local(sessions, jobs):
 
         def launch(count):
             for session in itertools.islice(sessions, count):
-                running[crew.submit(perform_patiently, session, halt.is_set)] = session
+                running[crew.submit(perform_patiently, session, halt.is_set, work)] = session
 
         try:
             launch(jobs)

@@ -11,6 +11,7 @@ matplotlib.rcParams["text.parse_math"] = False  # names are of the user
 import matplotlib.pyplot as plt  # noqa: E402
 
 from vibe_sessions.headless import SessionError  # noqa: E402
+from vibe_sessions.whole_file import whole  # noqa: E402
 
 # bands: (mean, standard deviation, who); note: what was measured, where a band would not be the same task. Sources:
 # docs/protocols.md, "Skill" and "Expert and novice".
@@ -23,8 +24,8 @@ def column(name, scale=1.0):
     return lambda row: scale * float(row[name]) if row.get(name) else None
 
 
-def share(part, whole):
-    return lambda row: 100 * float(row[part]) / float(row[whole]) if row.get(part) and float(row[whole] or 0) else None
+def share(part, total):
+    return lambda row: 100 * float(row[part]) / float(row[total]) if row.get(part) and float(row[total] or 0) else None
 
 
 PANELS = [
@@ -152,6 +153,7 @@ def draw(table, picture):
     figure.tight_layout(rect=(0, 0.045, 1, 1), h_pad=1.6, w_pad=1.4)
     legend(figure, organs)
     try:
-        figure.savefig(picture, dpi=110)
+        with whole(picture) as part:
+            figure.savefig(part, dpi=110)
     except (OSError, ValueError) as error:
         raise SessionError(f"Cannot write '{picture}': {error}.") from None

@@ -34,7 +34,10 @@ def perform(session, stopped=lambda: False):
     Raises SessionError if the session cannot succeed, its kind Killed if it may succeed elsewhere, Stopped on demand.
     """
     check_files(session)
-    outcome = headless.perform(arguments_of(session), stopped)
+    return row_of(session, headless.perform(arguments_of(session), stopped))
+
+
+def row_of(session, outcome):
     row = {"scene": session.scene, "mesh": session.mesh, "novice": text(session.novice), "seed": str(session.seed)}
     row.update((name, text(measure["value"])) for name, measure in outcome["measures"].items())
     row["state_hash"] = outcome["state_hash"]

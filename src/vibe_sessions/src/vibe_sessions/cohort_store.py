@@ -1,23 +1,19 @@
 """The folder of a cohort: plan, one small file per finished session, table."""
 import csv
 import fcntl
-import io
 import json
 import os
 
 from vibe_sessions.cohort_plan import Plan
 from vibe_sessions.headless import SessionError
+from vibe_sessions.whole_file import open_whole
 
 
-def write_whole(path, text):
-    """A file appears complete or not at all."""
-    part = path + ".part"
+def write_whole(path, write):
+    """A file, by a function of an open one."""
     try:
-        with open(part, "w", encoding="utf-8", newline="") as stream:
-            stream.write(text)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(part, path)
+        with open_whole(path, newline="") as stream:
+            write(stream)
     except OSError as error:
         raise SessionError(f"Cannot write '{path}': {error.strerror}.") from None
 
@@ -29,7 +25,7 @@ class Store:
         self.folder = folder
         try:
             os.makedirs(os.path.join(folder, "rows"), exist_ok=True)
-            self._lock = open(os.path.join(folder, ".lock"), "w", encoding="utf-8")
+            self._lock = open(os.path.join(folder, ".lock"), "w", encoding="utf-8")  # not whole: it is empty
         except OSError as error:
             raise SessionError(f"Cannot write into '{folder}': {error.strerror}.") from None
         try:
@@ -53,7 +49,7 @@ class Store:
         Raises SessionError if it has another one.
         """
         if not self.has_plan():
-            write_whole(self.path("cohort.yaml"), plan.text())
+            write_whole(self.path("cohort.yaml"), lambda stream: stream.write(plan.text()))
             return
         difference = plan.difference(Plan.load(self.path("cohort.yaml")))
         if difference:
@@ -64,7 +60,8 @@ class Store:
 
     def keep(self, session, row):
         columns, values = row
-        write_whole(self.path(f"rows/{session.key}.json"), json.dumps({"columns": columns, "values": values}) + "\n")
+        text = json.dumps({"columns": columns, "values": values}) + "\n"
+        write_whole(self.path(f"rows/{session.key}.json"), lambda stream: stream.write(text))
 
     def _read(self, session):
         path = self.path(f"rows/{session.key}.json")
@@ -77,8 +74,7 @@ class Store:
 
     def write_table(self, plan):
         """The rows of all finished sessions, in the order of the plan, one at a time in memory."""
-        part = self.path("cohort.csv.part")
-        with open(part, "w", encoding="utf-8", newline="") as stream:
+        def write(stream):
             writer, names = csv.writer(stream, lineterminator="\n"), None
             for session in (s for s in plan.sessions() if self.has(s)):
                 columns, values = self._read(session)
@@ -88,7 +84,7 @@ class Store:
                 if columns != names:
                     raise SessionError(f"The row of {session.key} has other columns; remove it and call again.")
                 writer.writerow(values)
-        os.replace(part, self.path("cohort.csv"))
+        write_whole(self.path("cohort.csv"), write)
 
     def write_failures(self, failures):
         """[(key, reason)]; without any the file goes."""
@@ -97,6 +93,5 @@ class Store:
             if os.path.exists(path):
                 os.remove(path)
             return
-        text = io.StringIO(newline="")
-        csv.writer(text, lineterminator="\n").writerows([("session", "reason")] + failures)
-        write_whole(path, text.getvalue())
+        rows = [("session", "reason")] + failures
+        write_whole(path, lambda stream: csv.writer(stream, lineterminator="\n").writerows(rows))

@@ -9,6 +9,7 @@ from vibe_sessions.regression_file import read_regression
 from vibe_sessions.regression_run import known_measures, perform
 from vibe_sessions.regression_units import show
 from vibe_sessions.regression_verdict import judge, table
+from vibe_sessions.whole_file import open_whole
 
 USAGE = """Usage: rosrun vibe_sessions regression [--update] FILE...
 Runs the scenes of regressions (docs/cohorts.md) and compares their measures with what each FILE expects.
@@ -48,11 +49,9 @@ def updated(regression, values, state_hash):
 
 def write_update(regression, values, state_hash):
     text = updated(regression, values, state_hash)
-    part = regression.file + ".part"
     try:
-        with open(part, "w", encoding="utf-8") as stream:
+        with open_whole(regression.file) as stream:
             stream.write(text)
-        os.replace(part, regression.file)
     except OSError as error:
         raise SessionError(f"{regression.file}: cannot be written: {error.strerror}.") from None
 

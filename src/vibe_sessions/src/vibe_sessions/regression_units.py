@@ -55,7 +55,7 @@ def parse(text, si_unit):
     except UnitError as error:
         raise UnitError(f"{error}; write for example {EXAMPLES[si_unit]}") from None
     if unit != si_unit:
-        raise UnitError(f"is in {unit}, but {si_unit} was due; write for example {EXAMPLES[si_unit]}")
+        raise UnitError(f"is in {unit}, but should be in {si_unit}; write for example {EXAMPLES[si_unit]}")
     return number * factor, written
 
 

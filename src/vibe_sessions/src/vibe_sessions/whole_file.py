@@ -19,17 +19,19 @@ def whole(path):
         _flush(part)
         os.replace(part, target)
         _flush(folder)
-    except BaseException:
+    except BaseException as error:
+        if isinstance(error, OSError) and error.filename in (None, part):
+            error.filename = path  # of a full disk, too, the sentence says which file it is
         with contextlib.suppress(OSError):
             os.remove(part)
         raise
 
 
-def write_whole(path, text):
-    """A text, as UTF-8; bytes as they are."""
-    data = text if isinstance(text, bytes) else text.encode("utf-8", "replace")
-    with whole(path) as part, open(part, "wb") as file:
-        file.write(data)
+@contextlib.contextmanager
+def open_whole(path, mode="w", encoding="utf-8", **how):
+    """A file to write to, of which the same holds. Text is UTF-8."""
+    with whole(path) as part, open(part, mode, encoding=None if "b" in mode else encoding, **how) as file:
+        yield file
 
 
 def _flush(path):

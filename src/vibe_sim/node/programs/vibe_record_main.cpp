@@ -1,3 +1,4 @@
+#include <csignal>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -71,6 +72,7 @@ void recordUntilStopped(vibe::sim::Recorder& recorder) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is then an error like a full disk
   bool running = false;
   try {
     vibe::ros_utils::initWithGoodbye(argc, argv, "vibe_record", ros::init_options::AnonymousName);

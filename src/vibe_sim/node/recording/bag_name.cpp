@@ -53,6 +53,9 @@ std::string claimFreeBag(const std::string& file) {
 
 void finishBag(const std::string& file) {
   const std::string active = file + ".active";
+  const int descriptor = ::open(active.c_str(), O_RDONLY | O_CLOEXEC);
+  ::fsync(descriptor);  // from memory to the disk, before it has its name
+  ::close(descriptor);
   // a link fails where the name is taken; some file systems have none
   if (::link(active.c_str(), file.c_str()) == 0) {
     ::unlink(active.c_str());

@@ -120,8 +120,8 @@ void requireFree(const std::string& address) {
 struct FakeCamera::Impl {
   std::shared_ptr<const FrameRing> ring;
   FakeCameraOptions options;
-  std::ofstream truth, blink_table;
-  std::size_t blinked = 0;  // blinks that have been shown
+  std::ofstream truth, blink_table;  // not whole: logs
+  std::size_t blinked = 0;           // blinks that have been shown
   std::atomic<std::uint64_t> sent{0};
   std::mutex mutex;  // of the clock
   double clock_start = 0, clock_at_start = 0;

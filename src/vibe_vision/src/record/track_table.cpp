@@ -48,7 +48,8 @@ double percent(std::uint64_t part, std::uint64_t whole) {
 
 }  // namespace
 
-TrackTable::TrackTable(const std::string& file, const VisionConfig& config) : file_(file), out_(file) {
+TrackTable::TrackTable(const std::string& file, const VisionConfig& config)
+    : whole_(file, "The table"), out_(whole_.part()) {
   if (!out_) throw Error(file + ": cannot be written; give a file in an existing folder that you may write to");
   for (const InstrumentConfig& instrument : config.instruments) names_.push_back(field(instrument.name));
   out_ << kColumns << "\n";
@@ -64,7 +65,7 @@ void TrackTable::add(const Frame& frame, const Measurements& measurements) {
 
 void TrackTable::close() {
   out_.close();
-  if (!out_) throw Error(file_ + ": could not be written completely; the disk may be full");
+  whole_.finish(static_cast<bool>(out_));
 }
 
 TrackSummary::TrackSummary(const VisionConfig& config) {

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "sheet/sheet_layout.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
@@ -48,7 +49,9 @@ double MarkerSheet::height() const {
 }
 
 void MarkerSheet::writePdf(const std::string& file) const {
-  const Surface surface(cairo_pdf_surface_create(file.c_str(), width() * kPointsPerMetre, height() * kPointsPerMetre));
+  WholeFile whole(file, "The sheet");
+  const Surface surface(
+      cairo_pdf_surface_create(whole.part().c_str(), width() * kPointsPerMetre, height() * kPointsPerMetre));
   requireGood(surface, file);
   {
     SheetPainter painter(surface.get(), kPointsPerMetre, options_);
@@ -56,6 +59,7 @@ void MarkerSheet::writePdf(const std::string& file) const {
   }
   cairo_surface_finish(surface.get());
   requireGood(surface, file);
+  whole.finish(true);
 }
 
 std::vector<std::string> MarkerSheet::writeSvg(const std::string& file) const {
@@ -67,13 +71,15 @@ std::vector<std::string> MarkerSheet::writeSvg(const std::string& file) const {
   std::vector<std::string> files;
   for (std::size_t i = 0; i < pages_.size(); ++i) {
     files.push_back(pages_.size() == 1 ? file : stem + "-" + std::to_string(i + 1) + end);
-    const Surface surface(cairo_svg_surface_create(files.back().c_str(), width() * kMillimetresPerMetre,
+    WholeFile whole(files.back(), "The sheet");
+    const Surface surface(cairo_svg_surface_create(whole.part().c_str(), width() * kMillimetresPerMetre,
                                                    height() * kMillimetresPerMetre));
     requireGood(surface, files.back());
     cairo_svg_surface_set_document_unit(surface.get(), CAIRO_SVG_UNIT_MM);
     SheetPainter(surface.get(), kMillimetresPerMetre, options_).paint(pages_[i], i + 1, pages_.size());
     cairo_surface_finish(surface.get());
     requireGood(surface, files.back());
+    whole.finish(true);
   }
   return files;
 }

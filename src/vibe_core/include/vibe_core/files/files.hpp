@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <string>
 
 namespace vibe {
@@ -18,10 +20,35 @@ std::string resolveAddress(const std::string& address);
 /// @throws Error if it cannot be read
 std::string readTextFile(const std::string& file, const std::string& what);
 
-/// Writes a file as a whole or not at all: FILE.part beside it takes its place once it is complete. What is not an
-/// ordinary file, such as /dev/stdout, is written directly.
-/// @param what  name used in the error message, e.g. "Snapshot"
-/// @throws Error if it cannot be written; what was there before is there still, and no FILE.part is left
+/// A file that is there whole or not at all, also after a power cut, a full disk or kill -9: .part-FILE beside it,
+/// which is written to, takes its place once it is complete and on the disk. What is not an ordinary file, such as
+/// /dev/stdout, is written directly. After kill -9 the .part-FILE is left, and the next writer of FILE begins it anew.
+class WholeFile {
+ public:
+  /// @param what  name used in error messages, e.g. "Snapshot"
+  WholeFile(std::string file, std::string what);
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+  ~WholeFile();  ///< without finish(), what was there before is there still, and no .part-FILE is left
+
+  const std::string& part() const { return part_; }  ///< the path to write to
+  /// Puts the file in place. @param written  whether all of it was written and closed
+  /// @throws Error if it was not, or cannot be
+  void finish(bool written);
+
+ private:
+  std::string file_, what_;
+  std::filesystem::path target_;  // a link stays a link
+  std::string part_;
+  bool is_special_ = false, is_finished_ = false;
+};
+
+/// Writes a whole file by a function that is given the path to write to, and returns whether it could.
+/// @throws Error as WholeFile
+void writeWhole(const std::string& file, const std::function<bool(const std::string& part)>& write,
+                const std::string& what);
+
+/// The same of a text. @throws Error as WholeFile
 void writeFile(const std::string& file, const std::string& content, const std::string& what);
 
 }  // namespace vibe

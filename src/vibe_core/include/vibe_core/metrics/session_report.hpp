@@ -3,11 +3,13 @@
 #include <cstdint>
 #include <fstream>
 #include <iosfwd>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/events/event.hpp"
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/metrics/session_metrics.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
@@ -17,7 +19,7 @@ namespace vibe {
 /// One row per step for spreadsheets and scripts. Columns: step, time [s], the seven inputs, tip position in world [m],
 /// force and torque on the tool in scope_tip [N], [N m], grip force [N], points of contact, particles held, gauge
 /// pressure [Pa], volume [m^3], phase of the procedure, bites in the wall, sutures, max tension of a thread [N], blood
-/// lost [m^3], events (kinds separated by ';').
+/// lost [m^3], events (kinds separated by ';'). The file is there once finish() has been called.
 class SessionCsv {
  public:
   /// @param file  "-": standard output
@@ -34,7 +36,8 @@ class SessionCsv {
   void finish();
 
  private:
-  std::ofstream file_;
+  std::unique_ptr<WholeFile> whole_;  // null: standard output
+  std::ofstream file_;                // of whole_, its part()
   std::ostream* out_;
   std::vector<Eigen::Isometry3d> poses_;
 

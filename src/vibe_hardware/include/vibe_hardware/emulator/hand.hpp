@@ -122,7 +122,7 @@ class BlinkLog {
 
  private:
   std::string file_;
-  std::ofstream out_;
+  std::ofstream out_;  // not whole: a log
   std::vector<double> blinks_;
   std::size_t next_ = 0, reported_ = 0;
   std::vector<std::int64_t> events_;

@@ -11,7 +11,7 @@ from vibe_sessions.imports.map_file import read_map
 from vibe_sessions.imports.motion_file import open_motion
 from vibe_sessions.imports.resampling import inputs_of
 from vibe_sessions.imports.session import record, write_commands
-from vibe_sessions.whole_file import write_whole
+from vibe_sessions.whole_file import open_whole
 
 DESCRIPTION = """\
 Moves the scope as a person or another robot moved: a CSV or a bag, of which a map (YAML) says what moves which joint, in
@@ -46,9 +46,11 @@ def perform(options):
     make_folder(options.output)
     place = lambda name: os.path.join(options.output, name)  # noqa: E731
     print("".join(f"import: {note}\n" for note in notes), end="", file=sys.stderr, flush=True)
-    write_whole(place("import.txt"), "".join(f"{note}\n" for note in notes))
+    with open_whole(place("import.txt")) as file:
+        file.writelines(f"{note}\n" for note in notes)
     about = {"notes": f"imported from {os.path.basename(options.motion)} by {os.path.basename(options.map)}"}
-    write_whole(place("session.about.yaml"), yaml.safe_dump(about, allow_unicode=True))
+    with open_whole(place("session.about.yaml")) as file:
+        yaml.safe_dump(about, file, allow_unicode=True)
     write_commands(place("commands.bag"), made.scene, period, joints, buttons)
     print(f"{len(joints)} steps, {len(joints) * period:.2f} s")
     print(f"state hash: {record(options.output)}", flush=True)

@@ -21,7 +21,6 @@ class Source:
     offset: float = 0.0  # SI
     start: float = None  # SI, of the first value instead of the offset
     unit: str = ""  # as written
-    line: int = 0
 
 
 @dataclasses.dataclass
@@ -36,60 +35,49 @@ class Map:
 
 class _Reader(YamlFile):
     def read(self):
-        result = Map()
+        made = Map()
         for key, _, node in self.items(self.root, "a map", KEYS):
             if key == "scene":
-                result.scene = self.address(node, key)
+                made.scene = self.address(node, key)
             elif key == "lead":
-                result.lead = self.quantity(node, key, "s")[0]
-            elif key == "time":
-                result.time = self.source(node, key, "s", ("from", "unit"))
+                made.lead = self.quantity(node, key, "s")[0]
             elif key == "interpolation":
-                result.interpolation = self.scalar(node, key)
-                if result.interpolation not in ("linear", "hold"):
-                    self.fail(node, f"the interpolation '{node.value}' is neither linear nor hold.")
+                made.interpolation = self.one_of(node, key, ("linear", "hold"))
+            elif key == "time":
+                made.time = self.source(node, key, "s", ("from", "unit"))
             elif key == "joints":
                 known = ("from", "unit", "sign", "scale", "offset", "start")
-                result.joints = {name: self.source(inner, name, JOINTS[name], known)
-                                 for name, _, inner in self.items(node, "'joints'", JOINTS)}
+                made.joints = {name: self.source(inner, name, JOINTS[name], known) for name, _, inner in self.items(node, "'joints'", JOINTS)}
             else:
-                result.buttons = {name: self.source(inner, name, "1", ("from", "above"))
-                                  for name, _, inner in self.items(node, "'buttons'", BUTTONS)}
-        if not any(source.column for source in result.joints.values()):
+                made.buttons = {name: self.source(inner, name, "1", ("from", "above")) for name, _, inner in self.items(node, "'buttons'", BUTTONS)}
+        if not any(source.column for source in made.joints.values()):
             self.fail(self.root, "no joint has a column; add `joints: {insertion: {from: COLUMN, unit: mm}}`.")
-        if not 0 <= result.lead <= 600:
+        if not 0 <= made.lead <= 600:
             self.fail(self.root, "'lead' must be from 0 to 600 s.")
-        return result
+        return made
+
+    def one_of(self, node, what, words):
+        if self.scalar(node, what) not in words:
+            self.fail(node, f"the {what} '{node.value}' is neither {' nor '.join(words)}.")
+        return node.value
 
     def source(self, node, name, unit, known):
         """`30 deg`, or {from: COLUMN, ...}."""
-        made = Source(line=node.start_mark.line + 1)
         if isinstance(node, yaml.ScalarNode):
-            made.offset = self.quantity(node, name, unit)[0]
-            return made
-        for key, _, inner in self.items(node, f"'{name}'", known):
-            if key == "from":
-                made.column = self.scalar(inner, key)
-            elif key == "unit":
-                made.unit, factor = inner.value, self.unit(inner, name, unit)
-                made.factor *= factor
-            elif key == "sign":
-                if self.scalar(inner, key) not in ("1", "+1", "-1"):
-                    self.fail(inner, f"the sign '{inner.value}' of '{name}' is neither 1 nor -1.")
-                made.factor *= int(inner.value)
-            elif key == "scale":
-                made.factor *= self.quantity(inner, key, "1")[0]
-            elif key == "above":
-                made.offset = -self.quantity(inner, key, "1")[0]
-            else:
-                setattr(made, key, self.quantity(inner, key, unit)[0])
-        if not made.column:
+            return Source(offset=self.quantity(node, name, unit)[0])
+        given = {key: inner for key, _, inner in self.items(node, f"'{name}'", known)}
+        if "from" not in given or not self.scalar(given["from"], "from"):
             self.fail(node, f"'{name}' lacks the key 'from', the name of a column; add it.")
-        return made
+        value = lambda key, of: self.quantity(given[key], key, of)[0] if key in given else None  # noqa: E731
+        sign = -1 if "sign" in given and self.one_of(given["sign"], "sign", ("1", "-1")) == "-1" else 1
+        scale = 1.0 if "scale" not in given else value("scale", "1")
+        return Source(given["from"].value, sign * scale * self.unit(given.get("unit"), name, unit),
+                      value("offset", unit) or -(value("above", "1") or 0.0), value("start", unit),
+                      given["unit"].value if "unit" in given else "")
 
     def unit(self, node, name, unit):
         try:
-            factor, dimension = unit_of(self.scalar(node, "unit"))
+            factor, dimension = unit_of(self.scalar(node, "unit")) if node is not None else (1.0, unit)
         except UnitError as error:
             self.fail(node, f"'{name}' {error}.")
         if dimension != unit:

@@ -53,26 +53,22 @@ class CsvMotion:
         self.names = [name.strip() for name in rows[0]]
         if len(set(self.names)) < len(self.names):
             raise SessionError(f"'{path}' has two columns of the same name; rename one of them.")
-        short = [k for k, row in enumerate(rows, 1) if len(row) != len(self.names)]
+        width, self.path, self._used = len(self.names), path, set()
+        short = [k for k, row in enumerate(rows, 1) if len(row) != width]
         self.notes = [f"{len(short)} lines have not as many cells as there are columns, the first of them line {short[0]}; what "
                       "they lack counts as no number."] if short else []
-        self.path, self._used = path, {time.column}
-        table = [[number(cell) for cell in row[:len(self.names)]] for row in rows[1:]]
-        width = len(self.names)
-        self._table = numpy.array([row + [numpy.nan] * (width - len(row)) for row in table])
-        self._column(time.column)
-        self._times = since_first([row[k] if k < len(row) else "" for row in rows[1:]
-                                   for k in [self.names.index(time.column)]], time.factor)
+        self._cells = numpy.array([row[:width] + [""] * (width - len(row)) for row in rows[1:]], dtype=object)
+        self._times = since_first(self._column(time.column), time.factor)
 
     def _column(self, name):
         if name not in self.names:
             raise SessionError(f"'{self.path}' has no column '{name}'" + nearest(name, self.names))
         self._used.add(name)
-        return self._table[:, self.names.index(name)]
+        return self._cells[:, self.names.index(name)]
 
     def series(self, name):
         """(times [ns], values) of a column, as they are in the file."""
-        return self._times, self._column(name)
+        return self._times, numpy.array([number(cell) for cell in self._column(name)])
 
     def unused(self):
         return [f"The column '{name}' is not used." for name in self.names if name not in self._used]

@@ -45,6 +45,7 @@ def doubt_of_unit(joint, source, raw, lower, upper):
     """Another unit in which the values would be within the limits and large enough to see; "" if this one fits."""
     dimension = JOINTS[joint]
     largest, span = max(abs(lower), abs(upper)), upper - lower
+    raw = raw * (source.factor / units.unit_of(source.unit or dimension)[0])  # with the scale
 
     def fits(unit, most, least):
         factor = units.unit_of(unit)[0]
@@ -90,14 +91,12 @@ def series_of(motion, made, notes):
     begin = min(times[0] for times, _ in found.values())
     length = (max(times[-1] for times, _ in found.values()) - begin) / 1e9
     usual = min(numpy.median(numpy.diff(times)) for times, _ in found.values()) / 1e9
-    if length > LONGEST or usual > 1:
-        notes.append(f"The motion lasts {length:.6g} s, with a value every {usual:.3g} s. A possible cause is the unit of the time; "
-                     "check `time: {unit: ms}`.")
-    if length > LONGEST:
-        raise SessionError(f"{notes.pop()[:-1]}; a motion may last {LONGEST} s.")
-    if length < 0.1 or usual < 1e-4:
-        notes.append(f"The motion lasts {length:.3g} s, with a value every {usual:.3g} s. A possible cause is the unit of the time; "
-                     "check `time: {unit: s}`.")
+    if length > LONGEST or usual > 1 or length < 0.1 or usual < 1e-4:
+        doubt = (f"The motion lasts {length:.6g} s, with a value every {usual:.3g} s. A possible cause is the unit of the time: perhaps "
+                 f"`time: {{unit: {'ms' if usual > 0.1 else 's'}}}`.")
+        if not 0 < length < LONGEST:
+            raise SessionError(f"{doubt} A motion may last {LONGEST} s.")
+        notes.append(doubt)
     return {column: (times - begin, values) for column, (times, values) in found.items()}
 
 
@@ -106,10 +105,7 @@ def inputs_of(motion, made, notes):
     their speed at most."""
     period, limits = scene_facts(made.scene)
     series = series_of(motion, made, notes)
-    last = max(times[-1] for times, _ in series.values())
-    count = int(last / (1e9 * period)) + 1
-    if count < 2:
-        raise SessionError(f"The motion lasts {last / 1e9:.3g} s, and a step {period:.3g} s; check the unit of the time.")
+    count = max(int(max(times[-1] for times, _ in series.values()) / (1e9 * period)) + 1, 2)
     at = numpy.round(numpy.arange(count) * period * 1e9).astype(numpy.int64)
     joints, buttons = numpy.zeros((count, len(JOINTS))), numpy.zeros((count, len(BUTTONS)), numpy.uint8)
     for k, name in enumerate(JOINTS):

@@ -3,23 +3,23 @@ import hashlib
 import os
 
 from vibe_sessions import headless
-from vibe_sessions.cohort_plan import resolve
-from vibe_sessions.whole_file import whole, write_whole
+from vibe_sessions.cohort_plan import digest, resolve
+from vibe_sessions.whole_file import open_whole, whole
 
 EPOCH = 1_000_000_000  # stamp of the first step of simulated time [ns]
 VERSION = 2  # of vibe_msgs/StepInput
 
 
-def write_commands(file, scene, period, joints, buttons):
-    """A bag with the topics `scene` and `applied_input`: all that a replay takes. Its identity is a hash of both."""
+def write_commands(file, scene, period, joints, buttons, seed=None):
+    """A bag with the topics `scene` and `applied_input`: all that a replay takes. Its identity is a hash of what they say."""
     import rosbag
     from genpy import Time
     from std_msgs.msg import String
     from vibe_msgs.msg import StepInput
 
-    text = f"base: {os.path.abspath(resolve(scene))}\n"
-    digest = hashlib.sha256(scene.encode() + joints.tobytes() + buttons.tobytes()).digest()
-    session = int.from_bytes(digest[:7], "little") | 1
+    text = f"base: {os.path.abspath(resolve(scene))}\n" + ("" if seed is None else f"seed: {seed}\n")
+    content = hashlib.sha256(f"{digest(scene)} {seed}".encode() + joints.tobytes() + buttons.tobytes())
+    session = int.from_bytes(content.digest()[:7], "little") | 1
     with whole(file) as part, rosbag.Bag(part, "w") as bag:
         bag.write("/scene", String(text), Time(1))
         for step, (positions, pressed) in enumerate(zip(joints.tolist(), buttons.tolist())):
@@ -37,5 +37,6 @@ def record(folder, stopped=lambda: False):
     said = headless.call(["--record", os.path.join(folder, "session.bag"), os.path.join(folder, "commands.bag")], stopped, program)
     lines = said.splitlines()
     end = next(k for k, line in enumerate(lines) if line.startswith("state hash: "))
-    write_whole(os.path.join(folder, "summary.txt"), "\n".join(lines[1:end + 1]) + "\n")
+    with open_whole(os.path.join(folder, "summary.txt")) as file:
+        file.write("\n".join(lines[1:end + 1]) + "\n")
     return lines[end].removeprefix("state hash: ")

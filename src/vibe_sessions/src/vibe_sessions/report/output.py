@@ -7,6 +7,7 @@ import os
 import sys
 import tempfile
 
+from ..whole_file import open_whole
 from .session_work import write_text
 
 
@@ -71,7 +72,7 @@ class Output:
 
     def _write_json(self):
         path = os.path.join(self._folder, "sessions.json")
-        with open(path + ".part", "w", encoding="utf-8") as file:
+        with open_whole(path) as file:
             file.write('{"sessions": [\n')
             first = True
             for place in self._places:
@@ -80,7 +81,6 @@ class Output:
                     file.write(("" if first else ",\n") + self._waiting.readline().rstrip("\n"))
                     first = False
             file.write('\n],\n"not_read": {}}}\n'.format(json.dumps(self.failures)))
-        os.replace(path + ".part", path)
 
 
 def set_group(numbers, row):

@@ -6,6 +6,7 @@ import os
 import re
 from dataclasses import dataclass
 
+from ..whole_file import open_whole
 from .bag_file import BagError
 from .numbers import numbers_of, row_of
 from .recording import read_recording
@@ -50,10 +51,8 @@ def report_on(task):
 
 
 def write_text(path, text):
-    """As a whole or not at all."""
-    with open(path + ".part", "w", encoding="utf-8", errors="replace") as file:
+    with open_whole(path, errors="replace") as file:
         file.write(text)
-    os.replace(path + ".part", path)
 
 
 def names_of(paths):

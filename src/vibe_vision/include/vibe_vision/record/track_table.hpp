@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "vibe_core/files/files.hpp"
 #include "vibe_vision/config/vision_config.hpp"
 #include "vibe_vision/image/frame.hpp"
 #include "vibe_vision/track/tracker.hpp"
@@ -14,7 +15,7 @@ namespace vibe::vision {
 /// Results as CSV: one row per frame and instrument. Columns: docs/vision.md, "Tracking recorded material".
 class TrackTable {
  public:
-  /// Opens the file and writes the first line. @throws Error if it cannot be written
+  /// Writes the first line. The file is there once close() has been called. @throws Error if it cannot be written
   TrackTable(const std::string& file, const VisionConfig& config);
   /// Adds a row per instrument. @param measurements  in the order of the configuration
   void add(const Frame& frame, const Measurements& measurements);
@@ -22,9 +23,9 @@ class TrackTable {
   void close();
 
  private:
-  std::string file_;
+  WholeFile whole_;
   std::vector<std::string> names_;
-  std::ofstream out_;
+  std::ofstream out_;  // of whole_, its part()
 };
 
 /// What became of the frames.
