@@ -8,7 +8,6 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
 from protocol import COMPARED, QUANTITIES  # noqa: E402
-from vibe_sessions.whole_file import whole  # noqa: E402
 
 
 def draw_comparison(rows, file):
@@ -23,8 +22,7 @@ def draw_comparison(rows, file):
     if names:
         axes[0, 0].legend()
     figure.tight_layout()
-    with whole(file) as part:
-        figure.savefig(part, dpi=110)
+    figure.savefig(file, dpi=110)
     plt.close(figure)
 
 

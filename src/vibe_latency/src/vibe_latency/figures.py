@@ -5,7 +5,6 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  after the choice of what draws
 import numpy  # noqa: E402
-from vibe_sessions.whole_file import whole  # noqa: E402
 
 from .stages import STAGES, duration  # noqa: E402
 from .summary import cross_correlation, peak_lag, statistics, step_times  # noqa: E402
@@ -87,8 +86,7 @@ def draw(measurement, traced, path):
     for each in axes.flat:
         each.grid(alpha=0.3)
     figure.suptitle(measurement.setup["title"], fontsize=12)
-    with whole(path) as part:
-        figure.savefig(part, dpi=100)
+    figure.savefig(path, dpi=100)
     plt.close(figure)
 
 
@@ -132,8 +130,7 @@ def draw_steps(measurement, numbers, path):
         ),
         fontsize=11,
     )
-    with whole(path) as part:
-        figure.savefig(part, dpi=100)
+    figure.savefig(path, dpi=100)
     plt.close(figure)
 
 
@@ -162,6 +159,5 @@ def draw_motion(measurement, motion, numbers, path):
         ),
         fontsize=11,
     )
-    with whole(path) as part:
-        figure.savefig(part, dpi=100)
+    figure.savefig(path, dpi=100)
     plt.close(figure)
