@@ -74,7 +74,7 @@ class EpisodesTest(unittest.TestCase):
 
     def episodes(self, fps=30, **options):
         with Source(self.path, **options) as source:
-            return [(episode, episode.split(success), success) for episode, success in Reader(source, fps).episodes(lambda share: None)]
+            return [(episode, episode.split(success), success) for episode, success in Reader(source, fps).episodes()]
 
     def test_goals_are_episodes_with_their_splits(self):
         self.write()

@@ -2,14 +2,17 @@
 
 import contextlib
 import csv
+import ctypes
 import errno
 import glob
 import io
 import os
 import re
 import shutil
+import struct
 import tempfile
 import unittest
+import zlib
 from unittest import mock
 
 import numpy
@@ -137,6 +140,43 @@ class TablesTest(ExportTest):
         self.assertEqual([time for time, _ in found], sorted(time for time, _ in found))
 
 
+class McapTest(ExportTest):
+    def records(self, data):
+        """(operation, content)"""
+        at = 0
+        while at < len(data):
+            operation, size = struct.unpack_from("<BQ", data, at)
+            yield operation, data[at + 9 : at + 9 + size]
+            at += 9 + size
+
+    def test_chunks_and_their_index(self):
+        self.make(duration=20.0)
+        self.exports(to="mcap")
+        with open(self.output + "/a/mcap/session.mcap", "rb") as file:
+            whole = file.read()
+        self.assertEqual((whole[:8], whole[-8:]), (b"\x89MCAP0\r\n",) * 2)
+        zstd, size, chunks, indexed = ctypes.CDLL("libzstd.so.1"), ctypes.c_size_t, [], []
+        for operation, content in self.records(whole[8:-8]):
+            if operation == 6:
+                length, crc = struct.unpack_from("<QI", content, 16)
+                out = ctypes.create_string_buffer(length)
+                zstd.ZSTD_decompress(out, size(length), content[44:], size(len(content) - 44))
+                self.assertEqual(zlib.crc32(out.raw), crc)
+                chunks.append(out.raw)
+            elif operation == 7:
+                for time, place in struct.iter_unpack("<QQ", content[6:]):
+                    self.assertEqual(chunks[-1][place], 5)  # a message, received then
+                    self.assertEqual(struct.unpack_from("<Q", chunks[-1], place + 15)[0], time)
+                    indexed.append(time)
+            elif operation == 8:
+                begin, length = struct.unpack_from("<QQ", content, 16)
+                self.assertEqual(next(self.records(whole[begin : begin + length]))[0], 6)
+        with rosbag.Bag(self.bag) as bag:
+            self.assertEqual(sorted(indexed), sorted(stamp.to_nsec() for _, _, stamp in bag.read_messages(raw=True)))
+        (end,) = (content for operation, content in self.records(whole[8:-8]) if operation == 15)
+        self.assertEqual(struct.unpack("<I", end)[0], zlib.crc32(whole[: whole.index(struct.pack("<BQ", 15, 4) + end)]))
+
+
 class MeshTest(ExportTest):
     def test_points_and_triangles(self):
         self.make()
@@ -222,8 +262,8 @@ class RefusalTest(ExportTest):
     def test_calls(self):
         self.make()
         self.refuses("'cvs' is no format; the nearest is 'csv'", to="cvs")
-        self.refuses("needs a rate above zero", "--rate", "0")
-        self.refuses("needs seconds, not 'soon'", "--from", "soon")
+        self.refuses("needs Hz from 0.001 on, not '0'", "--rate", "0")
+        self.refuses("needs seconds from 0 on, not 'soon'", "--from", "soon")
         self.refuses("must be later than --from", "--from", "2", "--to-time", "1")
         self.refuses("no topic 'scope/measured_fc'; the nearest is 'scope/measured_c.'", "--topics", "scope/measured_fc")
         self.refuses("needs the Python package pyarrow|has no scope/measured_js", to="lerobot")

@@ -2,27 +2,12 @@
 
 import json
 import re
-from dataclasses import dataclass
 
-SEPARATOR = "=" * 80
 LINE = re.compile(r"^\s*([A-Za-z][\w/]*)(\[\d*\])?\s+([A-Za-z]\w*)\s*(=\s*(.*?)\s*)?(#.*)?$")
 STRING_CONSTANT = re.compile(r"^\s*(string)()\s+([A-Za-z]\w*)\s*(=\s*(.*))()$")  # a # belongs to its value
 PRIMITIVES = {"bool", "byte", "char", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32",
               "float64", "string", "time", "duration"}  # fmt: skip
 ROS2_TYPES = {"time": "builtin_interfaces/Time", "duration": "builtin_interfaces/Duration", "char": "uint8"}
-BUILTIN = {"builtin_interfaces/Time": "int32 sec\nuint32 nanosec\n",
-           "builtin_interfaces/Duration": "int32 sec\nuint32 nanosec\n"}  # fmt: skip
-@dataclass
-class Field:
-    kind: str  # a primitive, or PACKAGE/NAME
-    array: str  # "", "[]" or "[7]"
-    name: str
-    unit: str  # as its comment has it; empty: none
-    comment: str
-
-    def length(self):
-        """Of an array of fixed length; None of another one."""
-        return int(self.array[1:-1]) if len(self.array) > 2 else None
 
 
 def full_name(kind, package):
@@ -34,35 +19,21 @@ def full_name(kind, package):
 def parts_of(datatype, definition):
     """Text by type, of the type itself and of all that it holds."""
     first, *others = re.split(r"^=+\s*\nMSG: *", definition, flags=re.MULTILINE)
-    parts = {datatype: first}
-    for other in others:
-        name, _, text = other.partition("\n")
-        parts[name.strip()] = text
-    return parts
+    return {datatype: first, **{name.strip(): text for name, _, text in (other.partition("\n") for other in others)}}
 
 
 def fields_of(datatype, text):
-    """Without constants. The comment above a field, and the one behind it, tell its unit in brackets."""
-    fields, words, is_old = [], [], True  # a comment is that of all fields up to the next one
+    """(type, unit) by name, without constants. The comment above fields, or behind one, tells the unit in brackets."""
+    fields, words, is_old = {}, "", True  # a comment is that of all fields up to the next one
     for line in text.splitlines():
         found = LINE.match(line)
         if found is None:
-            words = [*([] if is_old or not line.strip() else words), line.strip().lstrip("# ")]
+            words = line if is_old or not line.strip() else words + line
         elif not found[4]:
-            comment = " ".join([*words, (found[6] or "").lstrip("# ")]).strip()
-            units = re.findall(r"\[([^\]\d]{1,12}[^\]]{0,3})\]", comment)
-            kind = full_name(found[1], datatype.split("/")[0])
-            fields.append(Field(kind, found[2] or "", found[3], " or ".join(dict.fromkeys(units)), comment))
+            units = re.findall(r"\[([^\]\d]{1,12}[^\]]{0,3})\]", words + (found[6] or ""))
+            fields[found[3]] = full_name(found[1], datatype.split("/")[0]), " or ".join(dict.fromkeys(units))
         is_old = found is not None
     return fields
-
-
-def structure(datatype, definition):
-    """Fields by type."""
-    return {name: fields_of(name, text) for name, text in parts_of(datatype, definition).items()}
-
-
-# --- ROS 2
 
 
 def ros2_name(name):
@@ -76,20 +47,21 @@ def ros2_text(datatype, text):
     lines = []
     for line in text.splitlines():
         found = STRING_CONSTANT.match(line) or LINE.match(line)
-        if found is None or (datatype, found[3]) == ("std_msgs/Header", "seq"):
-            lines += [line] if found is None else []
-            continue
-        kind = full_name(found[1], datatype.split("/")[0])
-        name = found[3].upper() if found[4] else ros2_name(found[3])
-        value = "" if not found[4] else "=" + (json.dumps(found[5], ensure_ascii=False) if kind == "string" else found[5])
-        comment = "  " + found[6] if found[6] else ""
-        lines.append("{}{} {}{}{}".format(ROS2_TYPES.get(kind, kind), found[2] or "", name, value, comment))
+        if found is None:
+            lines.append(line)
+        elif (datatype, found[3]) != ("std_msgs/Header", "seq"):
+            kind = full_name(found[1], datatype.split("/")[0])
+            name = found[3].upper() if found[4] else ros2_name(found[3])
+            value = "=" + (json.dumps(found[5], ensure_ascii=False) if kind == "string" else found[5]) if found[4] else ""
+            comment = "  " + found[6] if found[6] else ""
+            lines.append("{}{} {}{}{}".format(ROS2_TYPES.get(kind, kind), found[2] or "", name, value, comment))
     return "\n".join(lines).strip("\n") + "\n"
 
 
 def ros2_definition(datatype, definition):
     """With all that it holds, as `ros2msg` in a file."""
     parts = {name: ros2_text(name, text) for name, text in parts_of(datatype, definition).items()}
-    parts.update({name: text for name, text in BUILTIN.items() if any(name in part for part in parts.values())})
-    first = parts.pop(datatype)
-    return first + "".join("{}\nMSG: {}\n{}".format(SEPARATOR, name, text) for name, text in parts.items())
+    for name in ("builtin_interfaces/Time", "builtin_interfaces/Duration"):
+        if any(name in text for text in parts.values()):
+            parts[name] = "int32 sec\nuint32 nanosec\n"
+    return parts.pop(datatype) + "".join("{}\nMSG: {}\n{}".format("=" * 80, *part) for part in parts.items())

@@ -5,6 +5,8 @@ import fnmatch
 import functools
 import re
 import struct
+import sys
+import time
 
 import genpy
 
@@ -16,21 +18,9 @@ ALWAYS = ("scene", "session_info", "tissue/topology", "trainee/progress")
 WHOLE = ("vibe_msgs/ProcedureEvent", "rosgraph_msgs/Log", "tf2_msgs/TFMessage")  # types of which a rate leaves none out
 
 
-class Message:
-    """One message, which is parsed where somebody asks for its fields."""
-
-    def __init__(self, source, number, received, data):
-        self._source, self.connection, self.number = source, source.bag.connections[number], number
-        self.received, self.data = received, data  # [ns], bytes
-        self.stamp = stamp_of(data)[1] if has_header(self.connection.definition) else 0  # [ns]; 0: none
-        self.time = self.stamp or received  # [ns]
-
-    @functools.cached_property
-    def fields(self):
-        try:
-            return parse(self.connection, self.data)
-        except (struct.error, genpy.DeserializationError, ValueError) as error:
-            raise self._source.damaged(self.connection, self.received, error) from None
+def fits(topic, patterns):
+    """Whether a name, or the end of it, is one of these."""
+    return any(fnmatch.fnmatchcase("/" + topic.lstrip("/"), "*/" + pattern.lstrip("/")) for pattern in patterns)
 
 
 @functools.lru_cache(maxsize=None)
@@ -38,29 +28,37 @@ def has_header(definition):
     return bool(re.match(r"(\s*#[^\n]*\n|\s*\n)*\s*(std_msgs/)?Header\s+\w+", definition))
 
 
+class Message:
+    """One message, which is parsed where somebody asks for its fields."""
+
+    def __init__(self, source, number, received, data):
+        self._source, self._data = source, data
+        self.number, self.connection, self.received = number, source.bag.connections[number], received  # [ns]
+        self.time = (stamp_of(data)[1] if has_header(self.connection.definition) else 0) or received  # [ns]
+
+    @functools.cached_property
+    def fields(self):
+        try:
+            return parse(self.connection, self._data)
+        except (struct.error, genpy.DeserializationError, ValueError) as error:
+            raise self._source.damaged(self.connection, self.received, error) from None
+
+
 class Source:
     """A recording that was closed. `topics`: patterns of names with or without namespace, None: all; from `begin` to `end`
-    [s of its stamps]; at most `rate` messages of a topic per second, 0: all. Raises BagError."""
+    [s of its stamps]; at most `rate` messages of a topic per second, None: all. Raises BagError."""
 
-    def __init__(self, path, topics=None, begin=None, end=None, rate=0):
-        self.path = path
-        self.bag = BagFile(path)
-        try:
-            self._choose(topics)
-        except BagError:
-            self.bag.__exit__()
-            raise
-        self._begin, self._end = 1e9 * (begin or 0), 1e9 * (end if end is not None else 1e10)
-        self._gap = 1e9 / rate if rate else 0  # [ns]
-
-    def _choose(self, topics):
+    def __init__(self, path, topics=None, begin=None, end=None, rate=None):
+        self.path, self.bag = path, BagFile(path)
+        self._begin, self._end, self._gap = 1e9 * (begin or 0), 1e9 * (end or 1e10), 1e9 / rate if rate else 0  # [ns]
+        self._always, self.chosen = set(self.numbers_of(*ALWAYS)), set(self.numbers_of(*(topics or ["*"])))
+        unknown = [pattern for pattern in topics or () if not self.numbers_of(pattern)]
+        problem = self._unknown(unknown[0]) if unknown else ""
         if self.bag.cut_reason:
-            raise BagError("{}: {} `rosbag reindex` mends it".format(self.path, self.bag.cut_reason.rstrip(".") + ";"))
-        self.chosen = {n for n, each in self.bag.connections.items() if topics is None or fits(each.topic, topics)}
-        self._always = set(self.numbers_of(*ALWAYS))
-        for pattern in topics or ():
-            if not any(fits(self.bag.connections[number].topic, [pattern]) for number in self.chosen):
-                raise BagError(self._unknown(pattern))
+            problem = self.bag.cut_reason.rstrip(".") + "; `rosbag reindex` mends it"
+        if problem:
+            self.__exit__()
+            raise BagError("{}: {}".format(path, problem))
 
     def __enter__(self):
         return self
@@ -69,11 +67,11 @@ class Source:
         self.bag.__exit__()
 
     def _unknown(self, pattern):
-        names = sorted({each.topic.lstrip("/") for each in self.bag.connections.values()})
-        near = difflib.get_close_matches(pattern.lstrip("/"), names, 1, 0.3) or names[:1]
+        names = [each.topic.lstrip("/") for each in self.bag.connections.values()]
+        near = difflib.get_close_matches(pattern.lstrip("/"), names, 1, 0)
         return (
-            "{}: has no topic '{}'; the nearest is '{}' (`rosbag info` lists all; --fill adds those that a compact recording "
-            "leaves out)".format(self.path, pattern, *near or ["none"])
+            "has no topic '{}'; the nearest is '{}' (`rosbag info` lists all; --fill adds those that a compact recording leaves "
+            "out)".format(pattern, *near or ["none"])
         )
 
     def numbers_of(self, *names):
@@ -83,22 +81,27 @@ class Source:
     def count(self, name):
         return sum(self.bag.count(number) for number in self.numbers_of(name))
 
-    def messages(self, wanted, progress=lambda share: None):
-        """Those of some connections. Raises BagError where one cannot be read."""
-        total, done, due, seen = sum(self.bag.count(number) for number in wanted), 0, {}, set()
-        for number, received, data in self.bag.in_time(wanted):
-            done += 1
-            progress(done / total)
-            if number not in seen and not has_its_definition(self.bag.connections[number]):
+    def is_compact(self):
+        return self.count("step_result") < 0.9 * self.count("applied_input")
+
+    def messages(self, wanted):
+        """Those of some connections; on a terminal a line says how far it is. Raises BagError where one cannot be read."""
+        total, due, seen, said = sum(self.bag.count(number) for number in wanted), {}, set(), 0
+        for done, (number, received, data) in enumerate(self.bag.in_time(wanted), 1):
+            connection = self.bag.connections[number]
+            if number not in seen and not has_its_definition(connection):
                 raise BagError("{}: the definition of {} is not that of its MD5 sum; it may have been edited or damaged, so take the "
-                               "recording as it was".format(self.path, self.bag.connections[number].datatype))  # fmt: skip
+                               "recording as it was".format(self.path, connection.datatype))  # fmt: skip
             seen.add(number)
             try:
                 message = Message(self, number, received, data)
             except struct.error as error:
-                raise self.damaged(self.bag.connections[number], received, error) from None
+                raise self.damaged(connection, received, error) from None
             if self._is_wanted(message, due):
                 yield message
+            if sys.stderr.isatty() and (time.monotonic() - said > 0.2 or done == total):
+                said = time.monotonic()
+                print("\r\033[K{} {} %".format(self.path, 100 * done // total), end="" if done < total else "\r\033[K", file=sys.stderr)
 
     def damaged(self, connection, received, error):
         return BagError(
@@ -120,9 +123,3 @@ class Source:
             return False
         due[message.number] = max(next_time, message.time - self._gap) + self._gap
         return True
-
-
-def fits(topic, patterns):
-    """Whether a name, or the end of it, is one of these."""
-    whole = "/" + topic.lstrip("/")
-    return any(fnmatch.fnmatchcase(whole, "*/" + pattern.lstrip("/")) for pattern in patterns)

@@ -10,7 +10,7 @@ import pickle
 import re
 import tempfile
 
-from .definitions import PRIMITIVES, structure
+from .definitions import PRIMITIVES, fields_of, parts_of
 
 BLOCK = 4096  # rows in memory
 LONGEST = 64  # array that becomes columns
@@ -22,19 +22,18 @@ UNITS = {"geometry_msgs/Point": "m", "geometry_msgs/Wrench.force": "N", "geometr
 
 class Table:
     def __init__(self, spill):
-        self.rows, self.columns = [], {}  # of columns the names alone
-        self._spill = spill
+        self.columns, self._rows, self._spill = {}, [], spill  # of columns the names alone
 
     def add(self, row):
-        self.rows.append(row)
+        self._rows.append(row)
         if not row.keys() <= self.columns.keys():
             self.columns.update(dict.fromkeys(row))
-        if len(self.rows) == BLOCK:
+        if len(self._rows) == BLOCK:
             self._flush()
 
     def _flush(self):
-        pickle.dump(self.rows, self._spill, pickle.HIGHEST_PROTOCOL)
-        self.rows = []
+        pickle.dump(self._rows, self._spill, pickle.HIGHEST_PROTOCOL)
+        self._rows = []
 
     def blocks(self):
         self._flush()
@@ -44,17 +43,40 @@ class Table:
             yield pickle.load(self._spill)
 
 
-class Flattener:
-    """Rows of the messages of a topic, for its table and those of the arrays in it."""
+def number_of(value, kind):
+    return value.to_nsec() / 1e9 if kind in ("time", "duration") else value
 
-    def __init__(self, add):
-        self._add = add  # (table, row)
 
-    def add(self, table, message):
+def meaning_of(types, datatype, table, column):
+    """(type, unit) of a column: that of the field from which it comes."""
+    if column in ("received", "stamp"):
+        return "float64", "s"
+    unit = ""
+    for name in [*table.split(".")[1:], *re.sub(r"\[.*\]$", "", column).split(".")]:
+        kind, own = types.get(datatype, {}).get(name, ("uint32", ""))  # the number of an element, or of elements
+        unit, datatype = own or UNITS.get(datatype + "." + name) or UNITS.get(kind) or unit, kind
+    return (datatype, unit) if datatype in PRIMITIVES else ("uint32", "")
+
+
+class Tables:
+    """What csv and parquet share; they differ in how a table is written."""
+
+    def __init__(self, folder, source, files):
+        self.connections = source.chosen
+        self._folder, self._files, self._tables, self._about = folder, files, {}, {}
+
+    def add(self, message):
+        name = message.connection.topic.strip("/").replace("/", "_")
+        self._about[name] = message.connection
         key = {"received": message.received / 1e9, "stamp": message.time / 1e9}
         row = dict(key)
-        self._fill(message.fields, "", row, table, key)
-        self._add(table, row)
+        self._fill(message.fields, "", row, name, key)
+        self._add(name, row)
+
+    def _add(self, name, row):
+        if name not in self._tables:
+            self._tables[name] = Table(self._files.enter_context(tempfile.TemporaryFile(dir=self._folder)))
+        self._tables[name].add(row)
 
     def _fill(self, part, prefix, row, table, key):
         names = getattr(part, "name", None)
@@ -84,58 +106,14 @@ class Flattener:
             for label, value in zip(names if named else range(len(values)), values):
                 row["{}[{}]".format(column, label)] = number_of(value, base)
 
-
-def number_of(value, kind):
-    return value.to_nsec() / 1e9 if kind in ("time", "duration") else value
-
-
-def meaning_of(types, datatype, table, column):
-    """(type, unit, comment) of a column: that of the field from which it comes."""
-    if column in ("received", "stamp"):
-        return "float64", "s", "when it was received" if column == "received" else "time of the sample"
-    unit, comment, found = "", "", None
-    for name in [*table.split(".")[1:], *re.sub(r"\[.*\]$", "", column).split(".")]:
-        found = next((field for field in types.get(datatype, ()) if field.name == name), None)
-        if found is None:
-            break
-        unit = found.unit or UNITS.get(datatype + "." + name) or UNITS.get(found.kind) or unit
-        comment = found.comment or comment  # of a vector, where x says nothing
-        datatype = found.kind
-    if found is None or found.kind not in PRIMITIVES:
-        return "uint32", "", "number of the element, or of elements"
-    return found.kind, unit, comment
-
-
-class Tables:
-    """What csv and parquet share; they differ in how a table is written."""
-
-    def __init__(self, folder, source, files):
-        self.connections = source.chosen
-        self._folder, self._files, self._tables, self._about = folder, files, {}, {}
-        self._flattener = Flattener(self._row)
-
-    def add(self, message):
-        name = message.connection.topic.strip("/").replace("/", "_")
-        self._about[name] = message.connection
-        self._flattener.add(name, message)
-
-    @staticmethod
-    def needs_more(_arguments):
-        return False
-
-    def _row(self, name, row):
-        if name not in self._tables:
-            self._tables[name] = Table(self._files.enter_context(tempfile.TemporaryFile(dir=self._folder)))
-        self._tables[name].add(row)
-
     def finish(self):
         with open(os.path.join(self._folder, "columns.csv"), "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(("table", "column", "type", "unit", "description"))
-            for name in sorted(self._tables):
-                connection, table = self._about[name.split(".")[0]], self._tables[name]
-                types = structure(connection.datatype, connection.definition)
-                columns = {each: meaning_of(types, connection.datatype, name, each) for each in table.columns}
+            writer.writerow(("table", "column", "type", "unit"))
+            for name, table in sorted(self._tables.items()):
+                about = self._about[name.split(".")[0]]
+                types = {kind: fields_of(kind, text) for kind, text in parts_of(about.datatype, about.definition).items()}
+                columns = {each: meaning_of(types, about.datatype, name, each) for each in table.columns}
                 writer.writerows((name, each, *meaning) for each, meaning in columns.items())
                 self.write(os.path.join(self._folder, name), columns, table.blocks())
         return "{} tables".format(len(self._tables))
@@ -151,18 +129,13 @@ class Csv(Tables):
 
 
 class Parquet(Tables):
-    PACKAGES = ("pyarrow",)
-
     def write(self, path, columns, blocks):
         import pyarrow
         from pyarrow import parquet
 
-        kinds = {"bool": pyarrow.bool_(), "byte": pyarrow.int8(), "char": pyarrow.uint8(), "time": pyarrow.float64(),
-                 "duration": pyarrow.float64()}  # fmt: skip
-        schema = pyarrow.schema([
-            pyarrow.field(name, kinds.get(kind) or getattr(pyarrow, kind)(), metadata={"unit": unit, "description": comment})
-            for name, (kind, unit, comment) in columns.items()
-        ])  # fmt: skip
+        kinds = {"bool": "bool_", "byte": "int8", "char": "uint8", "time": "float64", "duration": "float64"}
+        schema = pyarrow.schema([pyarrow.field(name, getattr(pyarrow, kinds.get(kind, kind))(), metadata={"unit": unit})
+                                 for name, (kind, unit) in columns.items()])  # fmt: skip
         with parquet.ParquetWriter(path + ".parquet", schema, compression="zstd") as writer:
             for block in blocks:
                 writer.write_table(pyarrow.Table.from_pylist(block, schema))
