@@ -23,6 +23,7 @@ APART = (
     "*/test/*", "*test.d/*", "*_test.py", "src/vibe_testing/*", "src/vibe_system_tests/*", "*/fuzz/*",  # in scratch folders
     "docs/*", "examples/*",  # short, for readers; the site of the pages
     "*/plot_*.py", "*/make_*.py", "*/figures.py", "*/phantom/pictures.py", "scripts/lib/debian_control.py",  # drawn or made again by the same call in a second
+    "src/vibe_sessions/src/vibe_sessions/export/*",  # in a folder that gets its name when it is whole
     "src/vibe_web/benchmark/*", "src/vibe_python/*", "src/vibe_firmware/*", "*/render_with_blender.py",  # use no other package
 )
 

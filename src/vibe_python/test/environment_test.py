@@ -400,6 +400,7 @@ class EnvironmentTest(unittest.TestCase):
                                ("use 'organs'", lambda: Environment("Reach", vary={"geometry.scale": ("uniform", 1, 2)})),
                                ("use 'breathing'", lambda: Environment("Reach", scene={"breathing": {}}, breathing="slight")),
                                ("'vary' has 'action.dealy'", lambda: Environment("Reach", vary={"action.dealy": ("uniform", 0, 1)})),
+                               ("this is a GoalEnvironment", lambda: demonstrations.record(GoalEnvironment(**SMALL), None, "/nowhere/a.hdf5", 1)),
                                ("'vary' is 7", lambda: Environment("Reach", vary=7)),
                                ("'action.delay' of 'vary' is", lambda: Environment("Reach", vary={"action.delay": ("normal", 0, 1)})),
                                ("'scene' is 'a.yaml'", lambda: Environment("Reach", scene="a.yaml")),

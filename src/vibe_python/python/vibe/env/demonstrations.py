@@ -103,6 +103,9 @@ def _opened(file):
 
 def _begun(environment, policy, seed):
     """Everything in which episodes of one set are alike."""
+    if type(environment) is not Environment:
+        raise vibe.Error(f"Demonstrations are of an Environment, and this is a {type(environment).__name__}; record with Environment, whose "
+                         "observations hold everything that goals with hindsight are made of.")
     task, kind = environment.task, type(environment.task)
     if not kind.name:
         raise vibe.Error(f"The task {kind.__qualname__} has no name by which it could be made again; give it one.")
