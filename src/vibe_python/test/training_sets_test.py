@@ -21,8 +21,7 @@ from vibe.env import Environment, Expert, Reach, demonstrations
 SMALL = {"particles": 300, "organs": [("sthenic", 1.0)]}
 FEATURES = {"observation.state": {"dtype": "float32", "shape": [2], "names": ["insertion", "rotation"]},
             "observation.wall": {"dtype": "float32", "shape": [3, 3], "names": None},
-            "action": {"dtype": "float32", "shape": [2], "names": None}, "next.done": {"dtype": "bool", "shape": [1], "names": None},
-            "note": {"dtype": "string", "shape": [1], "names": None}}
+            "action": {"dtype": "float32", "shape": [2], "names": None}, "next.done": {"dtype": "bool", "shape": [1], "names": None}}
 VIDEO = {"observation.images.endoscope": {"dtype": "video", "shape": [32, 48, 3], "names": ["height", "width", "channels"]}}
 EPISODES, ROWS = 3, 6
 libraries = tempfile.TemporaryDirectory()
@@ -54,7 +53,7 @@ def need(test, *modules):
 def columns(number):
     random = np.random.default_rng(number)
     return {"observation.state": random.random((ROWS, 2)), "observation.wall": random.random((ROWS, 3, 3)), "action": random.random((ROWS, 2)),
-            "next.done": np.arange(ROWS) == ROWS - 1, "note": [f"row {k}" for k in range(ROWS)]}
+            "next.done": np.arange(ROWS) == ROWS - 1}
 
 
 def frames(number):
@@ -86,7 +85,7 @@ class LeRobot:
             file = info["data_path"].format(chunk_index=0, file_index=number, episode_chunk=0, episode_index=number)
             found = parquet.read_table(os.path.join(place, file)).to_pydict()
             for name, rows in columns(number).items():
-                assert np.array_equal(found[name], rows if name == "note" else np.asarray(rows, FEATURES[name]["dtype"])), name
+                assert np.array_equal(found[name], np.asarray(rows, FEATURES[name]["dtype"])), name
         return info["total_episodes"]
 
 
@@ -369,8 +368,8 @@ class LeRobotSets(unittest.TestCase):
                                ("'action' is float64 of the shape", lambda: add(action=np.zeros((ROWS, 3)))), ("is <U1 of", lambda: add(action=[["a", "b"]] * ROWS)),
                                ("not finite in row 2", lambda: add(action=np.where(np.arange(ROWS)[:, None] == 2, np.nan, good["action"]))),
                                ("The columns have the rows", lambda: add(action=good["action"][1:])), ("videos lack", lambda: add(videos={})),
-                               ("has 5 frames for 6 rows", lambda: add(videos={"observation.images.endoscope": frames(0)[1:]})),
-                               ("Frame 1 of the video .* is float64", lambda: add(videos={"observation.images.endoscope": frames(0) / 255}))):
+                               ("Frame 5 of the video .* is missing", lambda: add(videos={"observation.images.endoscope": frames(0)[1:]})),
+                               ("Frame 0 of the video .* is float64", lambda: add(videos={"observation.images.endoscope": frames(0) / 255}))):
             with self.assertRaisesRegex(vibe.Error, sentence):
                 call()
         self.assertEqual(writer().episodes, 1)

@@ -6,7 +6,6 @@ import contextlib
 import io
 import json
 import os
-import pathlib
 import shutil
 
 import vibe
@@ -67,10 +66,9 @@ class Episodes:
         """One more episode: arrays by name, and its attributes, the seed among them."""
         number = len(self._links)
         if None in self._links:  # all in one file, which becomes the first part
-            os.makedirs(self._parts, exist_ok=True)
-            first = pathlib.Path(self._parts, "first.hdf5")
-            first.unlink(missing_ok=True)
-            os.link(self.file, first)
+            shutil.rmtree(self._parts, ignore_errors=True)
+            os.mkdir(self._parts)
+            os.link(self.file, os.path.join(self._parts, "first.hdf5"))
             self._links = [(self._part("first"), self._name.format(k)) for k in range(number)]
         name, image = self._name.format(number), io.BytesIO()
         with self._h5py.File(image, "w") as out:

@@ -15,7 +15,7 @@ import vibe
 from . import files, statistics, video
 
 CHUNK = 1000  # files in a folder
-DTYPES = ("float32", "float64", "bool", "string", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
+DTYPES = ("float32", "float64", "bool", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
 INDICES = {"timestamp": "float32", "frame_index": "int64", "episode_index": "int64", "index": "int64", "task_index": "int64"}
 LAYOUT = {"v3.0": {"data_path": "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet",
                    "video_path": "videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4",
@@ -40,8 +40,8 @@ class Writer:
 
     version   "v3.0" (LeRobot from 0.4 on) or "v2.1" (Open-H-Embodiment, GR00T)
     fps       rows per second, a whole number
-    features  by name: {"dtype": "float32", "shape": [4], "names": [...] or None}. dtype is one of numpy's, "string" or "video",
-              which has the shape [height, width, 3], both even. LeRobot's own (timestamp, frame_index, episode_index, index,
+    features  by name: {"dtype": "float32", "shape": [4], "names": [...] or None}. dtype is one of numpy's, or "video", which
+              has the shape [height, width, 3], both even. LeRobot's own (timestamp, frame_index, episode_index, index,
               task_index) are added
     robot     robot_type of the data set
     about     a sentence for its card, meta/README.md: where it comes from, how it was collected
@@ -58,7 +58,7 @@ class Writer:
         self.folder, self.info = os.fspath(folder), _begun(version, fps, features, robot, begun)
         self._videos = [name for name, feature in self.info["features"].items() if feature["dtype"] == "video"]
         self._rows, self._stats, self._tasks = [], {}, []  # the table of episodes; statistics of all; tasks
-        self._lines = {"episodes": b"", "episodes_stats": b""}  # of v2.1, whose files are replaced as a whole, too
+        self._lines = {"episodes": b"", "episodes_stats": b""}  # of v2.1
         there = [name for _, _, names in os.walk(self.folder) for name in names if not name.endswith(files.PARTIAL)]
         info = self._json("info") if "info.json" in there else {}
         if there and "vibe" not in info:
@@ -100,8 +100,7 @@ class Writer:
         columns.update(timestamp=(np.arange(count) / self.info["fps"]).astype(np.float32), frame_index=np.arange(count),
                        episode_index=np.full(count, number), index=self.info["total_frames"] + np.arange(count),
                        task_index=np.full(count, tasks.index(task)))
-        stats = {name: statistics.of_rows(value.reshape(count, *features[name]["shape"]))
-                 for name, value in columns.items() if features[name]["dtype"] != "string"}
+        stats = {name: statistics.of_rows(value.reshape(count, *features[name]["shape"])) for name, value in columns.items()}
         for name, frames in videos.items():
             samples, shape = [], features[name]["shape"]
             files.write(self._file("video_path", number, name), video.encode(video.seen(name, frames, count, shape, samples), self.info["fps"], shape))
@@ -179,10 +178,8 @@ class Writer:
     def _episode_of(self, number):
         found = {name: value[0] for name, value in self._parquet.read_table(self._file("episodes", number)).to_pydict().items()}
         row, stats = {name: value for name, value in found.items() if "/" not in name and not name.startswith("dataset_")}, {}
-        for name in found:
-            if name.startswith("stats/"):
-                _, feature, key = name.split("/")
-                stats.setdefault(feature, {})[key] = found[name]
+        for _, feature, key in (name.split("/") for name in found if name.startswith("stats/")):
+            stats.setdefault(feature, {})[key] = found[f"stats/{feature}/{key}"]
         return row, stats
 
     def _lines_of(self, count):
@@ -250,17 +247,15 @@ def _feature(name, feature, fps):
 
 def _column(name, value, feature):
     """The rows of a feature as they are stored: (rows, *shape), without the axis of shape [1]."""
-    shape, text = feature["shape"], feature["dtype"] == "string"
-    rows = np.asarray(value, object if text else None)
+    shape, rows = feature["shape"], np.asarray(value)
     if rows.ndim == 1 and shape == [1]:
         rows = rows[:, None]
-    good = all(isinstance(one, str) for one in rows.flat) if text else np.can_cast(rows.dtype, feature["dtype"], "same_kind")
-    if not good or rows.ndim == 0 or list(rows.shape[1:]) != shape:
+    if rows.dtype.kind not in "biuf" or not np.can_cast(rows.dtype, feature["dtype"], "same_kind") or rows.ndim == 0 or list(rows.shape[1:]) != shape:
         raise vibe.Error(f"The column {name!r} is {rows.dtype} of the shape {rows.shape}; give {feature['dtype']} of the shape "
                          f"(rows, {', '.join(map(str, shape))}).")
-    if rows.dtype.kind == "f" and not np.isfinite(rows).all():
+    if not np.isfinite(rows).all():
         raise vibe.Error(f"The column {name!r} is not finite in row {np.argwhere(~np.isfinite(rows))[0][0]}; leave such rows out, or fill them.")
-    return (rows if text else rows.astype(feature["dtype"])).reshape(len(rows), *([] if shape == [1] else shape))
+    return rows.astype(feature["dtype"]).reshape(len(rows), *([] if shape == [1] else shape))
 
 
 def _array(arrow, rows):

@@ -1,6 +1,7 @@
 """A video as bytes: H.264, yuv420p, every second picture a key frame, so that readers find any picture fast."""
 
 import io
+import itertools
 
 import numpy as np
 
@@ -28,13 +29,12 @@ def seen(name, frames, count, shape, samples):
     coarser resolution, as LeRobot takes them for statistics."""
     wanted = set(np.round(np.linspace(0, count - 1, max(min(count, 100), int(count**0.75)))).astype(int))
     stride = max(shape[:2]) // 150 if max(shape[:2]) >= 300 else 1
-    number = 0
-    for number, frame in enumerate(map(np.asarray, frames), 1):
-        if number > count or frame.dtype != np.uint8 or list(frame.shape) != shape:
-            raise vibe.Error(f"Frame {number} of the video {name!r} is {frame.dtype} of the shape {frame.shape}; give {count} frames of uint8 of "
-                             f"the shape {tuple(shape)}.")
-        if number - 1 in wanted:
+    for number, frame in enumerate(itertools.chain(map(np.asarray, frames), [None])):
+        if number == count and frame is None:
+            return
+        if number == count or frame is None or frame.dtype != np.uint8 or list(frame.shape) != shape:
+            what = "missing" if frame is None else f"{frame.dtype} of the shape {frame.shape}"
+            raise vibe.Error(f"Frame {number} of the video {name!r} is {what}; give {count} frames of uint8 of the shape {tuple(shape)}.")
+        if number in wanted:
             samples.append(frame[::stride, ::stride])
         yield np.ascontiguousarray(frame)
-    if number < count:
-        raise vibe.Error(f"The video {name!r} has {number} frames for {count} rows; give as many.")

@@ -2,9 +2,11 @@
 
 import hashlib
 import inspect
+import itertools
 import json
 import os
 import re
+import types
 
 import numpy as np
 
@@ -74,17 +76,12 @@ def replay(file):
     environment = environment_of(file)
     with _opened(file) as found:
         for name, demo in found["data"].items():
-            seen, _ = environment.reset(seed=int(demo.attrs["seed"]))
-            rows = []
-            for action in demo["actions"][:]:
-                following, reward, terminated, truncated, _ = environment.step(action)
-                rows.append((seen, action, reward, terminated or truncated, following))
-                seen = following
-            for key, again in _columns(rows).items():
-                if not np.array_equal(demo[key][:], again):
-                    raise vibe.Error(f"{file}: {name} has other {key} when its actions are performed again; was the task or the file changed?")
-            if demo.attrs["hash"] != _hash(environment):
-                raise vibe.Error(f"{file}: {name} ends in another state when its actions are performed again; was the task or the file changed?")
+            actions = itertools.chain(demo["actions"][:], itertools.repeat(0 * demo["actions"][0]))
+            rows, _ = episode(environment, types.SimpleNamespace(reset=lambda: None, action=lambda _, rest=actions: next(rest)), int(demo.attrs["seed"]))
+            differ = [key for key, again in _columns(rows).items() if not np.array_equal(demo[key][:], again)]
+            if differ or demo.attrs["hash"] != _hash(environment):
+                raise vibe.Error(f"{file}: {name} has other {differ[0] if differ else 'states'} when its actions are performed again; "
+                                 "was the task or the file changed?")
         return len(found["data"])
 
 
