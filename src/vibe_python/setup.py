@@ -73,7 +73,7 @@ setup(
     license="BSD-3-Clause",
     python_requires=">=3.9",
     install_requires=["numpy"],
-    extras_require={"gymnasium": ["gymnasium"], "demonstrations": ["h5py"]},
+    extras_require={"gymnasium": ["gymnasium"], "demonstrations": ["h5py"], "lerobot": ["pyarrow", "av"]},
     packages=["vibe", "vibe.data", "vibe.env"],
     package_dir={"": "python"},
     package_data={"vibe": ["py.typed", "*.pyi"]},

@@ -14,7 +14,7 @@ def needed(module, where):
     try:
         return importlib.import_module(module)
     except ImportError as error:
-        raise vibe.Error(f"This data set needs the Python module {module} ({error}); install it with '{where}'.") from None
+        raise vibe.Error(f"This data set needs the Python module {module} ({error}); install it: {where}.") from None
 
 
 @contextlib.contextmanager

@@ -54,7 +54,7 @@ class Writer:
 
     def __init__(self, folder, version="v3.0", fps=30, features=None, robot="vibe_endoscope", about="Made with the simulator ViBE for ROS.",
                  begun=None):
-        self._arrow, self._parquet = (files.needed(name, "pip install pyarrow") for name in ("pyarrow", "pyarrow.parquet"))
+        self._arrow, self._parquet = (files.needed(name, 'pip install "pyarrow<24"') for name in ("pyarrow", "pyarrow.parquet"))
         self.folder, self.info = os.fspath(folder), _begun(version, fps, features, robot, begun)
         self._videos = [name for name, feature in self.info["features"].items() if feature["dtype"] == "video"]
         self._rows, self._stats, self._tasks = [], {}, []  # the table of episodes; statistics of all; tasks
