@@ -83,6 +83,19 @@ infos = [listed.step(np.zeros((2, 4), np.float32))[4] for _ in range(4)]
 print(len(infos[0]), infos[0][1]["organ"] == "sthenic 1", any("final_info" in info for pair in infos for info in pair))
 made = gymnasium.make_vec("vibe/Reach-v0", num_envs=2, threads=1, **small)
 print(type(made).__name__, made.closed, gymnasium.spec("vibe/Bite-v0").max_episode_steps)
+
+import json, os, tempfile
+import h5py
+from vibe.env import Expert, demonstrations
+with tempfile.TemporaryDirectory() as folder:
+    environment, file = gymnasium.make("vibe/Reach-v0", action="tip", breathing="slight", **small), os.path.join(folder, "reach.hdf5")
+    demonstrations.record(environment, Expert(environment), file, 1)
+    with h5py.File(file) as found:
+        args, demo = json.loads(found["data"].attrs["env_args"]), found["data/demo_0"]
+        again = gymnasium.make(args["env_name"], **args["env_kwargs"])
+        again.reset(seed=int(demo.attrs["seed"]))
+        same = [np.array_equal(again.step(action)[0]["wall"], wall) for action, wall in zip(demo["actions"][:], demo["next_obs/wall"])]
+        print("from file", all(same), f"{again.unwrapped.simulation.hash():016x}" == demo.attrs["hash"])
 """
 SMALL = contract.SETTINGS
 PAGE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../docs/python.md")
@@ -437,7 +450,8 @@ class EnvironmentTest(unittest.TestCase):
             checked = subprocess.run([sys.executable, "-B", "-c", CHECK], env={**os.environ, "PYTHONPATH": path},
                                      stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
         self.assertEqual(checked.returncode, 0, checked.stdout)
-        self.assertEqual(checked.stdout.split(), [*TASKS, "refused", "wrapped", "processes", "2", "True", "True", "VectorEnvironment", "False", "5400"],
+        self.assertEqual(checked.stdout.split(), [*TASKS, "refused", "wrapped", "processes", "2", "True", "True", "VectorEnvironment", "False", "5400",
+                                                    "from", "file", "True", "True"],
                          checked.stdout)
 
 

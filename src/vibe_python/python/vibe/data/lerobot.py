@@ -5,7 +5,6 @@
 """
 
 import json
-import os
 import pathlib
 
 import numpy as np
@@ -55,14 +54,14 @@ class Writer:
     def __init__(self, folder, version="v3.0", fps=30, features=None, robot="vibe_endoscope", about="Made with the simulator ViBE for ROS.",
                  begun=None):
         self._arrow, self._parquet = (files.needed(name, 'pip install "pyarrow<24"') for name in ("pyarrow", "pyarrow.parquet"))
-        self.folder, self.info = os.fspath(folder), _begun(version, fps, features, robot, begun)
+        self.folder, self.info = pathlib.Path(folder), _begun(version, fps, features, robot, begun)
         self._videos = [name for name, feature in self.info["features"].items() if feature["dtype"] == "video"]
         self._rows, self._stats, self._tasks = [], {}, []  # the table of episodes; statistics of all; tasks
         self._lines = {"episodes": b"", "episodes_stats": b""}  # of v2.1
-        there = [name for _, _, names in os.walk(self.folder) for name in names if not name.endswith(files.PARTIAL)]
-        info = self._json("info") if "info.json" in there else {}
+        there = [path for path in self.folder.rglob("*") if path.is_file() and path.suffix != files.PARTIAL]
+        info = json.loads((self.folder / "meta/info.json").read_text()) if self.folder / "meta/info.json" in there else {}
         if there and "vibe" not in info:
-            raise vibe.Error(f"{self.folder} holds {there[0]} and no data set that was begun here; name another folder.")
+            raise vibe.Error(f"{self.folder} holds {there[0].name} and no data set that was begun here; name another folder.")
         if info:
             fixed = ("codebase_version", "fps", "robot_type", "features")
             files.compare(self.folder, *({**{name: one[name] for name in fixed}, **one["vibe"]} for one in (info, self.info)))
@@ -70,7 +69,7 @@ class Writer:
         else:
             self._write_json("info", self.info)
         sensors = ", ".join(f"`{name}`" for name in self.info["features"] if name.startswith("observation"))
-        files.write(self._path("meta/README.md"), CARD.format(about=about, sensors=sensors, **self.info).encode())
+        files.write(self.folder / "meta/README.md", CARD.format(about=about, sensors=sensors, **self.info).encode())
 
     def __enter__(self):
         return self
@@ -94,9 +93,13 @@ class Writer:
         """
         features, number, videos = self.info["features"], self.episodes, dict(videos or {})
         tasks = self._tasks if task in self._tasks else [*self._tasks, task]
-        columns = self._columns(columns)
         files.same_names("videos", videos, self._videos)
-        count = len(next(iter(columns.values())))
+        files.same_names("columns", columns, [name for name in features if name not in INDICES and name not in self._videos])
+        columns = {name: _column(name, columns[name], feature) for name, feature in features.items() if name in columns}
+        counts = {name: len(value) for name, value in columns.items()}
+        count = next(iter(counts.values()), 0)
+        if count == 0 or set(counts.values()) != {count}:
+            raise vibe.Error(f"The columns have the rows {counts}; give as many of each, at least one.")
         columns.update(timestamp=(np.arange(count) / self.info["fps"]).astype(np.float32), frame_index=np.arange(count),
                        episode_index=np.full(count, number), index=self.info["total_frames"] + np.arange(count),
                        task_index=np.full(count, tasks.index(task)))
@@ -108,15 +111,6 @@ class Writer:
         files.write(self._file("data_path", number), self._bytes({name: _array(self._arrow, value) for name, value in columns.items()}))
         row = {"episode_index": number, "tasks": [task], "length": count, "split": split, "success": bool(success), **further}
         self._finish(row, stats, tasks)
-
-    def _columns(self, columns):
-        wanted = [name for name in self.info["features"] if name not in INDICES and name not in self._videos]
-        files.same_names("columns", columns, wanted)
-        found = {name: _column(name, columns[name], self.info["features"][name]) for name in wanted}
-        counts = {name: len(value) for name, value in found.items()}
-        if len(set(counts.values())) != 1 or 0 in counts.values():
-            raise vibe.Error(f"The columns have the rows {counts}; give as many of each, at least one.")
-        return found
 
     # --- what is said of the episodes
 
@@ -141,9 +135,9 @@ class Writer:
         if info["codebase_version"] == "v2.1":
             lines = {**lines, "tasks": b"".join(_line({"task_index": k, "task": task}) for k, task in enumerate(tasks))}
             for name, text in lines.items():
-                files.write(self._path(f"meta/{name}.jsonl"), text)
+                files.write(self.folder / f"meta/{name}.jsonl", text)
         else:
-            files.write(self._path("meta/tasks.parquet"), self._bytes({"task_index": list(range(len(tasks))), "task": tasks}, TASKS))
+            files.write(self.folder / "meta/tasks.parquet", self._bytes({"task_index": list(range(len(tasks))), "task": tasks}, TASKS))
         self._write_json("stats", stats)
         self._write_json("info", info)
 
@@ -158,9 +152,8 @@ class Writer:
             self._stats = {name: statistics.together(self._stats[name], stats[name]) if self._stats else stats[name] for name in stats}
         self.info = info
         begun = [self._file("data_path", count), self._file("episodes", count), *(self._file("video_path", count, name) for name in self._videos)]
-        said = [path for path in pathlib.Path(self._path("meta")).glob("*.*") if count == 0 and path.name != "info.json"]
-        for path in (*begun, *said):
-            pathlib.Path(path).unlink(missing_ok=True)
+        for path in (*begun, *(path for path in self.folder.glob("meta/*.*") if count == 0 and path.name != "info.json")):
+            path.unlink(missing_ok=True)
         if count:
             self._describe(info, self._lines, self._stats, self._tasks)
 
@@ -183,29 +176,23 @@ class Writer:
         return row, stats
 
     def _lines_of(self, count):
-        rows, stats = (pathlib.Path(self._path(f"meta/{name}.jsonl")).read_text().splitlines()[:count] if count else [] for name in self._lines)
+        rows, stats = ((self.folder / f"meta/{name}.jsonl").read_text().splitlines()[:count] if count else [] for name in self._lines)
         return [(json.loads(row), json.loads(part)["stats"]) for row, part in zip(rows, stats)]
 
     # --- files
 
-    def _path(self, name):
-        return os.path.join(self.folder, name)
-
     def _file(self, kind, number, video_key=None):
         pattern = EPISODES if kind == "episodes" else LAYOUT[self.info["codebase_version"]][kind]
         chunk, file = divmod(number, CHUNK)
-        return self._path(pattern.format(chunk_index=chunk, file_index=file, episode_chunk=chunk, episode_index=number, video_key=video_key))
+        return self.folder / pattern.format(chunk_index=chunk, file_index=file, episode_chunk=chunk, episode_index=number, video_key=video_key)
 
     def _bytes(self, columns, metadata=None):
         out = self._arrow.BufferOutputStream()
         self._parquet.write_table(self._arrow.table(columns).replace_schema_metadata(metadata), out)
         return out.getvalue()
 
-    def _json(self, name):
-        return json.loads(pathlib.Path(self._path(f"meta/{name}.json")).read_text())
-
     def _write_json(self, name, value):
-        files.write(self._path(f"meta/{name}.json"), json.dumps(value, indent=4).encode())
+        files.write(self.folder / f"meta/{name}.json", json.dumps(value, indent=4).encode())
 
 
 def _line(value):
