@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from unittest import mock
 
@@ -242,12 +243,13 @@ class WholeOrNot(unittest.TestCase):
     def test_a_kill_at_any_time(self):
         need(self, "h5py")
         with tempfile.TemporaryDirectory() as folder:
+            begun = time.monotonic()
             Hdf5().write(os.path.join(folder, "whole"), EPISODES)
-            random, killed = np.random.default_rng(3), 0
+            random, killed, takes = np.random.default_rng(3), 0, time.monotonic() - begun
             for number in range(12):
-                def raced(place, tell, after=random.uniform(0, 0.03)):
-                    signal.signal(signal.SIGALRM, signal.SIG_DFL)
-                    signal.setitimer(signal.ITIMER_REAL, after + 1e-6)  # its default action ends a process as a kill does
+                def raced(place, tell, after=random.uniform(1e-6, takes)):
+                    signal.signal(signal.SIGALRM, signal.SIG_DFL)  # ends a process as a kill does
+                    signal.setitimer(signal.ITIMER_REAL, after)
                     Hdf5().write(place, EPISODES, tell)
                 found, status = self.stopped(Hdf5(), folder, number, raced)
                 self.assertEqual(found, digest(os.path.join(folder, "whole")))
