@@ -351,6 +351,23 @@ class LeRobotSets(unittest.TestCase):
             np.testing.assert_allclose(np.ravel(picture["mean"]), shares.mean((0, 1, 2)), rtol=1e-9)
             self.assertEqual(np.shape(picture["std"]), (3, 1, 1))
 
+    def test_what_is_left_of_an_episode_is_removed(self):
+        for version, until in (("v3.0", 0), ("v3.0", 2), ("v2.1", 0), ("v2.1", 2)):
+            place = self.written(version, until)
+            expected = digest(place)
+            info = lerobot.Writer._write_json
+
+            def stopped(writer, name, value, info=info, until=until):
+                if name == "info" and value["total_episodes"] > until:
+                    full()
+                info(writer, name, value)
+
+            with mock.patch.object(lerobot.Writer, "_write_json", stopped), self.assertRaises(OSError):
+                LeRobot(version, video=True).write(place, until + 1)
+            self.assertNotEqual(digest(place), expected)  # control
+            LeRobot(version, video=True).write(place, until)
+            self.assertEqual(digest(place), expected)
+
     def test_what_is_refused(self):
         place, state = self.written("v3.0", 1), {"dtype": "float32", "shape": [2]}
         good, pictures = columns(0), {"observation.images.endoscope": frames(0)}
