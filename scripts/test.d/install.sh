@@ -76,7 +76,7 @@ check 'rostests of others can use vibe_testing' inSpace /usr/bin/python3 -c \
 helps() {
   local program
   for program in 'vibe_sim sim_node' 'vibe_sim vibe_replay' 'vibe_sim vibe_record' 'vibe_sim vibe_player' \
-    'vibe_sessions report' 'vibe_sessions cohort' 'vibe_sessions regression' 'vibe_bringup record' \
+    'vibe_sessions report' 'vibe_sessions cohort' 'vibe_sessions export' 'vibe_sessions regression' 'vibe_bringup record' \
     'vibe_bringup report' 'vibe_bringup picture' 'vibe_bringup views' 'vibe_bringup latency' 'vibe_bringup dataset' \
     'vibe_benchmarks vibe_bench'; do
     # shellcheck disable=SC2086

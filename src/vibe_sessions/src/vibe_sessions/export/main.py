@@ -39,10 +39,8 @@ def read(path):
 
 def sync(path):
     handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
+    os.fsync(handle)
+    os.close(handle)
 
 
 class Folder:

@@ -66,10 +66,8 @@ class Mcap:
             name = sized(connection.datatype.replace("/", "/msg/")) + sized("ros2msg")
             self._schemas[key] = record(SCHEMA, struct.pack("<H", len(self._schemas) + 1) + name + sized(ros2_definition(*key)))
             self._chunk += self._schemas[key]
-        schema = list(self._schemas).index(key) + 1
-        quality = sized(sized("offered_qos_profiles") + sized(quality_of(connection.latched)))
-        about = struct.pack("<HH", number, schema) + sized(connection.topic) + sized("cdr") + quality
-        self._channels[number] = record(CHANNEL, about)
+        numbers = struct.pack("<HH", number, list(self._schemas).index(key) + 1)
+        self._channels[number] = record(CHANNEL, numbers + sized(connection.topic) + sized("cdr") + sized(""))
         self._chunk += self._channels[number]
 
     def _end_chunk(self):
@@ -101,11 +99,3 @@ class Mcap:
         self._file.write(summary + struct.pack("<I", zlib.crc32(summary)) + MAGIC)
         self._file.close()
         return "{} messages".format(sum(self._counts.values()))
-
-
-def quality_of(latched):
-    """As rosbag2 has it; the last message of a latched topic is sent to late subscribers, too."""
-    never = "{sec: 9223372036, nsec: 854775807}"
-    text = "- {{history: 1, depth: {}, reliability: 1, durability: {}, deadline: {}, lifespan: {}, liveliness: 1, " \
-           "liveliness_lease_duration: {}, avoid_ros_namespace_conventions: false}}\n"  # fmt: skip
-    return text.format(*(1, 1) if latched else (10, 2), never, never, never)

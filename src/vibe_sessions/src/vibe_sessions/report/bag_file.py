@@ -31,8 +31,6 @@ class Connection:
     md5sum: str
     definition: str
     caller: str  # name of the node that published
-    latched: bool = False
-    latched: bool = False
 
 
 @dataclass
@@ -216,7 +214,6 @@ class BagFile:
             text.get("md5sum", ""),
             text.get("message_definition", ""),
             text.get("callerid", ""),
-            text.get("latching") == "1",
         )
 
     def _add_chunk_info(self, fields, data):
