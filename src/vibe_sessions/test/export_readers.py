@@ -85,12 +85,15 @@ class McapReaders(ExportTest):
                 self.assertEqual(found[topic], messages, topic)
 
     def test_a_byte_that_is_changed_is_noticed(self):
+        import zstandard
+        from mcap.stream_reader import CRCValidationError
+
         with open(self.mcap, "r+b") as file:
             file.seek(os.path.getsize(self.mcap) // 10)
             byte = file.read(1)
             file.seek(-1, os.SEEK_CUR)
             file.write(bytes([byte[0] ^ 1]))
-        with self.assertRaisesRegex(Exception, "crc|zstd|Zstd"):
+        with self.assertRaises((CRCValidationError, zstandard.ZstdError)):
             self.with_mcap()
 
 

@@ -227,7 +227,7 @@ class InterruptedTest(ExportTest):
     def test_a_full_disk_at_any_moment_leaves_whole_formats(self):
         wanted, number, complete = self.reference(), 0, False
         while not complete:
-            number += 7
+            number += 13
             calls, sync = iter(range(number)), export.sync
 
             def full(path, calls=calls, sync=sync):
