@@ -95,6 +95,19 @@ drawsACurve() {
   inWorkspace "$devel/lib/vibe_sessions/cohort" --plot local && [ -s "$scratch/local/learning_curve.png" ]
 }
 
+# publishSet FOLDER [OPTION...]: seconds of four sessions, with pictures, on four organs
+publishSet() {
+  inWorkspace "$devel/lib/vibe_sessions/publish_set" --output "$scratch/$1" --count 4 --duration 2 "${@:2}"
+}
+
+# One that was interrupted goes on to the same bytes, too.
+aSetIsTheSameBytes() {
+  publishSet set --jobs 1 && (cd "$scratch/set" && sha256sum --quiet --check SHA256SUMS) || return 1
+  publishSet set_dask --scheduler "$scheduler" && cmp "$scratch"/set{,_dask}/SHA256SUMS || return 1
+  rm -r "$scratch/set_dask/rows/"000_* "$scratch/set_dask/sessions/"002_* "$scratch/set_dask/rows/"002_*
+  publishSet set_dask --jobs 2 && cmp "$scratch"/set{,_dask}/SHA256SUMS
+}
+
 startDask
 check 'cohorts: a row per session' aRowPerSession
 check 'cohorts: the measures of vibe_headless' theMeasuresOfHeadless
@@ -102,6 +115,11 @@ check 'cohorts: go on where they ended' goesOn
 check 'cohorts: through Dask the same table' throughDaskTheSame
 check 'cohorts: a bad scene is listed, the others go on' aBadSceneIsListed
 check 'cohorts: a learning curve' drawsACurve
+if [ -n "${VIBE_SLOW_TESTS:-}" ]; then
+  check 'published set: local and through Dask the same bytes' aSetIsTheSameBytes
+else
+  echo 'skipped published set: local and through Dask the same bytes (scripts/test --slow makes it)'
+fi
 check 'cohorts: another plan is refused' refuses 2 'another plan: count was 2, not 3' cohort local --count 3
 check 'vibe_headless: a skill that is none' refuses 2 '--novice' headless --novice 1.5
 check 'vibe_headless: a skill without a protocol' refuses 2 '--novice' headless --novice 1

@@ -8,6 +8,7 @@
 #include <ros/console.h>
 #include <rosgraph_msgs/Clock.h>
 #include <std_msgs/String.h>
+#include <tf2_msgs/TFMessage.h>
 #include <vibe_msgs/ProcedureState.h>
 #include <vibe_msgs/SkillMetrics.h>
 #include <vibe_msgs/StepResult.h>
@@ -129,7 +130,10 @@ Publishers::Publishers(SinkSource sinks, bool with_clock)
       step_timing_(sinks_.advertise<vibe_msgs::StepTiming>("step_timing", kSmallQueue, kLeftToReplay)),
       tool_(toolTopics(sinks_)),
       arms_(sinks_) {
-  if (sinks_.isGraph()) static_transforms_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>();
+  if (sinks_.isGraph())
+    static_transforms_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>();
+  else
+    fixed_frames_ = sinks_.advertise<tf2_msgs::TFMessage>("/tf_static", 1, kKeptWhole, true);
   if (with_clock) clock_ = sinks_.advertise<rosgraph_msgs::Clock>("/clock", kSmallQueue, thinnedTo(0.1));
 }
 
@@ -142,7 +146,10 @@ void Publishers::announceModel(const TimedSimulation& simulation) {
   std::vector<geometry_msgs::TransformStamped> transforms = {
       makeTransform(Eigen::Isometry3d::Identity(), kWorldFrame, kTissueFrame, simulation.now())};
   if (model.tool) transforms.push_back(makeTransform(model.tool_base, kWorldFrame, kScopeBaseFrame, simulation.now()));
-  if (static_transforms_) static_transforms_->sendTransform(transforms);
+  if (static_transforms_) return static_transforms_->sendTransform(transforms);
+  tf2_msgs::TFMessage message;
+  message.transforms = transforms;
+  fixed_frames_.publish(message);
 }
 
 void Publishers::announceRun(const TimedSimulation& simulation) {

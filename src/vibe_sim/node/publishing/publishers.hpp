@@ -97,6 +97,7 @@ class Publishers {
   std::mutex gate_mutex_;
   WarningGate gate_;
   std::unique_ptr<tf2_ros::StaticTransformBroadcaster> static_transforms_;  // null for a bag
+  MessageSink fixed_frames_;                                                // in its place, in a bag
   std::unique_ptr<ParticleCloud> cloud_;
   std::vector<Eigen::Isometry3d> link_poses_;
   Eigen::Isometry3d last_tip_ = Eigen::Isometry3d::Identity();
