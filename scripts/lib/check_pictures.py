@@ -19,9 +19,6 @@ import hashlib
 import pathlib
 import sys
 
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "src/vibe_sessions/src"))
-from vibe_sessions.whole_file import open_whole  # noqa: E402
-
 
 def digest(root, shows):
     """Of paths and bytes of files and folders, as 12 hexadecimal digits."""
@@ -67,6 +64,9 @@ def main():
         if row["picture"] in arguments.made:
             row.update(date=datetime.date.today().isoformat(), digest=digest(arguments.root, row["shows"]))
     if arguments.made:
+        sys.path.append(str(arguments.root / "src/vibe_sessions/src"))
+        from vibe_sessions.whole_file import open_whole
+
         with open_whole(folder / "made.csv", newline="") as file:
             writer = csv.DictWriter(file, rows[0], lineterminator="\n")
             writer.writeheader()

@@ -43,6 +43,20 @@ check 'control, must fail: a data set with a missing file' fails checkFiles file
 sed -i 's/temperature [0-9.]*//' "$scratch/again/README.md"
 check 'control, must fail: a data sheet with a missing value' fails checkFiles sheet "$scratch/again"
 
+# A call that is killed while it writes leaves nothing that looks like a data set, and the next one takes its folder.
+killedLeavesNothing() {
+  local folder=$scratch/killed pid
+  setsid "$root/scripts/dataset" "$bag" --width 160 --height 120 --rate 0 --output "$folder" >"$scratch/killed.txt" 2>&1 &
+  pid=$!
+  for _ in $(seq 1800); do [ ! -e "$folder/.part-dataset/image/000001.png" ] || break; sleep 0.1; done
+  kill -KILL -- "-$pid" || { cat "$scratch/killed.txt"; return 1; }
+  wait "$pid" || true
+  sleep 1
+  [ -z "$(ls "$folder")" ] && [ -e "$folder/.part-dataset" ] || { ls -A "$folder"; return 1; }
+  dataset --output "$folder" && diff -r "$folder/image" "$scratch/all/image" && [ -z "$(find "$folder" -name '.*' -mindepth 1)" ]
+}
+check 'dataset: a call that is killed leaves nothing that looks whole' killedLeavesNothing
+
 check 'dataset asks for a recording' refuses 2 'which recording' "$root/scripts/dataset" --output "$scratch/new"
 check 'dataset asks for a folder' refuses 2 'where to' "$root/scripts/dataset" "$bag"
 check 'dataset names a recording that is not there' refusesNew 2 "no file 'nowhere.bag'" nowhere.bag

@@ -144,12 +144,12 @@ double tension(double residual);' "'@param lack' is no parameter of what follows
 findsWriter() {
   local tree
   tree=$(copyOfTree)
-  printf 'with whole(path) as part, open(part, "w") as file:\n    pass\n# not whole: a log\nopen(log, "a")\nopen(path)\n' >"$tree/src/vibe_core/good.py"
+  printf 'with whole(path) as part, open(part, "w") as file:\n    pass\nopen(log, "a")  # not whole: a log\nopen(path)\n' >"$tree/src/vibe_core/good.py"
   printf 'WholeFile whole(file, "Table");\nstd::ofstream out(whole.part());\nstd::ifstream in(file);\n' >"$tree/src/vibe_core/src/good.cpp"
   "$tree/scripts/lint" --only writers || { echo 'finds a problem where none is'; return 1; }
   printf '\n\n%s\n' "$2" >"$tree/src/vibe_core/src/$1"
   refuses 1 'not clean: writers' bash -c '"$1" --only writers 2>&1 >"$2"' - "$tree/scripts/lint" "$tree/said" &&
-    grep -F "src/vibe_core/src/$1:3: writes a file that may be left half" "$tree/said"
+    grep -F "src/vibe_core/src/$1:3:$2" "$tree/said"
 }
 seesWriters() {
   findsWriter bad.py 'with open(path, "w", encoding="utf-8") as file:' && findsWriter bad.py 'figure.savefig(picture)' &&

@@ -11,7 +11,7 @@ import unittest
 
 import numpy
 
-from vibe_sessions.headless import SessionError, find_in_package
+from vibe_sessions.headless import SessionError, call, find_in_package, find_program
 from vibe_sessions.imports.main import main
 from vibe_sessions.imports.map_file import JOINTS, read_map
 from vibe_sessions.imports.motion_file import open_motion
@@ -261,6 +261,7 @@ class SessionTest(ImportTest):
         _, joints, _, _ = self.read(self.motion(wave()), self.map())
         worst = 0.0
         with rosbag.Bag(os.path.join(output, "session.bag")) as bag:
+            self.assertEqual(bag.get_message_count(["/tf_static"]), 1)  # without which there are no pictures of it
             inputs = {message.step: message for _, message, _ in bag.read_messages(["/applied_input"])}
             for _, state, _ in bag.read_messages(["/joint_states"]):
                 step = round((state.header.stamp.to_sec() - 1) * 60)
@@ -275,6 +276,21 @@ class SessionTest(ImportTest):
         record(again)
         with open(os.path.join(output, "session.bag"), "rb") as one, open(os.path.join(again, "session.bag"), "rb") as two:
             self.assertEqual(one.read(), two.read())
+        replayed = call([os.path.join(again, "session.bag")], program=find_program("vibe_sim", "vibe_replay"))
+        self.assertIn("the same: all", replayed)
+
+    def test_the_inputs_of_a_session_end_in_its_state(self):
+        place = lambda name: os.path.join(self.folder, name)  # noqa: E731
+        said = call(["--scene", SCENE, "--script", "package://vibe_core/trainees/demo/grabs.yaml", "--duration", "1.5", "--seed", "7",
+                     "--quiet", "--inputs", place("inputs.csv"), "--contacts", place("contacts.csv")])
+        inputs = numpy.loadtxt(place("inputs.csv"), delimiter=",", skiprows=1)
+        self.assertEqual((len(inputs), inputs[0][0]), (90, 0))
+        write_commands(place("commands.bag"), SCENE, 1 / 60, inputs[:, 1:8], inputs[:, 8:].astype(numpy.uint8), 7)
+        self.assertEqual("state hash: " + record(self.folder), said.strip())
+        inputs[40:, 2] += 1e-6  # and another input does not
+        os.remove(place("session.bag"))
+        write_commands(place("commands.bag"), SCENE, 1 / 60, inputs[:, 1:8], inputs[:, 8:].astype(numpy.uint8), 7)
+        self.assertNotEqual("state hash: " + record(self.folder), said.strip())
 
 
 if __name__ == "__main__":

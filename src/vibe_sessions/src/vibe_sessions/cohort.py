@@ -2,7 +2,6 @@
 import argparse
 import collections
 import os
-import signal
 import sys
 
 from vibe_sessions.cohort_local import run_local
@@ -11,7 +10,7 @@ from vibe_sessions.cohort_plan import Plan
 from vibe_sessions.cohort_progress import Progress
 from vibe_sessions.cohort_session import perform as perform_session
 from vibe_sessions.cohort_store import Store
-from vibe_sessions.headless import SessionError
+from vibe_sessions.headless import status_of
 
 
 def plan_for(options, store):
@@ -85,24 +84,12 @@ def plot(options):
     return 0
 
 
-def _interrupt(*_):
-    raise KeyboardInterrupt
-
-
 def main(arguments):
     return perform(parse(arguments))
 
 
 def perform(options):
     """The exit status."""
-    signal.signal(signal.SIGTERM, _interrupt)
-    try:
-        return plot(options) if options.plot else run(options)
-    except SessionError as error:
-        sys.stderr.write(f"cohort: {error}\n")
-        return 2
-    except KeyboardInterrupt:
-        where = f" --scheduler {options.scheduler}" if options.scheduler else ""
-        sys.stderr.write("\ncohort: interrupted; what is done is kept, and "
-                         f"`scripts/cohort --output {options.output}{where}` goes on.\n")
-        return 130
+    where = f" --scheduler {options.scheduler}" if options.scheduler else ""
+    return status_of("cohort", lambda: plot(options) if options.plot else run(options),
+                     f"what is done is kept, and `scripts/cohort --output {options.output}{where}` goes on")

@@ -4,6 +4,7 @@ import os
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 
 POLL = 0.2  # between looks whether the session is still wanted [s]
@@ -19,6 +20,21 @@ class Killed(SessionError):
 
 class Stopped(Exception):
     """The session was no longer wanted."""
+
+
+def status_of(name, work, resume):
+    """What a program ends with: its errors are one sentence. `resume` says what to do after an interruption."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        return work()
+    except SessionError as error:
+        sentence, status = str(error), 2
+    except OSError as error:
+        sentence, status = f"'{error.filename or ''}' cannot be read or written: {error.strerror}.", 1
+    except KeyboardInterrupt:
+        sentence, status = f"interrupted; {resume}.", 130
+    sys.stderr.write(("\n" if status == 130 else "") + f"{name}: {sentence}\n")
+    return status
 
 
 def find_in_package(package, name, kind="lib"):

@@ -6,7 +6,7 @@ import sys
 import yaml
 
 from vibe_sessions.cohort_options import _Parser
-from vibe_sessions.headless import SessionError
+from vibe_sessions.headless import SessionError, status_of
 from vibe_sessions.imports.map_file import read_map
 from vibe_sessions.imports.motion_file import open_motion
 from vibe_sessions.imports.resampling import inputs_of
@@ -28,22 +28,15 @@ def parse(words):
     return parser.parse_args(words)
 
 
-def make_folder(folder):
-    try:
-        os.makedirs(folder, exist_ok=True)
-        if os.listdir(folder):
-            raise SessionError(f"'{folder}' is not empty; name another folder.")
-    except OSError as error:
-        raise SessionError(f"Cannot write into '{folder}': {error.strerror}.") from None
-
-
 def perform(options):
     made = read_map(options.map)
     motion = open_motion(options.motion, made.time)
     notes = list(motion.notes)
     period, joints, buttons = inputs_of(motion, made, notes)
     notes += motion.unused()
-    make_folder(options.output)
+    os.makedirs(options.output, exist_ok=True)
+    if os.listdir(options.output):
+        raise SessionError(f"'{options.output}' is not empty; name another folder.")
     place = lambda name: os.path.join(options.output, name)  # noqa: E731
     print("".join(f"import: {note}\n" for note in notes), end="", file=sys.stderr, flush=True)
     with open_whole(place("import.txt")) as file:
@@ -59,14 +52,5 @@ def perform(options):
 
 
 def main(words):
-    try:
-        return perform(parse(words))
-    except SessionError as error:
-        sys.stderr.write(f"import: {error}\n")
-        return 2
-    except OSError as error:
-        sys.stderr.write(f"import: '{error.filename or ''}' cannot be written: {error.strerror}.\n")
-        return 1
-    except KeyboardInterrupt:
-        sys.stderr.write("\nimport: interrupted; remove the folder and call again.\n")
-        return 130
+    options = parse(words)
+    return status_of("import", lambda: perform(options), f"remove '{options.output}' and call again")

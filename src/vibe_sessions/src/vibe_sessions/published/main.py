@@ -4,14 +4,12 @@ import functools
 import hashlib
 import os
 import resource
-import signal
-import sys
 import time
 
-from vibe_sessions.cohort import _interrupt, perform_all, report
+from vibe_sessions.cohort import perform_all, report
 from vibe_sessions.cohort_options import _number, _Parser
 from vibe_sessions.cohort_store import Store
-from vibe_sessions.headless import SessionError
+from vibe_sessions.headless import status_of
 from vibe_sessions.published.baselines import COLUMNS, baselines
 from vibe_sessions.published.card import LICENCE, card
 from vibe_sessions.published.member import make_member
@@ -102,15 +100,4 @@ def run(options):
 
 def main(words):
     options = parse(words)
-    signal.signal(signal.SIGTERM, _interrupt)
-    try:
-        return run(options)
-    except SessionError as error:
-        sys.stderr.write(f"publish_set: {error}\n")
-        return 2
-    except OSError as error:
-        sys.stderr.write(f"publish_set: '{error.filename or options.output}' cannot be written: {error.strerror}.\n")
-        return 1
-    except KeyboardInterrupt:
-        sys.stderr.write("\npublish_set: interrupted; what is done is kept, and the same call goes on.\n")
-        return 130
+    return status_of("publish_set", lambda: run(options), "what is done is kept, and the same call goes on")
