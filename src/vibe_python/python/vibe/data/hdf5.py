@@ -15,6 +15,17 @@ from . import files
 PLACE = "apt-get install python3-h5py, or pip install h5py"
 
 
+def opened(file, group="/"):
+    """What Episodes has written, with a group that it needs, to be read."""
+    h5py = files.needed("h5py", PLACE)
+    try:
+        found = h5py.File(file, "r")
+        found[group], found.attrs["begun"]
+        return found
+    except (OSError, KeyError) as error:
+        raise vibe.Error(f"{file} holds no such episodes as this version writes ({error}); name another file.") from None
+
+
 class Episodes:
     """The episodes of `file`, which is new or was begun with the same arguments.
 
@@ -50,16 +61,13 @@ class Episodes:
         """For subclasses: adds to a file what is of all episodes, whose attributes are given."""
 
     def _take_up(self):
-        try:
-            with self._h5py.File(self.file, "r") as found:
-                there = json.loads(found.attrs["begun"])
-                while self._name.format(len(self._links)) in found:
-                    name = self._name.format(len(self._links))
-                    link = found.get(name, getlink=True)
-                    self._links.append((link.filename, link.path) if isinstance(link, self._h5py.ExternalLink) else None)
-                    self._said.append(dict(found[name].attrs))
-        except (OSError, KeyError, ValueError) as error:
-            raise vibe.Error(f"{self.file} holds no episodes that this version could go on with ({error}); name another file.") from None
+        with opened(self.file) as found:
+            there = json.loads(found.attrs["begun"])
+            while self._name.format(len(self._links)) in found:
+                name = self._name.format(len(self._links))
+                link = found.get(name, getlink=True)
+                self._links.append((link.filename, link.path) if isinstance(link, self._h5py.ExternalLink) else None)
+                self._said.append(dict(found[name].attrs))
         files.compare(self.file, there, self.begun)
 
     def add(self, content, attributes):

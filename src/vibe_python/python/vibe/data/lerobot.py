@@ -4,6 +4,7 @@
         writer.add({"observation.state": states, "action": actions}, "Reach the mark", {"observation.images.endoscope": frames})
 """
 
+import copy
 import json
 import pathlib
 
@@ -65,7 +66,7 @@ class Writer:
         if info:
             fixed = ("codebase_version", "fps", "robot_type", "features")
             files.compare(self.folder, *({**{name: one[name] for name in fixed}, **one["vibe"]} for one in (info, self.info)))
-            self._take_up(info)
+            self._take_up(info["total_episodes"])
         else:
             self._write_json("info", self.info)
         sensors = ", ".join(f"`{name}`" for name in self.info["features"] if name.startswith("observation"))
@@ -92,7 +93,6 @@ class Writer:
         further   numbers and texts that the table of episodes has besides, the same of each episode
         """
         features, number, videos = self.info["features"], self.episodes, dict(videos or {})
-        tasks = self._tasks if task in self._tasks else [*self._tasks, task]
         files.same_names("videos", videos, self._videos)
         files.same_names("columns", columns, [name for name in features if name not in INDICES and name not in self._videos])
         columns = {name: _column(name, columns[name], feature) for name, feature in features.items() if name in columns}
@@ -102,7 +102,7 @@ class Writer:
             raise vibe.Error(f"The columns have the rows {counts}; give as many of each, at least one.")
         columns.update(timestamp=(np.arange(count) / self.info["fps"]).astype(np.float32), frame_index=np.arange(count),
                        episode_index=np.full(count, number), index=self.info["total_frames"] + np.arange(count),
-                       task_index=np.full(count, tasks.index(task)))
+                       task_index=np.full(count, [*self._tasks, task].index(task)))
         stats = {name: statistics.of_rows(value.reshape(count, *features[name]["shape"])) for name, value in columns.items()}
         for name, frames in videos.items():
             samples, shape = [], features[name]["shape"]
@@ -110,56 +110,53 @@ class Writer:
             stats[name] = statistics.of_pictures(samples)
         files.write(self._file("data_path", number), self._bytes({name: _array(self._arrow, value) for name, value in columns.items()}))
         row = {"episode_index": number, "tasks": [task], "length": count, "split": split, "success": bool(success), **further}
-        self._finish(row, stats, tasks)
+        if self.info["codebase_version"] == "v3.0":
+            files.write(self._file("episodes", number), self._bytes(self._episode(row, stats)))
+        after = copy.copy(self)
+        after._count(row, stats)
+        after._describe()
+        vars(self).update(vars(after))  # it does not count before info.json is there
 
     # --- what is said of the episodes
 
-    def _finish(self, row, stats, tasks):
-        """The metadata with one more episode; only when info.json is there does the writer itself know of it."""
-        number, first = row["episode_index"], self.info["total_frames"]
-        info = {**self.info, "total_episodes": number + 1, "total_frames": first + row["length"], "total_tasks": len(tasks),
-                "splits": _extended(self.info["splits"], row["split"], number)}
-        total = {name: statistics.together(self._stats[name], stats[name]) if self._stats else stats[name] for name in stats}
-        lines = {"episodes": self._lines["episodes"] + _line(row),
-                 "episodes_stats": self._lines["episodes_stats"] + _line({"episode_index": number, "stats": stats})}
-        if info["codebase_version"] == "v2.1":
-            info.update(total_videos=(number + 1) * len(self._videos), total_chunks=1 + number // CHUNK)
-        else:
-            files.write(self._file("episodes", number), self._bytes(self._episode(row, stats, first)))
-        self._describe(info, lines, total, tasks)
-        self.info, self._lines, self._stats, self._tasks = info, lines, total, tasks
-        self._rows.append(row)
+    def _count(self, row, stats):
+        """One more episode in all that is said of them."""
+        number, known = self.episodes, self._stats
+        self._rows, self._tasks = [*self._rows, row], list(dict.fromkeys([*self._tasks, *row["tasks"]]))
+        self._stats = {name: statistics.together(known[name], stats[name]) if known else stats[name] for name in stats}
+        self._lines = {"episodes": self._lines["episodes"] + _line(row),
+                       "episodes_stats": self._lines["episodes_stats"] + _line({"episode_index": number, "stats": stats})}
+        self.info = {**self.info, "total_episodes": number + 1, "total_frames": self.info["total_frames"] + row["length"],
+                     "total_tasks": len(self._tasks), "splits": _extended(self.info["splits"], row["split"], number)}
+        if self.info["codebase_version"] == "v2.1":
+            self.info.update(total_videos=(number + 1) * len(self._videos), total_chunks=1 + number // CHUNK)
 
-    def _describe(self, info, lines, stats, tasks):
-        """Writes what is of all episodes together."""
-        if info["codebase_version"] == "v2.1":
-            lines = {**lines, "tasks": b"".join(_line({"task_index": k, "task": task}) for k, task in enumerate(tasks))}
-            for name, text in lines.items():
+    def _describe(self):
+        """Writes what is of all episodes together, info.json last."""
+        if self.info["codebase_version"] == "v2.1":
+            tasks = b"".join(_line({"task_index": k, "task": task}) for k, task in enumerate(self._tasks))
+            for name, text in {**self._lines, "tasks": tasks}.items():
                 files.write(self.folder / f"meta/{name}.jsonl", text)
         else:
-            files.write(self.folder / "meta/tasks.parquet", self._bytes({"task_index": list(range(len(tasks))), "task": tasks}, TASKS))
-        self._write_json("stats", stats)
-        self._write_json("info", info)
+            tasks = {"task_index": list(range(len(self._tasks))), "task": self._tasks}
+            files.write(self.folder / "meta/tasks.parquet", self._bytes(tasks, TASKS))
+        self._write_json("stats", self._stats)
+        self._write_json("info", self.info)
 
-    def _take_up(self, info):
-        """The state after the last episode that info.json counts; what is left of another one is removed."""
-        count = info["total_episodes"]
-        for number, (row, stats) in enumerate(map(self._episode_of, range(count)) if info["codebase_version"] == "v3.0" else self._lines_of(count)):
-            self._rows.append(row)
-            self._lines["episodes"] += _line(row)
-            self._lines["episodes_stats"] += _line({"episode_index": number, "stats": stats})
-            self._tasks += [task for task in row["tasks"] if task not in self._tasks]
-            self._stats = {name: statistics.together(self._stats[name], stats[name]) if self._stats else stats[name] for name in stats}
-        self.info = info
+    def _take_up(self, count):
+        """The state after this many episodes; what is left of another one is removed."""
+        for row, stats in map(self._episode_of, range(count)) if self.info["codebase_version"] == "v3.0" else self._lines_of(count):
+            self._count(row, stats)
         begun = [self._file("data_path", count), self._file("episodes", count), *(self._file("video_path", count, name) for name in self._videos)]
         for path in (*begun, *(path for path in self.folder.glob("meta/*.*") if count == 0 and path.name != "info.json")):
             path.unlink(missing_ok=True)
         if count:
-            self._describe(info, self._lines, self._stats, self._tasks)
+            self._describe()
 
-    def _episode(self, row, stats, first):
+    def _episode(self, row, stats):
         """As the table of v3.0 has it: where its files are, and its statistics, one column each."""
         chunk, file = divmod(row["episode_index"], CHUNK)
+        first = self.info["total_frames"]
         found = {**row, "dataset_from_index": first, "dataset_to_index": first + row["length"]}
         for where in ("data", "meta/episodes", *(f"videos/{name}" for name in self._videos)):
             found.update({f"{where}/chunk_index": chunk, f"{where}/file_index": file})

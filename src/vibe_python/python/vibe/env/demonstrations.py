@@ -60,7 +60,7 @@ def episode(environment, policy, seed):
 
 def environment_of(file):
     """The environment that the demonstrations of a robomimic file are of, from the file alone."""
-    with _opened(file) as found:
+    with hdf5.opened(file, "data") as found:
         begun = json.loads(found.attrs["begun"])
     made, version = begun["environment"], begun["vibe"]
     if version != vibe.__version__:
@@ -74,7 +74,7 @@ def replay(file):
     """Makes the environment of a robomimic file, performs the actions of each demonstration and compares observations,
     rewards, dones and the state in the end, to the bit. Returns their number; raises vibe.Error at the first difference."""
     environment = environment_of(file)
-    with _opened(file) as found:
+    with hdf5.opened(file, "data") as found:
         for name, demo in found["data"].items():
             actions = itertools.chain(demo["actions"][:], itertools.repeat(0 * demo["actions"][0]))
             rows, _ = episode(environment, types.SimpleNamespace(reset=lambda: None, action=lambda _, rest=actions: next(rest)), int(demo.attrs["seed"]))
@@ -83,16 +83,6 @@ def replay(file):
                 raise vibe.Error(f"{file}: {name} has other {differ[0] if differ else 'states'} when its actions are performed again; "
                                  "was the task or the file changed?")
         return len(found["data"])
-
-
-def _opened(file):
-    h5py = files.needed("h5py", hdf5.PLACE)
-    try:
-        found = h5py.File(file, "r")
-        found["data"], found.attrs["begun"]
-        return found
-    except (OSError, KeyError) as error:
-        raise vibe.Error(f"{file} holds no demonstrations of this version for robomimic ({error}); name one that record() has written.") from None
 
 
 # --- what a set is of
