@@ -1,8 +1,4 @@
-"""LeRobot data sets, codebase versions v2.1 and v3.0: tables as Parquet, pictures as video, metadata beside them.
-
-    with lerobot.Writer("reach", version="v3.0", fps=20, features=features) as writer:
-        writer.add({"observation.state": states, "action": actions}, "Reach the mark", {"observation.images.endoscope": frames})
-"""
+"""LeRobot data sets, codebase versions v2.1 and v3.0: tables as Parquet, pictures as video, metadata beside them."""
 
 import copy
 import json
@@ -26,11 +22,8 @@ EPISODES = "meta/episodes/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
 TASKS = {"pandas": json.dumps({"index_columns": ["task"], "column_indexes": [], "columns": [
     {"name": name, "field_name": name, "pandas_type": kind, "numpy_type": numpy, "metadata": None}
     for name, kind, numpy in (("task_index", "int64", "int64"), ("task", "unicode", "object"))]})}  # their index is the task
-CARD = """# {robot_type}
-
-* Dataset description, collection procedure: {about}
-* Robot: `{robot_type}`. `info.json` names what its state and actions hold; SI units.
-* Sensors: {sensors}.
+CARD = """* Dataset description, collection procedure: {about}
+* Robot: `{robot_type}`. `info.json` names what its state and actions hold; SI units. Sensors: {sensors}.
 * Synchronization: row k of an episode is the moment k / {fps} s after its first row, and frame k of its videos is of that moment.
 """
 

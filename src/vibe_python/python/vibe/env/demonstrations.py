@@ -62,10 +62,9 @@ def environment_of(file):
     """The environment that the demonstrations of a robomimic file are of, from the file alone."""
     with hdf5.opened(file, "data") as found:
         begun = json.loads(found.attrs["begun"])
-    made, version = begun["environment"], begun["vibe"]
-    if version != vibe.__version__:
-        raise vibe.Error(f"{file} was made by version {version}, and this is {vibe.__version__}, whose episodes may differ; install that version.")
-    environment = Environment(_task(made), **made["env_kwargs"])
+    if begun["vibe"] != vibe.__version__:
+        raise vibe.Error(f"{file} was made by version {begun['vibe']}, and this is {vibe.__version__}, whose episodes may differ; install that one.")
+    environment = Environment(begun["task"]["class"], **begun["environment"]["env_kwargs"])
     files.compare(file, begun["task"], _said(environment.task))
     return environment
 
@@ -106,11 +105,6 @@ def _begun(environment, policy, seed):
             "shapes": {name: [str(space.dtype), *space.shape] for name, space in spaces.items()}}
 
 
-def _task(made):
-    """MODULE:NAME, which imports the module first."""
-    return made["env_name"].replace("vibe/", "").rsplit("-", 1)[0]
-
-
 def _said(task):
     """The task itself: two of one name may differ in their source."""
     kinds = [kind for kind in type(task).__mro__ if issubclass(kind, Task) and kind is not Task]
@@ -118,7 +112,7 @@ def _said(task):
         source = hashlib.sha256("".join(map(inspect.getsource, kinds)).encode()).hexdigest()[:16]
     except (OSError, TypeError):  # typed in
         source = None
-    return {"goal": task.summary(), "source": source}
+    return {"class": f"{type(task).__module__}:{task.name}", "goal": task.summary(), "source": source}
 
 
 def _hash(environment):
@@ -136,9 +130,6 @@ def _columns(rows):
 
 
 class _Robomimic(hdf5.Episodes):
-    def __init__(self, environment, file, begun):
-        super().__init__(file, "data/demo_{}", begun)
-
     def describe(self, out, said):
         names = np.array([f"demo_{k}" for k in range(len(said))], "S")
         valid = np.arange(len(said)) % VALID == 1
@@ -169,7 +160,7 @@ class _Minari(hdf5.Episodes):
         """After the file: it never counts an episode that is not there."""
         made = self.begun["environment"]
         spec = {"id": made["env_name"].split(":")[1], "entry_point": "vibe.env:Environment", "additional_wrappers": [],
-                "kwargs": {"task": _task(made), **made["env_kwargs"]}}
+                "kwargs": {"task": self.begun["task"]["class"], **made["env_kwargs"]}}
         observed = {name: _box(space) for name, space in self._environment.observation_space.items()}
         files.write(os.path.join(self._folder, "data", "metadata.json"), json.dumps({
             "dataset_id": self._identifier, "data_format": "hdf5", "minari_version": "0.5.4", "jpeg_encoding": False,
@@ -221,4 +212,4 @@ def _vector(names):
     return {"dtype": "float32", "shape": [len(names)], "names": names}
 
 
-FORMATS = {"robomimic": _Robomimic, "minari": _Minari, "lerobot": _LeRobot}
+FORMATS = {"robomimic": lambda _, file, begun: _Robomimic(file, "data/demo_{}", begun), "minari": _Minari, "lerobot": _LeRobot}
