@@ -26,8 +26,8 @@ from vibe_sessions.export.source import Source
 def tree(folder):
     """Bytes by path."""
     found = {}
-    for path in glob.glob(os.path.join(glob.escape(folder), "**", "*"), recursive=True):
-        if os.path.isfile(path):
+    for place, _, names in os.walk(folder):
+        for path in [os.path.join(place, name) for name in names]:
             with open(path, "rb") as file:
                 found[os.path.relpath(path, folder)] = file.read()
     return found
@@ -242,6 +242,7 @@ class InterruptedTest(ExportTest):
             if not complete:
                 self.assertRegex(complained, "^export: No space left on device .*make room there.*same command goes on.*\n$")
                 self.check_left(wanted)
+                self.assertFalse([path for path in tree(self.output) if "/." in path])  # the room is free again
                 self.exports(to=self.FORMATS)
             self.assertEqual(self.check_left(wanted), wanted)
         self.assertGreater(number, 30)

@@ -60,9 +60,15 @@ class Folder:
                 self.path))  # fmt: skip
         return os.path.lexists(self.path)
 
-    def begin(self):
-        shutil.rmtree(self.part, ignore_errors=True)  # of an export that was interrupted
-        os.makedirs(self.part)
+    @contextlib.contextmanager
+    def begun(self):
+        """What was not finished does not take the room of the next call; after a kill it is still there."""
+        shutil.rmtree(self.part, ignore_errors=True)
+        try:
+            os.makedirs(self.part)
+            yield self.part
+        finally:
+            shutil.rmtree(self.part, ignore_errors=True)
 
     def end(self, what):
         with open(os.path.join(self.part, ABOUT), "w", encoding="utf-8") as file:
@@ -103,8 +109,7 @@ def write(arguments, path, folders):
     with Source(path, arguments.topics, arguments.begin, arguments.end, arguments.rate) as source, contextlib.ExitStack() as files:
         writers = {}
         for name, folder in folders.items():
-            folder.begin()
-            writers[name] = WRITERS[name](folder.part, source, files)
+            writers[name] = WRITERS[name](files.enter_context(folder.begun()), source, files)
         for message in source.messages(set().union(*(writer.connections for writer in writers.values()))):
             for writer in writers.values():
                 if message.number in writer.connections:
@@ -140,17 +145,17 @@ def export_set(arguments, bags):
     folder = Folder(arguments.output, "lerobot", arguments, "lerobot_version", "images", recordings=recordings)
     if folder.is_complete():
         return
-    folder.begin()
-    made, rows = lerobot.DataSet(folder.part, arguments), ["session,episodes so far"]
-    for name, bag in bags.items():
-        with Source(bag) as source:
-            fill = source.is_compact() and bool(lerobot.lacks(source))
-        with whole(bag, os.path.join(arguments.output, ".filling"), fill) as path:
-            with Source(path, None, arguments.begin, arguments.end) as source:
-                rows.append("{},{}".format(name, made.add(source)))
-    with open(os.path.join(folder.part, "sessions.csv"), "w", encoding="utf-8") as file:
-        file.write("\n".join(rows) + "\n")
-    folder.end(rows[-1].rsplit(",", 1)[1] + " episodes")
+    with folder.begun():
+        made, rows = lerobot.DataSet(folder.part, arguments), ["session,episodes so far"]
+        for name, bag in bags.items():
+            with Source(bag) as source:
+                fill = source.is_compact() and bool(lerobot.lacks(source))
+            with whole(bag, os.path.join(arguments.output, ".filling"), fill) as path:
+                with Source(path, None, arguments.begin, arguments.end) as source:
+                    rows.append("{},{}".format(name, made.add(source)))
+        with open(os.path.join(folder.part, "sessions.csv"), "w", encoding="utf-8") as file:
+            file.write("\n".join(rows) + "\n")
+        folder.end(rows[-1].rsplit(",", 1)[1] + " episodes")
 
 
 def export(arguments, fail):
