@@ -125,6 +125,25 @@ class ImportTest(unittest.TestCase):
                 np.testing.assert_allclose(now[2:5], expected[2:5], atol=1e-4)  # [m]
                 np.testing.assert_allclose(now[5:], expected[5:], atol=1e-3 * SPACING)
 
+    def test_volume_and_area_are_those_of_another_program(self):
+        if not importlib.util.find_spec("SimpleITK"):
+            self.skipTest("SimpleITK is not installed (PyPI, 2.4.1)")
+        import SimpleITK
+
+        for spacing in (1.0, 2.0, (0.8, 0.8, 3.0), 5.0):
+            with self.subTest(spacing=spacing):
+                label_maps.save(self.path, *label_maps.label_map(spacing, turn=(0.1, -0.2, 0.3)))
+                statistics = SimpleITK.LabelShapeStatisticsImageFilter()
+                statistics.ComputePerimeterOn()
+                statistics.Execute(SimpleITK.ReadImage(self.path, SimpleITK.sitkUInt8))
+                found = importing.bring_in(self.path, STOMACH, (OESOPHAGUS, DUODENUM), 500, 0)
+                x, t = found["rest"], found["organ"].triangles
+                self.assertLess(abs(1e9 * mesh.enclosed_volume(x, t) / statistics.GetPhysicalSize(STOMACH) - 1), 0.002)
+                if np.ndim(spacing) == 0:  # its estimate is far off where voxels are flat
+                    self.assertLess(abs(1e6 * mesh.area(x, t) / statistics.GetPerimeter(STOMACH) - 1), 0.06)
+                place = np.array(statistics.GetCentroid(STOMACH)) * 1e-3  # LPS
+                np.testing.assert_allclose(mesh.centre(x, t), [-place[1], place[0], place[2]], atol=2e-4)
+
     # --- doubted
 
     def test_lost_spacing_and_axes(self):

@@ -13,6 +13,7 @@
 #include "geometry/procedural_stomach.hpp"
 #include "geometry/regions.hpp"
 #include "geometry/remesh.hpp"
+#include "geometry/stomach_knots.hpp"
 #include "geometry/surface_check.hpp"
 #include "geometry/surface_operators.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
@@ -73,7 +74,8 @@ void markDome(Organ& organ, const TubeEnd& tube, End end) {
 
 Organ buildStomach(const Scene& scene, const Progress& progress) {
   const double volume = scene.geometry.volume * scene.geometry.scale * scene.geometry.scale * scene.geometry.scale;
-  const StomachShape shape = makeStomachShape(volume, scene.geometry.shape);
+  const StomachShape shape = makeStomachShape(
+      volume, variedKnots(scene.geometry.shape, scene.geometry.fundus_width, scene.geometry.antrum_angle));
   Organ organ;
   organ.surface = remesh(shape.surface, scene.geometry.particles, shape.project, progress);
   organ.landmarks = shape.landmarks;

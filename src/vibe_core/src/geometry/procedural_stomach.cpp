@@ -104,12 +104,11 @@ void scale(StomachShape& shape, double factor) {
 
 }  // namespace
 
-StomachShape makeStomachShape(double volume, const std::string& kind) {
+StomachShape makeStomachShape(double volume, const StomachKnots& given) {
   if (!(volume >= 0.15e-3 && volume <= 4e-3)) {
     throw Error("geometry.volume, times the cube of geometry.scale, is " + std::to_string(volume * 1e3) +
                 " litres; a stomach can be made with 0.15 to 4 litres (0.15e-3 to 4e-3 m^3)");
   }
-  const StomachKnots& given = stomachKnots(kind);
   const double tube_radius = kTubeRadius * math::cbrt(given.volume / volume);
   const Row knots = bodyKnots(given, tube_radius);
   const Row body = sample(knots), gullet = sample(gulletKnots(given, tube_radius));

@@ -1,8 +1,8 @@
 #pragma once
 #include <Eigen/Core>
-#include <string>
 
 #include "geometry/remesh.hpp"
+#include "geometry/stomach_knots.hpp"
 #include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 
@@ -31,8 +31,8 @@ struct StomachShape {
 /// imaging (0.36 to 1.10 L, length 184 to 226 mm, largest diameter 65 to 102 mm). The greater curvature is more than
 /// three times as long as the lesser (Gray's Anatomy 1918: four to five times).
 /// @param volume 0.15e-3 to 4e-3 [m^3]
-/// @param kind   see stomachKnots()
-/// @throws Error outside that range, or for another kind.
-StomachShape makeStomachShape(double volume, const std::string& kind = "sthenic");
+/// @param knots  see stomachKnots(), variedKnots()
+/// @throws Error outside that range.
+StomachShape makeStomachShape(double volume, const StomachKnots& knots);
 
 }  // namespace vibe

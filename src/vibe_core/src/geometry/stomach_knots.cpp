@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "arithmetic/elementary.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe {
@@ -60,6 +61,16 @@ const StomachKnots kSteerHorn{0.75e-3,
                               {-9, 8, 30, 0},
                               {-13, -2, 66, 0}};
 
+constexpr int kFundusKnots = 4;
+
+/// About the incisura, in the frontal plane.
+void turn(Knot& knot, const Knot& about, double angle) {
+  const double y = knot.y - about.y, z = knot.z - about.z;
+  const double c = math::cos(angle), s = math::sin(angle);
+  knot.y = about.y + c * y + s * z;
+  knot.z = about.z - s * y + c * z;
+}
+
 }  // namespace
 
 const std::vector<std::string>& stomachShapes() {
@@ -72,6 +83,21 @@ const StomachKnots& stomachKnots(const std::string& shape) {
   if (shape == "j") return kJ;
   if (shape == "steer_horn") return kSteerHorn;
   throw Error("geometry.shape '" + shape + "' is unknown; choose sthenic, j or steer_horn");
+}
+
+StomachKnots variedKnots(const std::string& shape, double fundus_width, double antrum_angle) {
+  StomachKnots knots = stomachKnots(shape);
+  for (int k = 0; k < kFundusKnots; ++k)
+    knots.body[k].radius *= 1 + (fundus_width - 1) * (kFundusKnots - k) / kFundusKnots;
+  if (antrum_angle == 0) return knots;  // the same bits as without
+  const Knot& incisura = knots.incisura_side;
+  const auto distance = [&](const Knot& k) { return math::hypot(k.y - incisura.y, k.z - incisura.z); };
+  const auto nearest = std::min_element(knots.body.begin(), knots.body.end(),
+                                        [&](const Knot& a, const Knot& b) { return distance(a) < distance(b); });
+  turn(*nearest, incisura, antrum_angle / 2);  // between the body, which stays, and the antrum
+  std::for_each(nearest + 1, knots.body.end(), [&](Knot& knot) { turn(knot, incisura, antrum_angle); });
+  for (Knot* knot : {&knots.pylorus, &knots.duodenum}) turn(*knot, incisura, antrum_angle);
+  return knots;
 }
 
 }  // namespace vibe

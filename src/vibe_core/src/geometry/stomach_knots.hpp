@@ -29,6 +29,12 @@ struct StomachKnots {
 /// @throws Error for another word
 const StomachKnots& stomachKnots(const std::string& shape);
 
+/// These knots with another fundus and antrum.
+/// @param fundus_width  factor on the radius at the apex, falling evenly to 1 at the fifth knot
+/// @param antrum_angle  by which what follows the incisura turns about it in the frontal plane, upwards [rad]
+/// @throws Error for another word
+StomachKnots variedKnots(const std::string& shape, double fundus_width, double antrum_angle);
+
 /// The words of geometry.shape.
 const std::vector<std::string>& stomachShapes();
 

@@ -132,6 +132,50 @@ TEST(OrganShapes, DifferAsTheirTypesDo) {
   EXPECT_LT(findAxis(horn).length(), findAxis(usual).length());
 }
 
+// The corners of the ranges of fundus and antrum, and the middle.
+TEST(OrganShapes, AnyFundusAndAntrumMakesAnOrgan) {
+  for (const std::string& word : stomachShapes())
+    for (const double width : {0.9, 1.0, 1.25})
+      for (const double degrees : {-25.0, 0.0, 25.0}) {
+        SCOPED_TRACE(word + " " + std::to_string(width) + " " + std::to_string(degrees));
+        Scene scene;
+        scene.geometry.particles = 1500;
+        scene.geometry.shape = word;
+        scene.geometry.fundus_width = width;
+        scene.geometry.antrum_angle = degrees * M_PI / 180;
+        const Organ organ = buildOrgan(scene);
+        EXPECT_NO_THROW(checkSurface(organ.surface, word));
+        EXPECT_NEAR(enclosedVolume(organ.surface), scene.geometry.volume, 1e-9 * scene.geometry.volume);
+        for (int r = 0; r < kRegionCount; ++r)
+          EXPECT_GT(std::count(organ.region.begin(), organ.region.end(), static_cast<Region>(r)), 30) << r;
+        const TriangleTree tree(organ.surface);
+        for (double s = 0; s <= 0.1; s += 2e-3)
+          EXPECT_GT(tree.closest(organ.entry + s * organ.entry_axis).distance, 7e-3) << s;
+      }
+}
+
+TEST(OrganShapes, FundusAndAntrumAreThoseOfTheScene) {
+  Scene scene;
+  scene.geometry.particles = 1500;
+  const Organ usual = buildOrgan(scene);
+  scene.geometry.antrum_angle = 20 * M_PI / 180;
+  const Landmarks up = buildOrgan(scene).landmarks;
+  const auto direction = [](const Landmarks& l) {  // of the antrum, in the frontal plane
+    return std::atan2(l.pylorus.z() - l.incisura.z(), l.incisura.y() - l.pylorus.y());
+  };
+  EXPECT_NEAR(direction(up) - direction(usual.landmarks), scene.geometry.antrum_angle, 0.03);
+  scene.geometry.antrum_angle = 0;
+  scene.geometry.fundus_width = 1.25;
+  const Organ wide = buildOrgan(scene);
+  const auto fundus = [](const Organ& organ) {
+    Eigen::AlignedBox3d box;
+    for (std::size_t v = 0; v < organ.region.size(); ++v)
+      if (organ.region[v] == Region::Fundus) box.extend(organ.surface.vertices[v]);
+    return box.sizes().x();
+  };
+  EXPECT_NEAR(fundus(wide) / fundus(usual), 1.15, 0.06);  // the whole is smaller for the same volume
+}
+
 TEST(OrganShapes, ScaleMultipliesLengthsButNotTubesAndWall) {
   const Organ &usual = organOf("stomach"), &large = organOf("stomach_large");
   const auto tube = [](const Organ& organ) {

@@ -21,6 +21,8 @@ struct GeometryScene {
 
   // kind: stomach (procedural)
   std::string shape = "sthenic";  ///< sthenic, j, steer_horn; see stomachKnots()
+  double fundus_width = 1;        ///< factor on the width of the fundus, 1 in the body (ratio)
+  double antrum_angle = 0;        ///< by which the antrum turns upwards about the incisura [rad]
   double volume = 0.9e-3;         ///< enclosed volume without stress and before `scale` [m^3]
 
   // kind: sphere (tests and benchmarks)

@@ -12,6 +12,7 @@ from . import landmarks, report
 from .label_map import LabelMap, need
 from .label_surface import Organ
 from .mesh import model_of, write_ply
+from .painting import REGIONS
 from .rest_shape import unload
 
 
@@ -91,7 +92,7 @@ def _thickness(organ, geometry):
     if wall.mean() < 2 * organ.labels.spacing.max():
         organ.doubts.append(f"The wall is {1e3 * wall.mean():.1f} mm thick in the image, fewer than two voxels, so published thicknesses were taken.")
         return {}
-    return {name: float(np.clip(wall[region == k].mean(), 1e-4, 0.02)) for k, name in enumerate(report.REGIONS) if (region == k).any()}
+    return {name: float(np.clip(wall[region == k].mean(), 1e-4, 0.02)) for k, name in enumerate(REGIONS) if (region == k).any()}
 
 
 def write_scene(found, folder, particles):

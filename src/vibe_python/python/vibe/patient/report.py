@@ -4,12 +4,10 @@ import os
 
 import numpy as np
 
-from .label_map import need
 from .landmarks import NAMES
 from .mesh import area, centre, enclosed_volume
+from .painting import COLOURS, REGIONS, paint, plotting
 
-REGIONS = ("cardia", "fundus", "body", "antrum", "pylorus")  # by number
-_COLOURS = ("#c44e52", "#dd8452", "#eeb69c", "#7aa6c2", "#4c72b0")
 _SIDES = (("from the front", 0), ("from the patient's left", 90))  # azimuth of the eye about z, 0: in front
 _PAGE = """# Organ of {file}, label {label}
 
@@ -73,35 +71,21 @@ def _rest(found):
 
 
 def _draw(found, model, file):
-    need("matplotlib", "python3-matplotlib").use("Agg")
-    from matplotlib import pyplot
-    from matplotlib.colors import to_rgb
-
-    x, triangles = 1e3 * model.rest_positions, model.triangles
-    corner = x[triangles]
-    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    colours = np.array([to_rgb(c) for c in _COLOURS])[model.region[triangles].max(axis=1)]
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-
+    pyplot = plotting()
     figure = pyplot.figure(figsize=(10, 5.5))
-    marks = 1e3 * (np.array([found["landmarks"][n] for n in NAMES]) + centre(model.rest_positions, triangles) - centre(found["rest"], found["organ"].triangles))
+    triangles = found["organ"].triangles
+    marks = 1e3 * (np.array([found["landmarks"][n] for n in NAMES]) + centre(model.rest_positions, model.triangles) - centre(found["rest"], triangles))
     for k, (title, azimuth) in enumerate(_SIDES):
         axes = figure.add_subplot(1, 2, k + 1, projection="3d", title=title, proj_type="ortho", computed_zorder=False)
-        eye = np.array([np.cos(np.radians(azimuth)), np.sin(np.radians(azimuth)), 0.3])
-        light = np.clip(0.35 + 0.65 * normal @ eye / np.linalg.norm(eye), 0.15, 1)[:, None]
-        axes.add_collection3d(Poly3DCollection(corner, facecolors=colours * light, edgecolors="none"))
+        paint(axes, model, azimuth)
+        axes.set(xlabel="front [mm]", ylabel="left [mm]", zlabel="head [mm]")
         axes.scatter(*marks.T, color="black", s=14, zorder=9, depthshade=False)
         for name, mark in zip(NAMES, marks):
             axes.text(*mark, " " + name, zorder=10, fontsize=8)
-        low, high = x.min(axis=0), x.max(axis=0)
-        axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]), xlabel="front [mm]", ylabel="left [mm]", zlabel="head [mm]")
-        axes.set_box_aspect(high - low)
-        axes.view_init(10, azimuth)
         along_view = (axes.xaxis, axes.yaxis)[azimuth // 90]
         along_view.set_ticks([])
         along_view.set_label_text("")
-    handles = [pyplot.Line2D([], [], marker="s", linestyle="", color=c, label=n) for n, c in zip(REGIONS, _COLOURS)]
+    handles = [pyplot.Line2D([], [], marker="s", linestyle="", color=c, label=n) for n, c in zip(REGIONS, COLOURS)]
     figure.legend(handles=handles, loc="lower center", ncol=5, frameon=False)
     figure.savefig(file, dpi=110)
     pyplot.close(figure)
