@@ -95,7 +95,7 @@ class Hdf5:
 
     def write(self, place, until, told=lambda number: None):
         os.makedirs(place, exist_ok=True)
-        with hdf5.Episodes(os.path.join(place, "set.hdf5"), "data/demo_{}", {"a": [1, 2]}) as out:
+        with hdf5.Episodes(os.path.join(place, "set {0}.hdf5"), "data/demo_{}", {"a": [1, 2]}) as out:
             for number in range(len(out.seeds), until):
                 out.add({"action": columns(number)["action"]}, {"seed": number})
                 told(number)
@@ -103,9 +103,9 @@ class Hdf5:
     def read(self, place):
         import h5py
 
-        if not os.path.exists(os.path.join(place, "set.hdf5")):
+        if not os.path.exists(os.path.join(place, "set {0}.hdf5")):
             return 0
-        with h5py.File(os.path.join(place, "set.hdf5"), "r") as found:
+        with h5py.File(os.path.join(place, "set {0}.hdf5"), "r") as found:
             count = len(found.get("data", ()))
             for number in range(count):
                 assert np.array_equal(found[f"data/demo_{number}/action"], columns(number)["action"])

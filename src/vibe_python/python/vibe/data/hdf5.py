@@ -36,7 +36,7 @@ class Episodes:
     def __init__(self, file, name, begun):
         self._h5py = files.needed("h5py", PLACE)
         self.file, self._name, self.begun = os.path.abspath(file), name, json.loads(json.dumps(begun))
-        self._parts = self.file + ".parts"
+        self._parts, self._part = self.file + ".parts", lambda part: f"{os.path.basename(self.file)}.parts/{part}.hdf5"
         self._said, self._links = [], []  # attributes of each episode; (file, name) where it is elsewhere, or None where it is in `file`
         if os.path.exists(self.file):
             self._take_up()
@@ -54,11 +54,7 @@ class Episodes:
 
     @property
     def seeds(self):
-        """Of the episodes that are there."""
         return [int(attributes["seed"]) for attributes in self._said]
-
-    def describe(self, out, said):
-        """For subclasses: adds to a file what is of all episodes, whose attributes are given."""
 
     def _take_up(self):
         with opened(self.file) as found:
@@ -93,7 +89,7 @@ class Episodes:
         with self._h5py.File(image, "w") as out:
             for number, link in enumerate(links):
                 out[self._name.format(number)] = self._h5py.ExternalLink(*link)
-            self._finish(out, said)
+            self.finish(out, said)
         files.write(self.file, image.getvalue())
         self._links, self._said = links, said
 
@@ -107,17 +103,14 @@ class Episodes:
             with self._h5py.File(reserved, "w") as out:
                 for name in map(self._name.format, range(len(self._links))):
                     found.copy(found[name], out, name)
-                self._finish(out, self._said)
+                self.finish(out, self._said)
             raw.truncate(reserved.end)
         self._links = [None] * len(self._links)
         shutil.rmtree(self._parts, ignore_errors=True)
 
-    def _part(self, name):
-        return f"{os.path.basename(self._parts)}/{name}.hdf5"
-
-    def _finish(self, out, said):
+    def finish(self, out, said):
+        """Adds to a file what is of all episodes, whose attributes are given; subclasses add more."""
         out.attrs["begun"] = json.dumps(self.begun)
-        self.describe(out, said)
 
 
 class _Reserved:

@@ -22,7 +22,7 @@ EPISODES = "meta/episodes/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
 TASKS = {"pandas": json.dumps({"index_columns": ["task"], "column_indexes": [], "columns": [
     {"name": name, "field_name": name, "pandas_type": kind, "numpy_type": numpy, "metadata": None}
     for name, kind, numpy in (("task_index", "int64", "int64"), ("task", "unicode", "object"))]})}  # their index is the task
-CARD = """* Dataset description, collection procedure: {about}
+CARD = """* Dataset description, collection procedure: made with the simulator ViBE for ROS.
 * Robot: `{robot_type}`. `info.json` names what its state and actions hold; SI units. Sensors: {sensors}.
 * Synchronization: row k of an episode is the moment k / {fps} s after its first row, and frame k of its videos is of that moment.
 """
@@ -37,7 +37,6 @@ class Writer:
               has the shape [height, width, 3], both even. LeRobot's own (timestamp, frame_index, episode_index, index,
               task_index) are added
     robot     robot_type of the data set
-    about     a sentence for its card, meta/README.md: where it comes from, how it was collected
     begun     a dictionary of what else has to be the same when it goes on; kept in info.json
 
     An episode is a file of each kind, written under another name, synchronised and renamed; info.json, which counts episodes,
@@ -45,8 +44,7 @@ class Writer:
     number. The same input gives the same bytes. Each video is in memory while it is encoded (H.264). Needs pyarrow, and av for
     videos. Raises vibe.Error, also where the folder was begun with other arguments."""
 
-    def __init__(self, folder, version="v3.0", fps=30, features=None, robot="vibe_endoscope", about="Made with the simulator ViBE for ROS.",
-                 begun=None):
+    def __init__(self, folder, version="v3.0", fps=30, features=None, robot="vibe_endoscope", begun=None):
         self._arrow, self._parquet = (files.needed(name, 'pip install "pyarrow<24"') for name in ("pyarrow", "pyarrow.parquet"))
         self.folder, self.info = pathlib.Path(folder), _begun(version, fps, features, robot, begun)
         self._videos = [name for name, feature in self.info["features"].items() if feature["dtype"] == "video"]
@@ -63,7 +61,7 @@ class Writer:
         else:
             self._write_json("info", self.info)
         sensors = ", ".join(f"`{name}`" for name in self.info["features"] if name.startswith("observation"))
-        files.write(self.folder / "meta/README.md", CARD.format(about=about, sensors=sensors, **self.info).encode())
+        files.write(self.folder / "meta/README.md", CARD.format(sensors=sensors, **self.info).encode())
 
     def __enter__(self):
         return self

@@ -17,7 +17,6 @@ from .environment import Environment
 from .episodes import Task
 from .settings import PICTURES
 
-VALID = 10  # one in so many demonstrations, the second of them, is for validation
 STATE = ("joints", "tip", "direction", "wrench")  # of the robot; what else is observed is of its surroundings
 
 
@@ -130,9 +129,10 @@ def _columns(rows):
 
 
 class _Robomimic(hdf5.Episodes):
-    def describe(self, out, said):
+    def finish(self, out, said):
+        super().finish(out, said)
         names = np.array([f"demo_{k}" for k in range(len(said))], "S")
-        valid = np.arange(len(said)) % VALID == 1
+        valid = np.arange(len(said)) % 10 == 1
         out.require_group("data").attrs.update(env_args=json.dumps(self.begun["environment"]), total=sum(int(one["num_samples"]) for one in said))
         out["mask/train"], out["mask/valid"] = names[~valid], names[valid]
 
@@ -141,8 +141,6 @@ class _Robomimic(hdf5.Episodes):
 
 
 class _Minari(hdf5.Episodes):
-    """Observations have one row more than actions there."""
-
     def __init__(self, environment, folder, begun):
         if not re.search(r"[\w-]-v\d+$", os.path.normpath(folder)):
             raise vibe.Error(f"{folder} is no name of Minari; give one that ends in a version, such as reach-v0.")
