@@ -297,6 +297,15 @@ class RefusalTest(ExportTest):
         for form in ("csv", "mcap"):
             self.refuses("is not that of its MD5 sum.*edited", to=form)
 
+    def test_one_of_several(self):
+        self.make()
+        bad = os.path.join(self.folder, "b", "session.bag")
+        os.mkdir(os.path.dirname(bad))
+        with open(bad, "wb"):
+            pass
+        self.refuses("b/session.bag: is empty, ", bad, self.bag)
+        self.assertEqual({path.split("/")[0] for path in tree(self.output)}, {"a"})
+
     def test_another_export_writes_there(self):
         self.make()
         os.makedirs(self.output)

@@ -159,7 +159,10 @@ class DataSet:
         features = {name: {"dtype": "float32", "shape": [len(names)], "names": names} for name, names in NAMES.items()}
         if self._images:
             features[CAMERA] = {"dtype": "video", "shape": self._images.shape, "names": ["height", "width", "channels"]}
-        self._writer = lerobot.Writer(folder, version=arguments.lerobot_version, fps=self._fps, features=features)
+        try:
+            self._writer = lerobot.Writer(folder, version=arguments.lerobot_version, fps=self._fps, features=features)
+        except vibe.Error as error:
+            raise BagError("lerobot: {}".format(error)) from None
 
     def add(self, source):
         """The episodes of a recording."""

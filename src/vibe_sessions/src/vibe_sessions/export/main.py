@@ -159,15 +159,20 @@ def export_set(arguments, bags):
 
 
 def export(arguments, fail):
-    paths = find_bags(arguments, fail)
+    """Returns the exit status; one bad recording does not stop the others."""
+    status, paths = 0, find_bags(arguments, fail)
     if arguments.images and len(paths) > 1:
         fail("--images goes with one recording")
     names = names_of(paths) if len(paths) > 1 else [os.path.basename(names_of(paths)[0])]
     for name, bag in zip(names, paths):
-        if arguments.to != ["lerobot"]:
+        try:
             export_one(arguments, bag, os.path.join(arguments.output, name))
-    if "lerobot" in arguments.to:
+        except BagError as problem:
+            print("export: {}".format(problem), file=sys.stderr)
+            status = 2
+    if "lerobot" in arguments.to and status == 0:
         export_set(arguments, dict(zip(names, paths)))
+    return status
 
 
 def run(arguments, fail):
@@ -177,8 +182,7 @@ def run(arguments, fail):
         handle = os.open(arguments.output, os.O_RDONLY)
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            export(arguments, fail)
-            return 0
+            return export(arguments, fail)
         finally:
             os.close(handle)
     except BlockingIOError:
@@ -190,6 +194,8 @@ def run(arguments, fail):
         remedy = "make room there" if error.errno == errno.ENOSPC else "see to it"
         said = "{}{}; {}, and the same command goes on: formats that are complete are kept".format(
             error.strerror or error, where, remedy)  # fmt: skip
+    except KeyboardInterrupt:
+        said = "interrupted; the same command goes on, and formats that are complete are kept"
     print("export: " + said, file=sys.stderr)
     return 2
 
