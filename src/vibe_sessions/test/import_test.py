@@ -203,6 +203,9 @@ class SentencesTest(ImportTest):
                 (("scene: {scene}", "scene: nowhere.yaml"), "there is no scene 'nowhere.yaml'"),
                 (("from: t,", "from: tt,"), "has no column 'tt'")):
             self.refused(sentence, motion, self.map(MAP.replace(*change)))
+        for scene in ("[1, 2]\n", "a: [\n", f"base: {SCENE}\nstep_period: 0 s\n", "base: package://vibe_core/scenes/sphere.yaml\n"):
+            path = self.write("scene.yaml", scene)
+            self.refused("cannot be read or has no scope", motion, self.write("map.yaml", MAP.format(scene=path, **SI)))
         self.refused("no joint has a column", motion, self.write("map.yaml", "joints: {}\n"))
         self.refused("No message on '/PSM1/measured_js' has the joint 'yaw'; did you mean 'outer_yaw'?", self.bag(),
                      self.map("joints: {{insertion: {{from: /PSM1/measured_js/yaw}}}}\n"))

@@ -1,4 +1,5 @@
 """From the series of a motion to the inputs of steps, and what of them the scope cannot follow."""
+import contextlib
 from xml.etree import ElementTree
 
 import numpy
@@ -19,19 +20,21 @@ CANDIDATES = {"m": ("m", "cm", "mm", "um"), "rad": ("turn", "rad", "deg", "mrad"
 def scene_facts(scene):
     """(simulated time per step [s], {joint: (lower, upper, velocity)}) of a scene."""
     period, limits = None, {}
-    for path in files_of(resolve(scene)):
-        if path.endswith(".urdf") and not limits:
-            for joint in ElementTree.parse(path).iter("joint"):
-                limit = joint.find("limit")
-                if joint.get("name") in JOINTS and limit is not None:
-                    limits[joint.get("name")] = tuple(float(limit.get(key)) for key in ("lower", "upper", "velocity"))
-        elif path.endswith((".yaml", ".yml")) and period is None:
-            with open(path, encoding="utf-8") as stream:
-                text = (yaml.safe_load(stream) or {}).get("step_period")
-            period = units.parse(str(text), "s")[0] if text else None
-    if len(limits) < len(JOINTS):
+    with contextlib.suppress(OSError, ValueError, AttributeError, TypeError, yaml.YAMLError, ElementTree.ParseError):
+        for path in files_of(resolve(scene)):
+            if path.endswith(".urdf") and not limits:
+                for joint in ElementTree.parse(path).iter("joint"):
+                    limit = joint.find("limit")
+                    if joint.get("name") in JOINTS and limit is not None:
+                        limits[joint.get("name")] = tuple(float(limit.get(key)) for key in ("lower", "upper", "velocity"))
+            elif path.endswith((".yaml", ".yml")) and period is None:
+                with open(path, encoding="utf-8") as stream:
+                    text = (yaml.safe_load(stream) or {}).get("step_period")
+                period = units.parse(str(text), "s")[0] if text is not None else None
+    period = 1 / 60 if period is None else period
+    if len(limits) < len(JOINTS) or not 1e-4 <= period <= 0.1:
         raise SessionError(f"The scene '{scene}' cannot be read or has no scope that a motion could move; name another.")
-    return period or 1 / 60, limits
+    return period, limits
 
 
 def sampled(times, values, at, interpolation):
