@@ -2,6 +2,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "vibe_core/constraints/breathing.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 
 namespace vibe::python {
@@ -95,6 +96,21 @@ void bindScalars(SimulationClass& simulation) {
           "pressure", [](SimulationHandle& s) { return Use(s).state().pressure; }, "Of the gas, above ambient [Pa].")
       .def_property_readonly(
           "volume", [](SimulationHandle& s) { return Use(s).state().volume; }, "Of the lumen [m^3].")
+      .def_property_readonly(
+          "motion",
+          [](SimulationHandle& handle) {
+            const Use use(handle);
+            const OrganPhases at = organPhases(use.model().scene, use.state());
+            const MotionState& motion = use.state().motion;
+            return py::dict(py::arg("breath_phase") = at.breath, py::arg("wave_phase") = at.wave,
+                            py::arg("heart_phase") = at.heart, py::arg("breath_held") = motion.held,
+                            py::arg("breath_held_time") = motion.held_time,
+                            py::arg("muscle_work") = motion.muscle_work);
+          },
+          "New dict: what moves the organ by itself, as on the topic organ/motion: parts of a breath, of the period "
+          "of\n"
+          "contraction waves and of a beat, 0 to 1; whether and for how long the breath was held [s]; work of the "
+          "muscle [J].")
       .def_property_readonly(
           "joints",
           [](SimulationHandle& s) {

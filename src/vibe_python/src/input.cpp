@@ -15,7 +15,8 @@ const char* const kInputHelp =
     "  helix_rotation [rad], needle_driver [m]: positions to which the joints are led, within their ranges and speeds\n"
     "  apc_pedal, helix_grab, needle, t_tag, cinch, insufflate: buttons, True while pressed\n"
     "  joints (7,), buttons (6,): all of them, in the order of vibe.JOINTS and vibe.BUTTONS\n"
-    "  pull=(particle, target (3,) [m]): the spring that pulls the tissue from outside; None: it lets go\n";
+    "  pull=(particle, target (3,) [m]): the spring that pulls the tissue from outside; None: it lets go\n"
+    "  hold_breath: True while the breath is held\n";
 
 namespace {
 
@@ -63,7 +64,7 @@ std::string allWords() {
   std::string words;
   for (const char* name : kJointNames) words += std::string(name) + ", ";
   for (const char* name : kButtonNames) words += std::string(name) + ", ";
-  return words + "joints, buttons, pull";
+  return words + "joints, buttons, pull, hold_breath";
 }
 
 }  // namespace
@@ -82,6 +83,8 @@ StepInput changedInput(StepInput input, const py::kwargs& keywords, int particle
       setButtons(value, input);
     else if (word == "pull")
       setPull(value, particles, input);
+    else if (word == "hold_breath")
+      input.breath = pressed(value, word) != 0 ? Breath::Held : Breath::Free;
     else
       throw Error("There is no input '" + word + "'; use one of " + allWords() + ".");
   }
@@ -92,6 +95,7 @@ py::dict asKeywords(const StepInput& input) {
   py::dict keywords;
   for (std::size_t k = 0; k < kJointNames.size(); ++k) keywords[kJointNames[k]] = input.joints[k];
   for (std::size_t k = 0; k < kButtonNames.size(); ++k) keywords[kButtonNames[k]] = input.buttons[k] != 0;
+  keywords["hold_breath"] = input.breath == Breath::Held;
   keywords["pull"] = py::none();
   if (input.pull_particle >= 0) {
     const Eigen::Vector3d target = input.pull_target;

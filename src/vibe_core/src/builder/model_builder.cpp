@@ -129,15 +129,13 @@ void finishModel(const std::string& tool_urdf, Model& model, const Progress& pro
   model.solver = made.solver;
   model.substeps = made.substeps;
   if (model.solver->usesSubsteps()) checkSubstepsForGas(model.substeps, for_gas);
-  if (model.solver->usesSubsteps() && model.scene.breathing)
-    throw Error(
-        "The section 'breathing' needs the implicit solver; choose tissue.model: shell, or remove the section.");
+  if (model.solver->usesSubsteps() && (model.scene.breathing || model.scene.motion))
+    throw Error(std::string("The section '") + (model.scene.breathing ? "breathing" : "motion") +
+                "' needs the implicit solver; choose tissue.model: shell, or remove the section.");
   if (model.scene.scope) addTool(tool_urdf, model);
   if (model.scene.marking) model.dose_law.emplace(model.scene.marking->apc);
-  if (model.scene.suture) {
-    model.along = placesAlong(model.organ);
-    model.cinch = findCinchModel(model.scene.suture->cinch_model);
-  }
+  if (model.scene.suture || breathingOf(model.scene)) model.along = placesAlong(model.organ);
+  if (model.scene.suture) model.cinch = findCinchModel(model.scene.suture->cinch_model);
   if (model.scene.render_surface) model.render_surface = makeLoopSubdivision(model.organ.surface);
   if (progress) progress("ready", 1.0);
 }

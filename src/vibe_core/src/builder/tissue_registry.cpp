@@ -48,7 +48,7 @@ ElasticBody shellBody(const TissueRequest& request) {
 TissueAndSolver makeShell(const TissueRequest& request) {
   const Scene& scene = request.scene;
   ElasticBody body = shellBody(request);
-  auto tissue = std::make_shared<const ShellTissue>(scene.tissue, request.organ, body.fixed);
+  auto tissue = std::make_shared<const ShellTissue>(scene.tissue, request.organ, body.fixed, scene.motion);
   body.elements = tissue->elements();
   body.shell = tissue->elements().get();
   StepSettings settings;

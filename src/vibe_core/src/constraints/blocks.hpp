@@ -28,6 +28,9 @@ std::unique_ptr<ConstraintBlock> makeSelfContactBlock(const Model& model);
 /// oesophagus, which no force tells, is in numerical_loss. Null in a scene that does not breathe.
 std::unique_ptr<ConstraintBlock> makeBreathingBlock(const Model& model);
 
+/// The contraction waves of the wall, see WallMuscle. Their work is MotionState::muscle_work. Null in a scene without.
+std::unique_ptr<ConstraintBlock> makePeristalsisBlock(const Model& model);
+
 /// The gas in the lumen, isothermal, and the insufflator. Null in a scene without gas.
 std::unique_ptr<ConstraintBlock> makeGasBlock(const Model& model);
 

@@ -55,6 +55,7 @@ Activity ImplicitStep::gather() {
   }
   Activity most = Activity::Sleep;
   for (const auto& block : scratch_.blocks) most = std::max(most, block->prepare(context_, scratch_.loads));
+  scratch_.stepper->contract(scratch_.loads.contraction);
   return most;
 }
 

@@ -92,6 +92,7 @@ Scene completeScene(const Scene& scene) {
   if (!full.gravity) full.gravity.emplace();
   if (!full.foundation) full.foundation.emplace();
   if (!full.breathing) full.breathing.emplace();
+  if (!full.motion) full.motion.emplace();
   if (!full.scope) full.scope.emplace();
   if (!full.scope->compliance) full.scope->compliance.emplace();
   if (!full.helix) full.helix.emplace();
@@ -174,8 +175,14 @@ const std::vector<SchemaSection>& sceneSections() {
           "breathing",
           "The diaphragm moves the foundation and the attached end of the oesophagus towards the feet (-z) and back, "
           "by amplitude (1 - cos(2 pi rate t)) / 2; the duodenum and the hand that holds the scope stay. Of model "
-          "shell; needs `foundation`. Without this section nothing breathes.",
+          "shell; needs `foundation`. Without this section nothing breathes, unless `motion` is there.",
           "foundation", "which the diaphragm moves"),
+      optionalSection<&Scene::motion>(
+          "motion",
+          "What moves a living stomach by itself ([motion.md](motion.md)): contraction waves, respiration, the heart. "
+          "Respiration is that of a healthy adult, or what `breathing` says. Of model shell, of a stomach; needs "
+          "`foundation`. Without this section only `breathing` moves the organ.",
+          "foundation", "which respiration and heart move"),
       optionalSection<&Scene::scope>("scope", "The endoscope with its suturing device."),
       {"scope.base", "Pose of the root link. Without this section the scope enters at the oesophagus.",
        [](Scene& s) { s.scope->base_from_anatomy = false; },

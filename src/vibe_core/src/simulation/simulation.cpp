@@ -14,6 +14,7 @@ StepInput holdingInput(const State& state) {
   StepInput input;
   input.joints = state.joints;
   input.buttons[HelixGrab] = state.helix_pressed ? 1 : 0;
+  input.breath = state.motion.held ? Breath::Held : Breath::Free;
   input.buttons[Cinch] = state.procedure.pressed[Cinch];  // releasing it would make the set permanent
   return input;
 }

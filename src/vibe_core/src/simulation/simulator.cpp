@@ -99,6 +99,7 @@ void recover(const Model& model, State& state, EventLog log) {
   state.pressure = fresh.pressure;
   state.volume = fresh.volume;
   state.energy = fresh.energy;
+  state.motion.muscle_work = 0;
   state.grip.clear();
   state.pull = PullSpring();
   slackenThreads(model, state);
@@ -163,6 +164,8 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
     commandProcedure(model, {}, input, state, log);  // says which part of the scene is missing
   }
   movePullSpring(model, input, state);
+  const bool held = input.breath == Breath::Held && breathingOf(model.scene);
+  state.motion.held = held;
   StepReport& report = workspace.report();
   report.clear();
   if (model.scope_springs) report.tool_displacement = relaxed(model, state, dt);
@@ -170,6 +173,7 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   beam.insufflation = std::max(0.0, (state.gas_amount - gas_before) / (kAmbientPressure * dt));
   ++state.step;
   state.time = static_cast<double>(state.step) * dt;
+  if (held) state.motion.held_time += dt;
   if (model.tool) {
     state.tool_displacement = report.tool_displacement;
     HandModel::countStall(report.stopped, state.stall);

@@ -137,9 +137,9 @@ std::string basisDamage(const ImpedanceBasis& basis, std::size_t particle_count)
 }
 
 std::string solverDamage(const State& s, std::size_t particle_count) {
-  if (!isEmptyOr(s.solver.linearization_point.size(), particle_count, 3) ||
-      !isEmptyOr(s.solver.next.size(), particle_count, 3))
-    return "its solver remembers another organ";
+  for (const std::vector<float>* point : {&s.solver.linearization_point, &s.solver.next})
+    if (!isEmptyOr(point->size(), particle_count, 3) && point->size() != 4 * particle_count)
+      return "its solver remembers another organ";
   const std::string damage = basisDamage(s.impedance.current, particle_count);
   return damage.empty() ? basisDamage(s.impedance.next, particle_count) : damage;
 }
@@ -153,6 +153,8 @@ std::string findDamage(const State& state, const Model& model) {
   if (damage.empty()) damage = solverDamage(state, static_cast<std::size_t>(count));
   if (damage.empty()) damage = procedureDamage(state.procedure, count);
   if (damage.empty()) damage = pullDamage(state.pull, count);
+  if (damage.empty() && !(std::isfinite(state.motion.held_time) && std::isfinite(state.motion.muscle_work)))
+    damage = "its own motion is not a number";
   if (damage.empty() && model.scene.marking && state.procedure.dose.empty()) damage = "its marks are missing";
   return damage;
 }

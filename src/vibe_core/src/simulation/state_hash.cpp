@@ -28,25 +28,43 @@ class HashArchive {
   XXH3_state_t state_;
 };
 
+// Fields of these types were added later. They count only where they are not as they were made, so that hashes of what
+// has no use for them stay.
 template <class T>
-void addFields(const T& object, HashArchive& archive) {
-  const std::uint64_t fields = fieldFingerprint<T>();
+constexpr bool kLater = std::is_same_v<T, MotionState> || std::is_same_v<T, Breath>;
+
+/// @param later  the field that was added later, as fieldList() has it: "name:type;"
+template <class T>
+void addFields(const T& object, const std::string& later, HashArchive& archive) {
+  static const std::uint64_t fields = [&later] {
+    std::string list = fieldList<T>();
+    list.erase(list.find(later), later.size());
+    Fnv1a hash;
+    hash.add(list.data(), list.size());
+    return hash.result();
+  }();
   archive.block(&fields, 1);
-  transfer(archive, object);
+  visitFields(object, [&archive](std::string_view, const auto& member) {
+    using Member = std::decay_t<decltype(member)>;
+    if constexpr (kLater<Member>)
+      if (firstDifference(member, Member()).empty()) return;
+    transfer(archive, member);
+  });
 }
 
 }  // namespace
 
 std::uint64_t hash(const State& state) {
+  static const std::string later = "motion:" + fieldList<MotionState>() + ";";
   HashArchive archive;
-  addFields(state, archive);
+  addFields(state, later, archive);
   return archive.result();
 }
 
 std::uint64_t hash(const StepInput& input, std::int64_t step) {
   HashArchive archive;
   archive.block(&step, 1);
-  addFields(input, archive);
+  addFields(input, "breath:i1x1;", archive);
   return archive.result();
 }
 

@@ -11,6 +11,7 @@ void BodyLoads::clear() {
   threads.clear();
   gas = GasLoad();
   tool_yield = ToolYield();
+  contraction = nullptr;
   extra = nullptr;
   couplings.clear();
 }

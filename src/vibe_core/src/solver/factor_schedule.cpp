@@ -9,6 +9,7 @@
 #include "vibe_core/files/fnv1a.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/solver/energy_term.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 namespace vibe {
 
@@ -68,10 +69,12 @@ std::uint64_t hashOf(const std::vector<float>& positions, const std::vector<Stif
   return hash.result();
 }
 
-void copyPositions(const MotionView& motion, int nodes, std::vector<float>& out) {
+void copyPositions(const MotionView& motion, int nodes, const std::vector<float>* contraction,
+                   std::vector<float>& out) {
   out.resize(3 * static_cast<std::size_t>(nodes));
   for (int i = 0; i < nodes; ++i)
     for (int k = 0; k < 3; ++k) out[3 * static_cast<std::size_t>(i) + k] = static_cast<float>(motion.x[k][i]);
+  if (contraction != nullptr) out.insert(out.end(), contraction->begin(), contraction->end());
 }
 
 void addElements(const ElasticBody& body, const std::vector<float>& positions, double margin, BlockMatrix& matrix) {
@@ -83,7 +86,10 @@ void addElements(const ElasticBody& body, const std::vector<float>& positions, d
         displacement[3 * i + k] =
             static_cast<double>(positions[3 * i + k]) - body.rest[i][static_cast<Eigen::Index>(k)];
   matrix.setZero();
-  body.elements->addStiffness(displacement.data(), matrix);
+  if (positions.size() > 3 * n)
+    body.shell->addStiffness(displacement.data(), positions.data() + 3 * n, matrix);
+  else
+    body.elements->addStiffness(displacement.data(), matrix);
   if (margin != 1) matrix.scale(margin);
 }
 
@@ -127,7 +133,7 @@ void collectCouplings(const BodyLoads& loads, const double* positions4, double g
 }
 
 void FactorSchedule::nameHere(const ElasticBody& body, const MotionView& motion, StepperMemory& memory) {
-  copyPositions(motion, body.nodeCount(), memory.linearization_point);
+  copyPositions(motion, body.nodeCount(), nullptr, memory.linearization_point);
   memory.couplings.clear();
   memory.linearization_id = hashOf(memory.linearization_point, memory.couplings);
   memory.next.clear();
@@ -145,7 +151,7 @@ void FactorSchedule::advance(const ElasticBody& body, const MotionView& motion, 
     memory.next_couplings.clear();
   }
   if (steps == 0 || !memory.next.empty() || !farFrom(body, motion, memory.linearization_point)) return;
-  copyPositions(motion, body.nodeCount(), memory.next);
+  copyPositions(motion, body.nodeCount(), loads.contraction, memory.next);
   // in double precision: the stiffness of a thread follows from the difference of two positions
   slots.positions.resize(4 * static_cast<std::size_t>(body.nodeCount()));
   for (int i = 0; i < body.nodeCount(); ++i)

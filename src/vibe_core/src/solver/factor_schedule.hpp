@@ -20,7 +20,7 @@ struct FactorSchedule;
 
 /// What a factor is about.
 struct FactorPoint {
-  const std::vector<float>& positions;  ///< (3 * nodes) [m]; empty: rest
+  const std::vector<float>& positions;  ///< as StepperMemory::linearization_point
   const std::vector<StiffnessCoupling>& couplings;
 };
 
@@ -55,7 +55,7 @@ class FactorShelf {
 struct FactorTask {
   const FactorSchedule* schedule = nullptr;
   const ElasticBody* body = nullptr;
-  std::vector<float> positions;  // (3 * nodes) [m]
+  std::vector<float> positions;  // as StepperMemory::linearization_point
   std::vector<StiffnessCoupling> couplings;
   std::vector<int> nodes;  // whose columns are prepared too
   RowList<AttachmentPoint> attachments;

@@ -54,6 +54,7 @@ void ImplicitStepper::refactor(const MotionView& motion, StepperMemory& memory) 
 
 StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMemory& memory,
                                   StepperWorkspace& scratch) const {
+  scratch.contract(loads.contraction);
   begin(motion, loads, memory, scratch);
   StepSolve solve(*plan_, motion, loads, memory, scratch);
   solve.foresee();
@@ -93,6 +94,7 @@ void ImplicitStepper::end(bool arrived, StepperMemory& memory) const {
 
 StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, StepperWorkspace& scratch, double tolerance,
                                     int max_iterations) const {
+  scratch.contract(loads.contraction);
   return StaticSolve(*plan_, loads, scratch).run(motion, tolerance, max_iterations);
 }
 
@@ -101,6 +103,7 @@ ImplicitStepper::Elastic ImplicitStepper::elastic(const MotionView& motion, Step
   std::vector<float>&displacement = scratch.iterate.last.displacement, &gradient = scratch.iterate.work;
   for (int i = 0; i < body.nodeCount(); ++i)
     for (int k = 0; k < 3; ++k) displacement[4 * i + k] = static_cast<float>(motion.x[k][i] - body.rest[i][k]);
+  for (std::size_t i = 3; i < displacement.size(); i += 4) displacement[i] = static_cast<float>(-scratch.rest[i]);
   std::fill(gradient.begin(), gradient.end(), 0.0F);
   if (!scratch.shared.shares.empty())
     return {scratch.shared.evaluate(*body.shell, *scratch.pool, displacement.data(), gradient.data(), nullptr),

@@ -58,6 +58,8 @@ void StaticSolve::refactor() {
   std::vector<float> positions(3 * nodes);
   for (std::size_t i = 0; i < nodes; ++i)
     for (std::size_t k = 0; k < 3; ++k) positions[3 * i + k] = static_cast<float>(z[4 * i + k]);
+  if (loads_.contraction != nullptr)
+    positions.insert(positions.end(), loads_.contraction->begin(), loads_.contraction->end());
   std::vector<StiffnessCoupling> couplings;
   collectCouplings(loads_, z.data(), 1, couplings);
   factors.returnLent();

@@ -23,6 +23,13 @@ StepperWorkspace::StepperWorkspace(const std::vector<Eigen::Vector3d>& rest_posi
   history.curvature.assign(PairHistory::kSize, 0);
 }
 
+void StepperWorkspace::contract(const std::vector<float>* contraction) {
+  if (contraction == nullptr && !contracted) return;
+  contracted = contraction != nullptr;
+  for (std::size_t n = 0; 4 * n < rest.size(); ++n)
+    rest[4 * n + 3] = contracted ? -static_cast<double>((*contraction)[n]) : 0;
+}
+
 void StepperWorkspace::use(ThreadPool& threads, const ShellElements* shell) {
   pool = &threads;
   system.schur.use(threads);

@@ -64,8 +64,12 @@ class StepperWorkspace {
   /// @param shell  of the body; null: none
   void use(ThreadPool& threads, const ShellElements* shell);
 
+  /// The contraction of the muscle in what is evaluated from now on. @param contraction  per node; null: none
+  void contract(const std::vector<float>* contraction);
+
   // for as long as the workspace lives
-  std::vector<double> rest;  // positions [m]
+  std::vector<double> rest;  // positions [m]; the fourth number is what displacements have there: less the contraction
+  bool contracted = false;   // one of these is not 0
   FactorSlots factors;
   SharedEvaluation shared;
   ThreadPool single;

@@ -33,29 +33,33 @@ ShellElements::ShellElements(ShellMesh mesh, const Eigen::Vector3d& origin, cons
   findNeighbours();
   measure();
   measureFibres();
+  measureMuscle();
   makeBatches();
 }
 
 ShellElements::~ShellElements() = default;
 
 const double* ShellElements::rest(std::size_t triangle) const {
-  return rest_.data() + triangle * kShellGhostRows;
+  return rest_.data() + triangle * kShellMuscleRows;
 }
 
 void ShellElements::makeBatches() {
-  std::vector<std::vector<int>> groups(2 * mesh_.materials.size());
-  for (std::size_t e = 0; e < mesh_.triangles.size(); ++e)
-    groups[2 * static_cast<std::size_t>(materialOf(e)) + (atBoundary(e) ? 1 : 0)].push_back(static_cast<int>(e));
+  constexpr int kRows[] = {kShellRows, kShellGhostRows, kShellMuscleRows};
+  std::vector<std::vector<int>> groups(3 * mesh_.materials.size());
+  for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
+    const std::size_t kind = atBoundary(e) ? 1 : hasMuscle(e) ? 2 : 0;
+    groups[3 * static_cast<std::size_t>(materialOf(e)) + kind].push_back(static_cast<int>(e));
+  }
   for (std::size_t g = 0; g < groups.size(); ++g)
-    if (!groups[g].empty()) addRun(groups[g], static_cast<int>(g / 2), g % 2 == 1);
+    if (!groups[g].empty()) addRun(groups[g], static_cast<int>(g / 3), kRows[g % 3]);
   piece_count_ = static_cast<int>(mesh_.triangles.size()) > kTrianglesPerPiece ? kTrianglePieces : 1;
 }
 
 // Elements adjacent in the mesh are adjacent in its order. They are placed in the same lane of successive batches, not
 // in the lanes of one batch: adding to a node that the previous lane has just written would stall.
-void ShellElements::addRun(const std::vector<int>& triangles, int material, bool ghosts) {
+void ShellElements::addRun(const std::vector<int>& triangles, int material, int rows) {
   const int count = static_cast<int>(triangles.size()), batches = (count + kBatchLanes - 1) / kBatchLanes;
-  runs_.push_back({batch_count_, batch_count_ + batches, material, ghosts, batch_rest_.size()});
+  runs_.push_back({batch_count_, batch_count_ + batches, material, rows, batch_rest_.size()});
   for (int window = 0; window < batches; window += kWindow) {
     const int length = std::min(kWindow, batches - window);
     for (int step = 0; step < length; ++step) {
@@ -64,7 +68,7 @@ void ShellElements::addRun(const std::vector<int>& triangles, int material, bool
         const int slot = window * kBatchLanes + lane * length + step;
         lanes[static_cast<std::size_t>(lane)] = slot < count ? triangles[static_cast<std::size_t>(slot)] : -1;
       }
-      addBatch(lanes, ghosts ? kShellGhostRows : kShellRows);
+      addBatch(lanes, rows);
     }
   }
 }
@@ -140,25 +144,41 @@ ShellPart ShellElements::makePart(int first_piece, int last_piece, std::vector<i
 }
 
 // @param first_node_batch  the batch with which the sweep's nodes begin
+double ShellElements::evaluateRun(const Run& run, int first_node_batch, ShellSweep& sweep) const {
+  const auto material = static_cast<std::size_t>(run.material), rows = static_cast<std::size_t>(run.rows);
+  sweep.rest = batch_rest_.data() + run.row + rows * static_cast<std::size_t>(sweep.first - run.first);
+  sweep.rows = run.rows;
+  sweep.law = mesh_.materials[material].law;
+  sweep.poisson_ratio = mesh_.materials[material].poisson_ratio;
+  sweep.constants = &constants_[material];
+  if (!batch_fibre_.empty()) sweep.fibre = batch_fibre_.data() + static_cast<std::size_t>(kFibreRows * sweep.first);
+  sweep.first -= first_node_batch, sweep.last -= first_node_batch;
+  const double energy = kernel_->sweep(sweep);
+  if (batch_fibre_.empty()) return energy;
+  sweep.fibre_stiffening = mesh_.fibres.stiffening;
+  return energy + kernel_->fibres(sweep);
+}
+
+double ShellElements::muscleEnergy(const float* displacement4, float* scratch4) const {
+  double energy = 0;
+  for (const Run& run : runs_) {
+    if (run.rows != kShellMuscleRows) continue;
+    ShellSweep sweep{};
+    sweep.node = batch_node_.data();
+    sweep.displacement4 = displacement4, sweep.gradient4 = scratch4;
+    sweep.first = run.first, sweep.last = run.last;
+    energy += evaluateRun(run, 0, sweep);
+  }
+  return energy;
+}
+
 double ShellElements::evaluatePiece(int piece, ShellSweep sweep, int first_node_batch, double* volume) const {
   const int first = firstBatch(piece), last = firstBatch(piece + 1);
   double energy = 0;
   for (const Run& run : runs_) {
     sweep.first = std::max(first, run.first), sweep.last = std::min(last, run.last);
     if (sweep.first >= sweep.last) continue;
-    const auto material = static_cast<std::size_t>(run.material);
-    const std::size_t rows = run.ghosts ? kShellGhostRows : kShellRows;
-    sweep.rest = batch_rest_.data() + run.row + rows * static_cast<std::size_t>(sweep.first - run.first);
-    sweep.ghosts = run.ghosts;
-    sweep.law = mesh_.materials[material].law;
-    sweep.poisson_ratio = mesh_.materials[material].poisson_ratio;
-    sweep.constants = &constants_[material];
-    if (!batch_fibre_.empty()) sweep.fibre = batch_fibre_.data() + static_cast<std::size_t>(kFibreRows * sweep.first);
-    sweep.first -= first_node_batch, sweep.last -= first_node_batch;
-    energy += kernel_->sweep(sweep);
-    if (batch_fibre_.empty()) continue;
-    sweep.fibre_stiffening = mesh_.fibres.stiffening;
-    energy += kernel_->fibres(sweep);
+    energy += evaluateRun(run, first_node_batch, sweep);
   }
   if (volume != nullptr) *volume += sweep.volume;
   return energy;
@@ -197,7 +217,7 @@ void ShellElements::gather(std::size_t triangle, const double* displacement, dou
   placeGhosts([rows](int row) { return rows[row]; }, v);
 }
 
-double ShellElements::evaluate(const double* displacement, double* gradient) const {
+double ShellElements::evaluate(const double* displacement, const float* contraction, double* gradient) const {
   std::fill(gradient, gradient + 3 * mesh_.nodes.size(), 0.0);
   double energy = 0;
   for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
@@ -207,9 +227,12 @@ double ShellElements::evaluate(const double* displacement, double* gradient) con
     gather(e, displacement, u);
     std::copy(&u[0][0], &u[0][0] + 15, &bent[0][0]);  // shellEnergy clamps the ghosts, which fibres do not see
     const auto rows = [values = rest(e)](int row) { return values[row]; };
+    const double shorter = contraction != nullptr ? meanOf(contraction, e) : 0;
     energy += withLaw(m.law, [&](auto tag) {
-      return shellEnergy<decltype(tag)::value, kReferenceSteps, true>(
-          WallTerms<double>(constants_[material], m.poisson_ratio), rows, bent, f);
+      constexpr Law law = decltype(tag)::value;
+      const WallTerms<double> terms(constants_[material], m.poisson_ratio);
+      return hasMuscle(e) ? shellEnergy<law, kReferenceSteps, kShellMuscleRows>(terms, rows, shorter, bent, f)
+                          : shellEnergy<law, kReferenceSteps, kShellGhostRows>(terms, rows, 0.0, bent, f);
     });
     if (!fibre_rest_.empty())
       energy += fibreEnergy(

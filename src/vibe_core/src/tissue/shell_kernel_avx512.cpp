@@ -47,9 +47,8 @@ struct ShellKernelOfPairs {
     for (int a = 0; a < 3; ++a) Single::Lanes::add(s.volume_gradient4, offset[a].lane, half);
   }
 
-  template <Law law, bool ghosts, bool volume>
+  template <Law law, int kRows, bool volume>
   static double sweepAll(ShellSweep& s) {
-    constexpr int kRows = ghosts ? kShellGhostRows : kShellRows;
     const WallTerms<Pack> terms(*s.constants, s.poisson_ratio);
     Single::Lanes::Sum energy, enclosed;
     const BatchReals* rows = s.rest;
@@ -61,10 +60,13 @@ struct ShellKernelOfPairs {
       };
       Pack u1[3], u[5][3], f[5][3];
       gather(s, offset, u1, u);
-      if constexpr (ghosts) placeGhosts(rest, u);
-      const Pack value = shellEnergy<law, LawFormula<law>::kThicknessSteps, ghosts>(terms, rest, u, f);
+      Pack shorter(0.0f);
+      if constexpr (kRows == kShellMuscleRows)
+        shorter = both(Single::contraction(s, offset, 0), Single::contraction(s, offset + 6, 0));
+      if constexpr (kRows == kShellGhostRows) placeGhosts(rest, u);
+      const Pack value = shellEnergy<law, LawFormula<law>::kThicknessSteps, kRows>(terms, rest, shorter, u, f);
       energy.add(first(value)), energy.add(second(value));
-      if constexpr (ghosts) returnGhosts(rest, f);
+      if constexpr (kRows == kShellGhostRows) returnGhosts(rest, f);
       scatter(s, offset, f, first);
       scatter(s, offset + 6, f, second);
       if constexpr (volume) {
@@ -76,8 +78,8 @@ struct ShellKernelOfPairs {
       }
     }
     if (batch < s.last)
-      Single::sweepBatch<law, ghosts, volume>(s, WallTerms<Half>(*s.constants, s.poisson_ratio), batch, rows, energy,
-                                              enclosed);
+      Single::sweepBatch<law, kRows, volume>(s, WallTerms<Half>(*s.constants, s.poisson_ratio), batch, rows, energy,
+                                             enclosed);
     if constexpr (volume) s.volume += enclosed.total();
     return energy.total();
   }

@@ -21,6 +21,15 @@ struct ShellKernelOf {
       for (int r = 0; r < 3; ++r) u[a][r] = u[a][r] - u1[r];
     }
   }
+  /// Of the muscle: the mean of the nodes' fourth numbers.
+  [[gnu::always_inline]] static Pack contraction(const ShellSweep& s, const BatchOffsets* offset, int lane) {
+    alignas(64) float sum[kWidth];
+    for (int k = 0; k < kWidth; ++k) {
+      const auto at = [&](int node) { return s.displacement4[offset[node].lane[lane + k] + 3]; };
+      sum[k] = (at(0) + at(1)) + at(2);
+    }
+    return Pack::load_aligned(sum) * Pack(1.0f / 3);
+  }
   [[gnu::always_inline]] static void scatter(const ShellSweep& s, const BatchOffsets* offset,
                                              const Pack (&f)[kParts][5][3]) {
     for (int part = 0; part < kParts; ++part) {
@@ -34,7 +43,7 @@ struct ShellKernelOf {
   }
 
   /// @param terms  made from the sweep
-  template <Law law, bool ghosts, bool volume, class Sum>
+  template <Law law, int kRows, bool volume, class Sum>
   [[gnu::always_inline]] static void sweepBatch(ShellSweep& s, const WallTerms<Pack>& terms, int batch,
                                                 const BatchReals* rows, Sum& energy, Sum& enclosed) {
     const BatchOffsets* offset = s.node + batch * 6;
@@ -44,9 +53,11 @@ struct ShellKernelOf {
       const auto rest = [=](int row) { return Pack::load_aligned(rows[row].lane + lane); };
       Pack u1[3], u[5][3];
       gather(s, offset, lane, u1, u);
-      if constexpr (ghosts) placeGhosts(rest, u);
-      energy.add(shellEnergy<law, LawFormula<law>::kThicknessSteps, ghosts>(terms, rest, u, f[part]), part);
-      if constexpr (ghosts) returnGhosts(rest, f[part]);
+      Pack shorter(0.0f);
+      if constexpr (kRows == kShellMuscleRows) shorter = contraction(s, offset, lane);
+      if constexpr (kRows == kShellGhostRows) placeGhosts(rest, u);
+      energy.add(shellEnergy<law, LawFormula<law>::kThicknessSteps, kRows>(terms, rest, shorter, u, f[part]), part);
+      if constexpr (kRows == kShellGhostRows) returnGhosts(rest, f[part]);
       if constexpr (volume) enclosed.add(coneVolume(rest, u, u1, share[part]), part);
     }
     scatter(s, offset, f);
@@ -56,13 +67,13 @@ struct ShellKernelOf {
           Lanes::add(s.volume_gradient4, offset[a].lane + part * kWidth, share[part]);
   }
 
-  template <Law law, bool ghosts, bool volume>
+  template <Law law, int kRows, bool volume>
   static double sweepAll(ShellSweep& s) {
     const WallTerms<Pack> terms(*s.constants, s.poisson_ratio);
     typename Lanes::Sum energy, enclosed;
     const BatchReals* rows = s.rest;
-    for (int batch = s.first; batch < s.last; ++batch, rows += ghosts ? kShellGhostRows : kShellRows)
-      sweepBatch<law, ghosts, volume>(s, terms, batch, rows, energy, enclosed);
+    for (int batch = s.first; batch < s.last; ++batch, rows += kRows)
+      sweepBatch<law, kRows, volume>(s, terms, batch, rows, energy, enclosed);
     if constexpr (volume) s.volume += enclosed.total();
     return energy.total();
   }
@@ -71,8 +82,7 @@ struct ShellKernelOf {
   static double sweepFibresOf(ShellSweep& s) {
     typename Lanes::Sum energy;
     const BatchReals *rows = s.rest, *fibres = s.fibre;
-    for (int batch = s.first; batch < s.last;
-         ++batch, rows += ghosts ? kShellGhostRows : kShellRows, fibres += kFibreRows) {
+    for (int batch = s.first; batch < s.last; ++batch, rows += s.rows, fibres += kFibreRows) {
       const BatchOffsets* offset = s.node + batch * 6;
       Pack f[kParts][5][3];
       for (int part = 0; part < kParts; ++part) {
@@ -92,18 +102,24 @@ struct ShellKernelOf {
     return energy.total();
   }
 
-  static double sweepFibres(ShellSweep& s) { return s.ghosts ? sweepFibresOf<true>(s) : sweepFibresOf<false>(s); }
+  static double sweepFibres(ShellSweep& s) {
+    return s.rows == kShellGhostRows ? sweepFibresOf<true>(s) : sweepFibresOf<false>(s);
+  }
 };
 
-/// Kernel::sweepAll() of the law of a sweep, with ghosts and volume if it has them.
+/// Kernel::sweepAll() of the law and the rows of a sweep, with the volume if it is asked for.
 template <class Kernel>
 double sweepShell(ShellSweep& s) {
   return withLaw(s.law, [&](auto tag) {
     constexpr Law law = decltype(tag)::value;
     const bool volume = s.volume_gradient4 != nullptr;
-    if (s.ghosts)
-      return volume ? Kernel::template sweepAll<law, true, true>(s) : Kernel::template sweepAll<law, true, false>(s);
-    return volume ? Kernel::template sweepAll<law, false, true>(s) : Kernel::template sweepAll<law, false, false>(s);
+    const auto sweep = [&](auto rows) {
+      constexpr int kRows = decltype(rows)::value;
+      return volume ? Kernel::template sweepAll<law, kRows, true>(s) : Kernel::template sweepAll<law, kRows, false>(s);
+    };
+    if (s.rows == kShellMuscleRows) return sweep(std::integral_constant<int, kShellMuscleRows>());
+    if (s.rows == kShellGhostRows) return sweep(std::integral_constant<int, kShellGhostRows>());
+    return sweep(std::integral_constant<int, kShellRows>());
   });
 }
 

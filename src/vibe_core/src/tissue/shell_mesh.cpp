@@ -51,6 +51,7 @@ void ShellElements::checkMesh() const {
   if (!mesh_.material.empty()) expectCount(mesh_.material.size(), mesh_.triangles.size(), "materials of triangles");
   if (!mesh_.fixed.empty()) expectCount(mesh_.fixed.size(), mesh_.nodes.size(), "marks of fixed nodes");
   checkFibres();
+  if (!mesh_.muscle.empty()) expectCount(mesh_.muscle.size(), mesh_.triangles.size(), "directions of muscle");
   for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
     for (const int node : mesh_.triangles[e])
       if (node < 0 || node >= nodes)
@@ -144,11 +145,11 @@ double ShellElements::areaOf(std::size_t triangle) const {
 }
 
 void ShellElements::measure() {
-  rest_.assign(mesh_.triangles.size() * kShellGhostRows, 0.0);
+  rest_.assign(mesh_.triangles.size() * kShellMuscleRows, 0.0);
   rest_area_.assign(mesh_.nodes.size(), 0.0);
   for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
     for (const int node : mesh_.triangles[e]) rest_area_[static_cast<std::size_t>(node)] += areaOf(e);
-    double* rest = rest_.data() + e * kShellGhostRows;
+    double* rest = rest_.data() + e * kShellMuscleRows;
     const PatchMatrix patch = restPatch(e);
     for (int k = 0; k < 5; ++k)
       Eigen::Map<Eigen::Vector3d>(rest + kShellPatch + 3 * k) = patch.col(k + 1) - patch.col(0);
@@ -196,23 +197,41 @@ void ShellElements::measureFibres() {
   for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
     double* rows = fibre_rest_.data() + kFibreRows * e;
     rows[kFibreModulus] = mesh_.fibres.modulus[e];
-    const PatchMatrix x = restPatch(e);
-    const Eigen::Vector3d sides[3] = {x.col(2) - x.col(1), x.col(2) - x.col(0), x.col(1) - x.col(0)};
-    const Eigen::Vector3d apexes[3] = {x.col(3) - x.col(0), x.col(1) - x.col(4), x.col(2) - x.col(5)};
-    const Eigen::Vector3d normal = sides[2].cross(sides[1]).normalized();
-    for (int side = 0; side < 3; ++side)
-      for (int family = 0; family < 2; ++family) {
-        const Eigen::Vector3d& along = mesh_.fibres.direction[e][static_cast<std::size_t>(family)];
-        const double* t = rest(e) + kShellSide + 4 * side;
-        const Eigen::Vector3d first = t[0] * sides[side], second = t[1] * sides[side] + t[2] * apexes[side];
-        const Eigen::Vector3d inside = along - along.dot(normal) * normal;
-        Eigen::Map<Eigen::Vector2d> row(rows + kFibreSide + 4 * side + 2 * family);
-        row = Eigen::Vector2d(first.dot(inside), second.dot(inside));
-        if (inside.norm() > kFibreMin * along.norm())
-          row.normalize();
-        else
-          row.setZero();
-      }
+    for (int family = 0; family < 2; ++family) {
+      const auto along = inSides(e, mesh_.fibres.direction[e][static_cast<std::size_t>(family)]);
+      for (int side = 0; side < 3; ++side)
+        Eigen::Map<Eigen::Vector2d>(rows + kFibreSide + 4 * side + 2 * family) = along[static_cast<std::size_t>(side)];
+    }
+  }
+}
+
+// A direction in the plane of a triangle, in the basis of each side's T; unit vectors, or 0 where it is across.
+std::array<Eigen::Vector2d, 3> ShellElements::inSides(std::size_t triangle, const Eigen::Vector3d& along) const {
+  const PatchMatrix x = restPatch(triangle);
+  const Eigen::Vector3d sides[3] = {x.col(2) - x.col(1), x.col(2) - x.col(0), x.col(1) - x.col(0)};
+  const Eigen::Vector3d apexes[3] = {x.col(3) - x.col(0), x.col(1) - x.col(4), x.col(2) - x.col(5)};
+  const Eigen::Vector3d normal = sides[2].cross(sides[1]).normalized();
+  const Eigen::Vector3d inside = along - along.dot(normal) * normal;
+  std::array<Eigen::Vector2d, 3> out;
+  for (int side = 0; side < 3; ++side) {
+    const double* t = rest(triangle) + kShellSide + 4 * side;
+    const Eigen::Vector3d first = t[0] * sides[side], second = t[1] * sides[side] + t[2] * apexes[side];
+    Eigen::Vector2d& row = out[static_cast<std::size_t>(side)];
+    row = Eigen::Vector2d(first.dot(inside), second.dot(inside));
+    if (inside.norm() > kFibreMin * along.norm())
+      row.normalize();
+    else
+      row.setZero();
+  }
+  return out;
+}
+
+void ShellElements::measureMuscle() {
+  for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
+    if (!hasMuscle(e)) continue;
+    const auto along = inSides(e, mesh_.muscle[e]);
+    for (std::size_t side = 0; side < 3; ++side)
+      Eigen::Map<Eigen::Vector2d>(rest_.data() + kShellMuscleRows * e + kShellMuscle + 2 * side) = along[side];
   }
 }
 

@@ -55,17 +55,43 @@ template <class B>
   pullBack(t, change, s);
 }
 
+/// Active strain: the muscle has shortened to 1 / (1 + contraction) along a unit direction of the wall, which has
+/// become thicker by as much. The elastic metric is then M^T C M with M M^T = 1 + ((1 + contraction)^2 - 1) c c^T, M
+/// upper triangular.
+/// @param c, n   the direction in the basis of T
+/// @param t      in: T; out: T M
+/// @param grown  out: M^T M - 1, the strain that this adds
+template <class B>
+[[gnu::always_inline]] inline void shorten(const B& contraction, const B& c, const B& n, B (&t)[3], B (&grown)[3]) {
+  const B one = constant<B>(1), more = contraction * (constant<B>(2) + contraction), across = more * n * n;
+  const B m22 = rootOf(B(one + across)), inverse = one / m22;
+  const B m11 = (one + contraction) * inverse, m12 = more * c * n * inverse;
+  grown[0] = mulAdd(m11, m11, B(-one));
+  grown[1] = m11 * m12;
+  grown[2] = mulAdd(m12, m12, across);
+  t[1] = mulAdd(t[0], m12, B(t[1] * m22));
+  t[0] = t[0] * m11;
+  t[2] = t[2] * m22;
+}
+
 /// Twice the membrane energy at the midpoint of a side, and the derivatives with respect to e and d.
+/// @tparam rows   of the triangle
 /// @param e, d    the side, and the vector from the opposite node to the apex beyond it; at rest
 /// @param ue, ud  their displacements
-template <Law law, int Steps, class B, class Rest>
-[[gnu::always_inline]] inline B sideEnergy(const WallTerms<B>& terms, const Rest& rest, int side, const B (&e)[3],
-                                           const B (&d)[3], const B (&ue)[3], const B (&ud)[3], B (&fe)[3],
-                                           B (&fd)[3]) {
+template <Law law, int Steps, int rows, class B, class Rest>
+[[gnu::always_inline]] inline B sideEnergy(const WallTerms<B>& terms, const Rest& rest, const B& contraction, int side,
+                                           const B (&e)[3], const B (&d)[3], const B (&ue)[3], const B (&ud)[3],
+                                           B (&fe)[3], B (&fd)[3]) {
   const int row = kShellSide + 4 * side;
-  const B t[3] = {rest(row), rest(row + 1), rest(row + 2)};
-  B s[3];
-  sideStrain(t, e, d, ue, ud, s);
+  B t[3] = {rest(row), rest(row + 1), rest(row + 2)}, s[3];
+  if constexpr (rows == kShellMuscleRows) {
+    B grown[3];
+    shorten(contraction, rest(kShellMuscle + 2 * side), rest(kShellMuscle + 2 * side + 1), t, grown);
+    sideStrain(t, e, d, ue, ud, s);
+    for (int k = 0; k < 3; ++k) s[k] = s[k] + grown[k];
+  } else {
+    sideStrain(t, e, d, ue, ud, s);
+  }
   const PlaneStress<B> p = planeStress<law, Steps>(terms, B(s[0] + s[2]), minor(s[0], s[2], s[1], s[1]));
   // dW/dC = W_I (1 - y^2 cof C), cof C = 1 + cof S
   const B volume = rest(row + 3), w = p.by_i * volume, square = w * p.square, shear = w + square;
@@ -104,12 +130,12 @@ template <class Side, class B>
 }
 
 /// Adds the membrane gradient to f; returns twice the energy.
-template <Law law, int Steps, class B, class Rest>
-[[gnu::always_inline]] inline B membraneEnergy(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& x,
-                                               const Patch<B>& u, Patch<B>& f) {
+template <Law law, int Steps, int rows, class B, class Rest>
+[[gnu::always_inline]] inline B membraneEnergy(const WallTerms<B>& terms, const Rest& rest, const B& contraction,
+                                               const Patch<B>& x, const Patch<B>& u, Patch<B>& f) {
   const auto side = [&](int k, const B(&e)[3], const B(&d)[3], const B(&ue)[3], const B(&ud)[3], B(&fe)[3], B(&fd)[3])
       __attribute__((always_inline)) {
-    return sideEnergy<law, Steps>(terms, rest, k, e, d, ue, ud, fe, fd);
+    return sideEnergy<law, Steps, rows>(terms, rest, contraction, k, e, d, ue, ud, fe, fd);
   };
   return overSides(side, x, u, f);
 }
@@ -328,14 +354,17 @@ template <class B, class Rest>
 }
 
 /// Energy of a triangle. Its gradient with respect to nodes 2 to 6 is written to f; that of node 1 is minus their sum.
-/// @param u  with ghosts as placeGhosts leaves them
-template <Law law, int Steps, bool ghosts, class B, class Rest>
-[[gnu::always_inline]] inline B shellEnergy(const WallTerms<B>& terms, const Rest& rest, Patch<B>& u, Patch<B>& f) {
+/// @tparam rows        of the triangle
+/// @param contraction  of its muscle, see shorten(); unused without
+/// @param u            with ghosts as placeGhosts leaves them
+template <Law law, int Steps, int rows, class B, class Rest>
+[[gnu::always_inline]] inline B shellEnergy(const WallTerms<B>& terms, const Rest& rest, const B& contraction,
+                                            Patch<B>& u, Patch<B>& f) {
   Patch<B> x;
   for (int a = 0; a < 5; ++a)
     for (int r = 0; r < 3; ++r) x[a][r] = rest(kShellPatch + 3 * a + r), f[a][r] = constant<B>(0);
-  const B membrane = membraneEnergy<law, Steps>(terms, rest, x, u, f);
-  if constexpr (!ghosts) {
+  const B membrane = membraneEnergy<law, Steps, rows>(terms, rest, contraction, x, u, f);
+  if constexpr (rows != kShellGhostRows) {
     return mulAdd(constant<B>(0.5), membrane, bendingEnergy(terms, rest, x, u, f));
   } else {
     B kept[3][3];

@@ -14,6 +14,7 @@ using Matrix18 = Eigen::Matrix<double, 18, 18>;
 using Rows18 = Eigen::Matrix<double, 3, 18>;  // derivatives of three numbers with respect to nodes 1 to 6
 
 constexpr int kSteps = 12;
+constexpr double kLeastStretch2 = 0.1;  // of a muscle, squared: it shortens to a third at most
 
 // Derivatives of the plane-stress energy with respect to C, in the orthonormal basis 11, 22, sqrt(2) 12 of symmetric
 // matrices.
@@ -71,18 +72,39 @@ void addFibres(const FibresOf& fibres, int side, const double (&s)[3], Eigen::Ma
   }
 }
 
+// The muscle of a side; null: none. A contraction below 0 is not known.
+struct MuscleOf {
+  const double* row;
+  double contraction;
+};
+
+// The contraction with which a wall has its length along the muscle.
+// @param s  strain of the wall
+double likelyContraction(const double* muscle, const double (&s)[3]) {
+  const double c = muscle[0], n = muscle[1], stretch2 = 1 + c * c * s[0] + 2 * c * n * s[1] + n * n * s[2];
+  return stretch2 < 1 ? 1 / std::sqrt(std::max(stretch2, kLeastStretch2)) - 1 : 0;
+}
+
 // Derivatives with respect to e and d of a side: 3 x 3 blocks ee, ed, dd.
 struct SideBlocks {
   Eigen::Matrix3d ee, ed, dd;
 };
 
 SideBlocks sideBlocks(const Material& material, const WallTerms<double>& terms, const double* row,
-                      const FibresOf& fibres, int side, const Eigen::Vector3d& e, const Eigen::Vector3d& d,
-                      const Eigen::Vector3d& ue, const Eigen::Vector3d& ud) {
-  const double t[3] = {row[0], row[1], row[2]}, volume = row[3] / 2, root = std::sqrt(2.0);
+                      const FibresOf& fibres, const MuscleOf& muscle, int side, const Eigen::Vector3d& e,
+                      const Eigen::Vector3d& d, const Eigen::Vector3d& ue, const Eigen::Vector3d& ud) {
+  double t[3] = {row[0], row[1], row[2]};
+  const double volume = row[3] / 2, root = std::sqrt(2.0);
   const double change[3] = {ue.dot(2 * e + ue), (ue.dot(2 * d + ud) + (2 * e + ue).dot(ud)) / 2, ud.dot(2 * d + ud)};
   double s[3];
   pullBack(t, change, s);
+  if (muscle.row != nullptr) {
+    double grown[3];
+    const double contraction = muscle.contraction < 0 ? likelyContraction(muscle.row, s) : muscle.contraction;
+    shorten(contraction, muscle.row[0], muscle.row[1], t, grown);
+    pullBack(t, change, s);
+    for (int k = 0; k < 3; ++k) s[k] += grown[k];
+  }
   const WallTangent w = withLaw(material.law, [&](auto tag) {
     return wallTangent<decltype(tag)::value>(terms, Eigen::Vector3d(s[0], s[2], root * s[1]));
   });
@@ -120,12 +142,13 @@ Eigen::Vector3d between(const Vectors& x, int to, int from) {
 }
 
 void addMembrane(const Material& material, const WallTerms<double>& terms, const double* rest, const FibresOf& fibres,
-                 const Vectors& x, const Vectors& u, bool whole, Matrix18& k) {
+                 MuscleOf muscle, const Vectors& x, const Vectors& u, bool whole, Matrix18& k) {
   for (int side = 0; side < 3; ++side) {
     const SideNodes& n = kSideNodes[side];
-    const SideBlocks b =
-        sideBlocks(material, terms, rest + kShellSide + 4 * side, fibres, side, between(x, n.e_to, n.e_from),
-                   between(x, n.d_to, n.d_from), between(u, n.e_to, n.e_from), between(u, n.d_to, n.d_from));
+    const SideBlocks b = sideBlocks(material, terms, rest + kShellSide + 4 * side, fibres,
+                                    {muscle.row != nullptr ? muscle.row + 2 * side : nullptr, muscle.contraction}, side,
+                                    between(x, n.e_to, n.e_from), between(x, n.d_to, n.d_from),
+                                    between(u, n.e_to, n.e_from), between(u, n.d_to, n.d_from));
     const int nodes[4] = {n.e_to, n.e_from, n.d_to, n.d_from};
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j) {
@@ -207,7 +230,7 @@ void foldGhosts(const double* rest, bool clamp, Matrix18& k) {
 
 }  // namespace
 
-void ShellElements::addStiffness(const double* displacement, BlockMatrix& stiffness) const {
+void ShellElements::addStiffness(const double* displacement, const float* contraction, BlockMatrix& stiffness) const {
   const int* place = stiffness.placesOf(patch_nodes_, 6).data();
   for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
     const auto material = static_cast<std::size_t>(materialOf(e));
@@ -219,6 +242,7 @@ void ShellElements::addStiffness(const double* displacement, BlockMatrix& stiffn
     const bool whole = atBoundary(e);  // folding needs the blocks above the diagonal too
     const FibresOf fibres{fibre_rest_.empty() ? nullptr : &fibre_rest_[kFibreRows * e], mesh_.fibres.stiffening};
     addMembrane(m, WallTerms<double>(constants_[material], m.poisson_ratio), rest(e), fibres,
+                {hasMuscle(e) ? rest(e) + kShellMuscle : nullptr, contraction != nullptr ? meanOf(contraction, e) : -1},
                 Eigen::Map<const Vectors>(&x[0][0]), Eigen::Map<const Vectors>(&u[0][0]), whole, k);
     if (whole) {
       foldGhosts(rest(e), false, k);

@@ -88,7 +88,8 @@ void addMaterials(const Material& wall, const std::vector<double>& factors, Shel
   }
 }
 
-ShellMesh shellMesh(const TissueScene& tissue, const Organ& organ, const std::vector<char>& fixed) {
+ShellMesh shellMesh(const TissueScene& tissue, const Organ& organ, const std::vector<char>& fixed,
+                    const std::optional<WallMuscle>& muscle) {
   ShellMesh mesh;
   mesh.nodes.assign(organ.surface.vertices.begin(), organ.surface.vertices.end());
   for (const auto& t : organ.surface.triangles) {
@@ -103,6 +104,7 @@ ShellMesh shellMesh(const TissueScene& tissue, const Organ& organ, const std::ve
   const std::vector<double> factors = stiffnessFactors(tissue, organ);
   addMaterials(material, factors, mesh);
   if (tissue.fibres) mesh.fibres = wallFibres(*tissue.fibres, organ, factors);
+  if (muscle) mesh.muscle = muscle->directions();
   mesh.fixed = fixed;
   return mesh;
 }
@@ -115,8 +117,11 @@ Eigen::Vector3d centreOf(const Organ& organ) {
 
 }  // namespace
 
-ShellTissue::ShellTissue(const TissueScene& tissue, const Organ& organ, const std::vector<char>& fixed)
-    : elements_(std::make_shared<const ShellElements>(shellMesh(tissue, organ, fixed), centreOf(organ))) {}
+ShellTissue::ShellTissue(const TissueScene& tissue, const Organ& organ, const std::vector<char>& fixed,
+                         const std::optional<MotionScene>& motion)
+    : muscle_(motion && gradeOf(*motion) * motion->wave_amplitude > 0 ? std::make_optional<WallMuscle>(*motion, organ)
+                                                                      : std::nullopt),
+      elements_(std::make_shared<const ShellElements>(shellMesh(tissue, organ, fixed, muscle_), centreOf(organ))) {}
 
 std::vector<double> ShellTissue::displacement(const State& state) const {
   std::vector<double> u(3 * state.x.size());
@@ -129,24 +134,32 @@ std::vector<double> ShellTissue::displacement(const State& state) const {
   return u;
 }
 
+void ShellTissue::displacement4(const State& state, std::vector<float>& out) const {
+  const std::vector<Eigen::Vector3d>& rest = elements_->mesh().nodes;
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    out[4 * i] = static_cast<float>(state.x[i] - rest[i].x());
+    out[4 * i + 1] = static_cast<float>(state.y[i] - rest[i].y());
+    out[4 * i + 2] = static_cast<float>(state.z[i] - rest[i].z());
+    out[4 * i + 3] = 0;
+  }
+  if (muscle_) muscle_->contraction(state.time, out.data() + 3, 4);
+}
+
 // In single precision, like the solver: ten times as fast, with a relative error of 1e-6.
 double ShellTissue::energy(const State& state) const {
-  const std::vector<Eigen::Vector3d>& rest = elements_->mesh().nodes;
-  std::vector<float> displacement4(4 * rest.size(), 0.0F), gradient4(4 * rest.size(), 0.0F);
-  for (std::size_t i = 0; i < rest.size(); ++i) {
-    displacement4[4 * i] = static_cast<float>(state.x[i] - rest[i].x());
-    displacement4[4 * i + 1] = static_cast<float>(state.y[i] - rest[i].y());
-    displacement4[4 * i + 2] = static_cast<float>(state.z[i] - rest[i].z());
-  }
+  std::vector<float> displacement(4 * state.x.size()), gradient(4 * state.x.size(), 0.0F);
+  displacement4(state, displacement);
   double energy = 0;
   for (int piece = 0; piece < elements_->pieceCount(); ++piece)
-    energy += elements_->evaluate(piece, displacement4.data(), gradient4.data());
+    energy += elements_->evaluate(piece, displacement.data(), gradient.data());
   return energy;
 }
 
 void ShellTissue::addForces(const State& state, double* fx, double* fy, double* fz) const {
   std::vector<double> gradient(3 * state.x.size());
-  elements_->evaluate(displacement(state).data(), gradient.data());
+  std::vector<float> contraction(state.x.size(), 0);
+  if (muscle_) muscle_->contraction(state.time, contraction.data());
+  elements_->evaluate(displacement(state).data(), contraction.data(), gradient.data());
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     fx[i] -= gradient[3 * i];
     fy[i] -= gradient[3 * i + 1];

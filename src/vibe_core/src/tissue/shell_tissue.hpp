@@ -1,9 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "tissue/wall_muscle.hpp"
 #include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/scene/scene.hpp"
 #include "vibe_core/tissue/shell.hpp"
@@ -20,9 +22,11 @@ ShellFibres wallFibres(const FibreScene& scene, const Organ& organ, const std::v
 /// The wall of an organ as a shell whose nodes are the particles (tissue.model: shell).
 class ShellTissue : public TissueModel {
  public:
-  /// @param fixed  per particle: not 0 where it is held
-  /// @throws Error for an unknown tissue.law, and as ShellElements
-  ShellTissue(const TissueScene& tissue, const Organ& organ, const std::vector<char>& fixed);
+  /// @param fixed   per particle: not 0 where it is held
+  /// @param motion  empty: a wall without muscle
+  /// @throws Error for an unknown tissue.law, and as ShellElements and WallMuscle
+  ShellTissue(const TissueScene& tissue, const Organ& organ, const std::vector<char>& fixed,
+              const std::optional<MotionScene>& motion = {});
 
   std::string name() const override { return "shell"; }
   double energy(const State& state) const override;
@@ -31,9 +35,14 @@ class ShellTissue : public TissueModel {
   double stiffnessRatio() const override { return 1; }
 
   std::shared_ptr<const ShellElements> elements() const { return elements_; }
+  const std::optional<WallMuscle>& muscle() const { return muscle_; }  ///< empty: none contracts
+  /// From rest, with the contraction at the state's time, as ShellElements takes them.
+  /// @param out  (4 per particle) [m]
+  void displacement4(const State& state, std::vector<float>& out) const;
 
  private:
   std::vector<double> displacement(const State& state) const;
+  std::optional<WallMuscle> muscle_;  // before the elements, which have its directions
   std::shared_ptr<const ShellElements> elements_;
 };
 

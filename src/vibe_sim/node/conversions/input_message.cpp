@@ -196,6 +196,7 @@ vibe_msgs::StepInput makeStepInput(const StepInput& input, std::int64_t step, st
   std::copy(input.buttons.begin(), input.buttons.end(), message.buttons.begin());
   message.pull_particle = input.pull_particle;
   message.pull_target = toMessage<geometry_msgs::Point>(input.pull_target);
+  message.breath = static_cast<std::uint8_t>(input.breath);
   return message;
 }
 
@@ -205,6 +206,7 @@ StepInput readStepInput(const vibe_msgs::StepInput& message) {
   std::copy(message.buttons.begin(), message.buttons.end(), input.buttons.begin());
   input.pull_particle = message.pull_particle;
   input.pull_target = {message.pull_target.x, message.pull_target.y, message.pull_target.z};
+  input.breath = message.breath == 0 ? Breath::Free : Breath::Held;
   return input;
 }
 

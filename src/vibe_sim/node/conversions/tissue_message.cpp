@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "conversions/conversions.hpp"
+#include "vibe_core/constraints/breathing.hpp"
 
 namespace vibe::sim {
 
@@ -133,6 +134,21 @@ vibe_msgs::TissueTopology makeTopology(const Model& model, std::uint32_t revisio
   message.render_offsets.assign(model.render_surface.offsets.begin(), model.render_surface.offsets.end());
   message.render_particles.assign(model.render_surface.particles.begin(), model.render_surface.particles.end());
   message.render_weights = model.render_surface.weights;
+  return message;
+}
+
+vibe_msgs::OrganMotion makeOrganMotion(const Model& model, const State& state, std::int64_t stamp) {
+  vibe_msgs::OrganMotion message;
+  message.header.stamp = toRosTime(stamp);
+  message.breath_held = state.motion.held;
+  message.breath_held_time = state.motion.held_time;
+  const OrganPhases phases = organPhases(model.scene, state);
+  message.breath_phase = phases.breath;
+  message.wave_phase = phases.wave;
+  message.heart_phase = phases.heart;
+  if (const auto breathing = breathingOf(model.scene))
+    message.breath_shift = -breathingShift(*breathing, breathingTime(state)).z();
+  message.muscle_work = state.motion.muscle_work;
   return message;
 }
 

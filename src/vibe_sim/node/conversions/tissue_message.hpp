@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <sensor_msgs/PointCloud2.h>
+#include <vibe_msgs/OrganMotion.h>
 #include <vibe_msgs/TissueTopology.h>
 
 #include "vibe_core/model/model.hpp"
@@ -32,6 +33,9 @@ class ParticleCloud {
 
   void updateMarks(const ProcedureState& procedure);
 };
+
+/// What moves the organ by itself.
+vibe_msgs::OrganMotion makeOrganMotion(const Model& model, const State& state, std::int64_t stamp);
 
 /// Triangles, rest shape and anatomy of the organ, and the surface to draw.
 vibe_msgs::TissueTopology makeTopology(const Model& model, std::uint32_t revision, std::int64_t stamp);

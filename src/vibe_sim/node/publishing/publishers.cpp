@@ -19,6 +19,7 @@
 #include "conversions/procedure_message.hpp"
 #include "conversions/session_message.hpp"
 #include "conversions/suture_message.hpp"
+#include "conversions/tissue_message.hpp"
 #include "conversions/tool_message.hpp"
 #include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/procedure/helix_grip.hpp"
@@ -129,6 +130,8 @@ Publishers::Publishers(SinkSource sinks, bool with_clock)
                                                            [this] { snapshot_asked_ = true; })),
       step_timing_(sinks_.advertise<vibe_msgs::StepTiming>("step_timing", kSmallQueue, kLeftToReplay)),
       tool_(toolTopics(sinks_)),
+      organ_motion_(stepTopic(sinks_, "organ/motion", thinnedTo(0.1),
+                              [](Now s) { return makeOrganMotion(s.model(), s.state(), s.now()); })),
       arms_(sinks_) {
   if (sinks_.isGraph())
     static_transforms_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>();
@@ -183,6 +186,7 @@ void Publishers::stepResult(const TimedSimulation& simulation, const RunStatus& 
   tool(simulation, true, stamp);
   haptic(simulation, stamp);
   pull(simulation, stamp);
+  if (breathingOf(simulation.model().scene)) organ_motion_(simulation);
   if (simulation.state().step % imageInterval(simulation.time().period()) == 0) particles(simulation, stamp);
   if (suturesAreDue(simulation)) sutures(simulation);
   arms_.operatingState(simulation, status);

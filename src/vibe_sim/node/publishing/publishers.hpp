@@ -92,6 +92,7 @@ class Publishers {
       events_, sutures_, applied_input_, solver_statistics_, scene_, haptic_, pull_, step_result_, session_info_,
       snapshot_, step_timing_, clock_;
   std::vector<StepTopic> tool_;  // one by one, of a scene with a tool
+  StepTopic organ_motion_;       // of a scene that breathes
   ArmPublishers arms_;
   std::atomic<int> warnings_{0};
   std::mutex gate_mutex_;

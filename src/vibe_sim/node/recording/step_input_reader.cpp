@@ -187,6 +187,10 @@ RecordedStep StepInputReader::read(const std::uint8_t* bytes, std::size_t size) 
   message.get("pull_target.x", "float64", 1, &result.input.pull_target.x());
   message.get("pull_target.y", "float64", 1, &result.input.pull_target.y());
   message.get("pull_target.z", "float64", 1, &result.input.pull_target.z());
+  if (version == 2) return result;
+  std::uint8_t breath = 0;
+  message.get("breath", "uint8", 1, &breath);
+  result.input.breath = breath == 0 ? Breath::Free : Breath::Held;
   return result;
 }
 

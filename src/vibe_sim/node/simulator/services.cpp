@@ -52,6 +52,8 @@ Services::Services(const ros::NodeHandle& handle, SimulationThread& thread, Publ
         }));
   offer<std_srvs::SetBool>("pause",
                            [&thread](const std_srvs::SetBool::Request& r) { return thread.setPaused(r.data); });
+  offer<std_srvs::SetBool>("organ/hold_breath",
+                           [&thread](const std_srvs::SetBool::Request& r) { return thread.holdBreath(r.data); });
   offer<vibe_msgs::Step>("step", [&thread](const vibe_msgs::Step::Request& r) { return thread.takeSteps(r.n); });
   offer<vibe_msgs::Reset>("reset",
                           [&thread](const vibe_msgs::Reset::Request& r) { return thread.reset(r.seed, r.keep_time); });

@@ -57,6 +57,7 @@ class SimulationThread {
   // Commands, from any other thread; each returns when it is done.
   Reply setPaused(bool paused);
   Reply takeSteps(std::uint32_t n);
+  Reply holdBreath(bool held);
   Reply reset(std::uint64_t seed, bool keep_time);
   Reply saveSnapshot(const std::string& file);
   Reply loadSnapshot(const std::string& file, OtherScene other);

@@ -103,6 +103,19 @@ Reply SimulationThread::takeSteps(std::uint32_t n) {
   });
 }
 
+// A part of the input in force, so that applied_input has it and a replay repeats it.
+Reply SimulationThread::holdBreath(bool held) {
+  return call([this, held]() -> Reply {
+    const Scene& scene = simulation_.model().scene;
+    if (!breathingOf(scene))
+      return {false, "The scene '" + scene.name + "' does not breathe; load one with a section motion or breathing."};
+    StepInput input = simulation_.input();
+    input.breath = held ? Breath::Held : Breath::Free;
+    simulation_.setInput(input);
+    return {true, (held ? "The breath is held from " : "It breathes from ") + seconds(simulation_.state().time) + "."};
+  });
+}
+
 Reply SimulationThread::reset(std::uint64_t seed, bool keep_time) {
   return call([this, seed, keep_time]() -> Reply {
     if (!keep_time && parameters_.time_source == TimeSource::Wall) {

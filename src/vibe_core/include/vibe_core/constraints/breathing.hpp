@@ -3,16 +3,29 @@
 #include <Eigen/Core>
 
 #include "vibe_core/scene/scene.hpp"
+#include "vibe_core/state/state.hpp"
 
 namespace vibe {
 
 /// How far the diaphragm has moved the foundation and the entry from where they are at rest, in world [m]: towards the
-/// feet (-z) by half the amplitude times 1 - cos(2 pi rate time). So time 0 is the end of an expiration, without a jump
-/// of position or velocity. It is a function of the time alone: nothing of it is stored in State.
-/// @param time  simulated [s]
+/// feet (-z) by half the amplitude times 1 - cos(angle), where the angle grows evenly by pi in an inspiration and in an
+/// expiration. So time 0 is the end of an expiration, without a jump of position or velocity.
+/// @param time  for which it has breathed, see breathingTime() [s]
 Eigen::Vector3d breathingShift(const BreathingScene& breathing, double time);
 
 /// Its rate of change [m/s].
 Eigen::Vector3d breathingSpeed(const BreathingScene& breathing, double time);
+
+/// The time of a state without that in which the breath was held [s].
+inline double breathingTime(const State& state) {
+  return state.time - state.motion.held_time;
+}
+
+/// Where the organ's own motions are: parts of a breath, of the period of contraction waves, of a beat, from 0 to 1; 0
+/// where the scene has none. A breath begins with the inspiration, a wave at mid corpus.
+struct OrganPhases {
+  double breath = 0, wave = 0, heart = 0;
+};
+OrganPhases organPhases(const Scene& scene, const State& state);
 
 }  // namespace vibe

@@ -16,12 +16,16 @@ enum Button : int { ApcPedal, HelixGrab, Needle, TTag, Cinch, Insufflate };
 constexpr int kButtonCount = 6;                                   ///< values of Button
 extern const std::array<const char*, kButtonCount> kButtonNames;  ///< "apc_pedal", "helix_grab", ...
 
+/// What the breath of a patient does. An anaesthetist can hold it.
+enum class Breath : std::uint8_t { Free, Held };
+
 /// All external input of one step, and exactly what a recording stores, so that a replay has the same bits.
 struct StepInput {
   std::array<double, kJointCount> joints{};               ///< commanded joint positions [m], [rad]
   std::array<std::uint8_t, kButtonCount> buttons{};       ///< 1 while pressed
   int pull_particle = -1;                                 ///< that the pull spring holds; -1: none
   Eigen::Vector3d pull_target = Eigen::Vector3d::Zero();  ///< to which the spring pulls it, world [m]
+  Breath breath = Breath::Free;                           ///< no effect in a scene that does not breathe
 };
 
 }  // namespace vibe

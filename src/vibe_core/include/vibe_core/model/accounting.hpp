@@ -21,10 +21,10 @@ Energies energies(const Model& model, const State& state);
 /// The same without elastic and contact energy, which are the expensive ones.
 Energies energiesBesideElastic(const Model& model, const State& state);
 
-/// Kinetic and potential energy, minus the work of tool, gas, threads, pull spring, corrections and residuals, plus all
-/// losses in state.energy [J]. With an implicit solver it is constant up to the error of the trapezoidal rule for the
-/// elastic energy over a step, and up to rounding. Shape matching has no account of stiffness_damping and of its own
-/// numerical damping, which lower it.
+/// Kinetic and potential energy, minus the work of tool, gas, threads, pull spring, muscle, corrections and residuals,
+/// plus all losses in state.energy [J]. With an implicit solver it is constant up to the error of the trapezoidal rule
+/// for the elastic energy over a step, and up to rounding. Shape matching has no account of stiffness_damping and of
+/// its own numerical damping, which lower it.
 double energyBalance(const Model& model, const State& state);
 
 /// Sum of mass times velocity over the free particles [kg m/s].

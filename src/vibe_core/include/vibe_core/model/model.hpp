@@ -51,7 +51,7 @@ struct Model {
   RenderSurface render_surface;  ///< empty without scene.render_surface
 
   /// Position of every particle along the axis of the organ at rest, 0: apex of the fundus, 1: pylorus; for an organ
-  /// without these ends, along its entry axis. (particle_count), empty without scene.suture.
+  /// without these ends, along its entry axis. (particle_count), empty without scene.suture and breathingOf().
   std::vector<double> along;
 };
 

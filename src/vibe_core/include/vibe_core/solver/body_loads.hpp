@@ -146,12 +146,15 @@ struct GasLoad {
 
 /// Everything that acts on the body during one step, beside its own elasticity, foundation and weight.
 struct BodyLoads {
-  RowList<LinearConstraint> constraints;     ///< what is held, exactly or by a spring
-  RowList<ContactConstraint> contacts;       ///< of the wall with the tool
-  RowList<AttachmentPoint> attachments;      ///< of the threads; those that stay from step to step keep their numbers
-  RowList<ThreadLoad> threads;               ///< each runs through its own attachments
-  GasLoad gas;                               ///< by default there is none
-  ToolYield tool_yield;                      ///< by default the tool is rigid
+  RowList<LinearConstraint> constraints;  ///< what is held, exactly or by a spring
+  RowList<ContactConstraint> contacts;    ///< of the wall with the tool
+  RowList<AttachmentPoint> attachments;   ///< of the threads; those that stay from step to step keep their numbers
+  RowList<ThreadLoad> threads;            ///< each runs through its own attachments
+  GasLoad gas;                            ///< by default there is none
+  ToolYield tool_yield;                   ///< by default the tool is rigid
+  /// Contraction of the muscle of ElasticBody::shell during the step, per node (ratio); null: it is relaxed. It lives
+  /// until the end of the step.
+  const std::vector<float>* contraction = nullptr;
   const EnergyTerm* extra = nullptr;         ///< null: none
   std::vector<StiffnessCoupling> couplings;  ///< stiffness beside that of `extra`, for the factor of later steps
 

@@ -71,6 +71,14 @@ struct EnergyAccount {
 /// Interruptions of a contact shorter than this do not end it [s].
 constexpr double kContactGap = 0.25;
 
+/// The organ's own motion, beside what follows from the time. A state in which it is as here has the hash that it would
+/// have without: see hash().
+struct MotionState {
+  bool held = false;       ///< the breath, in the last step
+  double held_time = 0;    ///< for which it was held so far [s]
+  double muscle_work = 0;  ///< done by contraction waves on the tissue, a sum like those of EnergyAccount [J]
+};
+
 /// Everything that changes. A snapshot is a copy; equal states have equal futures. Every member of it, and of the
 /// structs in it, is in a table of state_fields.hpp, from which hash, snapshot and comparison follow.
 struct State {
@@ -113,7 +121,8 @@ struct State {
   double grip_force = 0;  ///< magnitude of the force on the grip [N]
   int contact_count = 0;  ///< points where the tool touches the wall; shape matching: particles that it touches
 
-  PullSpring pull;  ///< pulls the tissue from outside
+  PullSpring pull;     ///< pulls the tissue from outside
+  MotionState motion;  ///< of the organ by itself
 
   ProcedureState procedure;  ///< marks, needle, sutures and bleeding
 

@@ -11,9 +11,10 @@ namespace vibe {
 /// Version of StepInput's fields, which recordings carry. Raise it with every change of the list below.
 ///   1: joints and buttons
 ///   2: with pull_particle and pull_target
-constexpr std::uint32_t kStepInputVersion = 2;
+///   3: with breath
+constexpr std::uint32_t kStepInputVersion = 3;
 
-VIBE_FIELDS(StepInput, joints, buttons, pull_particle, pull_target);
+VIBE_FIELDS(StepInput, joints, buttons, pull_particle, pull_target, breath);
 
 /// Version of the fields of State and of the layout of snapshots, which carry it. Raise it with every change of the
 /// lists below.
@@ -28,6 +29,7 @@ VIBE_FIELDS(ProcedureState, phase, pressed, heat, dose, grade, beam_energy, base
             grip_turns, arm_closed, needle_on_arm, needle_loaded, pierced, pending, sutures, thread_used, bleedings,
             blood_lost);
 VIBE_FIELDS(PullSpring, particle, node, weight, target, force);
+VIBE_FIELDS(MotionState, held, held_time, muscle_work);
 VIBE_FIELDS(GripPoint, particle, local, weight);
 VIBE_FIELDS(EnergyAccount, tool_work, hand_work, scope_loss, gas_work, thread_work, pull_work, friction_loss,
             damping_loss, viscous_loss, contact_loss, contact_energy, numerical_loss, correction_work, residual_work);
@@ -42,6 +44,6 @@ VIBE_FIELDS(ImpedanceMemory, last_step, next_renewal, current, next, last_nodes,
 VIBE_FIELDS(State, step, time, seed, random, x, y, z, vx, vy, vz, ax, ay, az, qw, qx, qy, qz, wx, wy, wz, gas_amount,
             pressure, volume, pressure_reached, joints, tool_displacement, hand_effort, stall, blocked_steps, grip,
             helix_pressed, in_contact, untouched_time, tool_force, tool_torque, tool_load, grip_force, contact_count,
-            pull, procedure, energy, solver, impedance);
+            pull, motion, procedure, energy, solver, impedance);
 
 }  // namespace vibe

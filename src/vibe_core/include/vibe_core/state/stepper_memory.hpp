@@ -20,9 +20,11 @@ struct StiffnessCoupling {
 /// What an implicit stepper carries from step to step beside the motion. The factor itself is a cache: it is computed
 /// again wherever the scratch does not hold the one that the memory names.
 struct StepperMemory {
-  std::vector<float> linearization_point;    ///< positions of the factor in use (3 * nodes) [m]; empty: rest
-  std::vector<float> next;                   ///< positions of the next factor (3 * nodes) [m]; empty: there is none
-  std::vector<StiffnessCoupling> couplings;  ///< contacts and threads in the factor in use
+  /// Positions of the factor in use (3 * nodes) [m], and after them, where muscle contracts, its contraction (nodes);
+  /// empty: rest.
+  std::vector<float> linearization_point;
+  std::vector<float> next;                        ///< the same of the next factor; empty: there is none
+  std::vector<StiffnessCoupling> couplings;       ///< contacts and threads in the factor in use
   std::vector<StiffnessCoupling> next_couplings;  ///< the same of the next factor
   std::uint64_t linearization_id = 0;             ///< hash of `linearization_point` and `couplings`
   std::uint64_t next_id = 0;                      ///< hash of `next` and `next_couplings`

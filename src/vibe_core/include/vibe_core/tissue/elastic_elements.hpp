@@ -7,10 +7,11 @@
 namespace vibe {
 
 /// The stored energy of an elastic body as a function of its node displacements: the interface for implicit solvers.
-/// Constant after building. Node vectors are 4 floats per node (x, y, z, unused), so that one 128-bit load fetches a
-/// node. Displacements from rest instead of positions keep single precision accurate to a strain of 1e-7. The work is
-/// divided into a fixed number of pieces. Each adds to its own output, and the outputs are summed in order, so the
-/// result does not depend on the number of threads.
+/// Constant after building. Node vectors are 4 floats per node, so that one 128-bit load fetches a node: x, y, z, and
+/// the contraction of its muscle in displacements (0 or more, ratio), unused in others. Displacements from rest instead
+/// of positions keep single precision accurate to a strain of 1e-7. The work is divided into a fixed number of pieces.
+/// Each adds to its own output, and the outputs are summed in order, so the result does not depend on the number of
+/// threads.
 class ElasticElements {
  public:
   virtual ~ElasticElements() = default;

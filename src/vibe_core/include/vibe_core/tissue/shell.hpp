@@ -39,8 +39,11 @@ struct ShellMesh {
   std::vector<Material> materials;            ///< different ones of the wall, at least one
   std::vector<int> material;                  ///< per triangle, index into `materials`; empty: all of the first
   ShellFibres fibres;                         ///< by default none
-  std::vector<char> fixed;                    ///< per node, nonzero: held; empty: none is held
-  std::vector<std::array<int, 2>> hinged;     ///< edges that bend freely although they have two triangles or are fixed
+  /// Per triangle the direction in which its muscle shortens, projected onto its plane; 0: it has no muscle, and so
+  /// has a triangle without three neighbours; empty: the wall has none; unit vector.
+  std::vector<Eigen::Vector3d> muscle;
+  std::vector<char> fixed;                 ///< per node, nonzero: held; empty: none is held
+  std::vector<std::array<int, 2>> hinged;  ///< edges that bend freely although they have two triangles or are fixed
 };
 
 /// A thin wall with membrane and bending stiffness: the rotation-free triangles of Flores & Onate 2005, "Improvements
@@ -56,6 +59,10 @@ struct ShellMesh {
 /// A side without a neighbour bends freely. A side with two fixed nodes is clamped: its tangent plane is preserved. So
 /// is a side of a triangle whose nodes are all fixed, which takes no part in the strain of its neighbour: strain and
 /// curvature jump there, and a patch across would take half of the curvature.
+/// Muscle contracts by active strain (Rodriguez, Hoger, McCulloch 1994, doi 10.1016/0021-9290(94)90021-3): along its
+/// direction the wall at rest is shorter by 1 / (1 + contraction) and as much thicker, and its membrane energy is that
+/// of the deformation from there. The contraction of a triangle is the mean of its nodes' fourth numbers. Bending does
+/// not see it.
 /// Energy and force stay finite if the wall degenerates to a line or a point, or folds over. Memory: the triangles of a
 /// material are cut into batches for the kernel, those with three neighbours first.
 class ShellElements : public ElasticElements {
@@ -72,7 +79,14 @@ class ShellElements : public ElasticElements {
   int nodeCount() const override { return static_cast<int>(mesh_.nodes.size()); }
   int pieceCount() const override { return piece_count_; }
   double evaluate(int piece, const float* displacement4, float* gradient4) const override;
-  double evaluate(const double* displacement, double* gradient) const override;
+  double evaluate(const double* displacement, double* gradient) const override {
+    return evaluate(displacement, nullptr, gradient);
+  }
+  /// The same with contracted muscle. @param contraction  per node, 0 or more (ratio); null: 0
+  double evaluate(const double* displacement, const float* contraction, double* gradient) const;
+  /// The energy of the triangles with muscle alone, in single precision [J].
+  /// @param scratch4  (4 * nodeCount) is added to
+  double muscleEnergy(const float* displacement4, float* scratch4) const;
 
   /// Like evaluate, and also adds the piece's share of the volume [m^3] enclosed by the surface, and a third of each
   /// triangle's area vector to its nodes [m^2]. The latter is the force of a pressure of 1 Pa and, for a closed
@@ -92,7 +106,12 @@ class ShellElements : public ElasticElements {
   std::vector<std::pair<const std::vector<int>*, int>> nodeGroups() const override;
   /// Membrane: the tangent of plane stress without its negative eigenvalues, and the stress without its negative
   /// principal values; fibres exactly. Bending: Gauss-Newton, without the derivative of the moment arm.
-  void addStiffness(const double* displacement, BlockMatrix& stiffness) const override;
+  void addStiffness(const double* displacement, BlockMatrix& stiffness) const override {
+    addStiffness(displacement, nullptr, stiffness);
+  }
+  /// The same with contracted muscle. @param contraction  per node (ratio); null: where the wall is shorter along its
+  /// muscle than at rest, the muscle is taken to have contracted by as much
+  void addStiffness(const double* displacement, const float* contraction, BlockMatrix& stiffness) const;
   /// A third of the mass of each triangle per node.
   std::vector<double> lumpedMass(double density) const override;
   /// Square root of the ratio of the areas around the node to those at rest, minus 1.
@@ -101,9 +120,8 @@ class ShellElements : public ElasticElements {
   const ShellMesh& mesh() const { return mesh_; }  ///< as constructed
 
  private:
-  struct Run {  // batches of one material, with or without ghosts
-    int first, last, material;
-    bool ghosts;
+  struct Run {  // batches of one material and of triangles with as many rows
+    int first, last, material, rows;
     std::size_t row;  // of the first batch in batch_rest_
   };
   static constexpr int kWindow = 16;  // batches that share a contiguous piece of the mesh
@@ -115,13 +133,16 @@ class ShellElements : public ElasticElements {
   void measureBending(std::size_t triangle, const Eigen::Matrix<double, 3, 6>& patch, double* rest) const;
   void checkFibres() const;
   void measureFibres();
+  void measureMuscle();
+  std::array<Eigen::Vector2d, 3> inSides(std::size_t triangle, const Eigen::Vector3d& along) const;
   void measureGhosts(std::size_t triangle, double* rest) const;
   Eigen::Matrix<double, 3, 6> restPatch(std::size_t triangle) const;
   void makeBatches();
-  void addRun(const std::vector<int>& triangles, int material, bool ghosts);
+  void addRun(const std::vector<int>& triangles, int material, int rows);
   void addBatch(const std::vector<int>& triangles, int rows);
   int firstBatch(int piece) const;
   ShellPart makePart(int first_piece, int last_piece, std::vector<int>& place) const;
+  double evaluateRun(const Run& run, int first_node_batch, ShellSweep& sweep) const;
   double evaluatePiece(int piece, ShellSweep sweep, int first_node_batch, double* volume) const;
 
   double areaOf(std::size_t triangle) const;
@@ -132,9 +153,17 @@ class ShellElements : public ElasticElements {
     return held(t[0]) && held(t[1]) && held(t[2]);
   }
   bool atBoundary(std::size_t triangle) const;
+  bool hasMuscle(std::size_t triangle) const {
+    return !mesh_.muscle.empty() && !mesh_.muscle[triangle].isZero() && !atBoundary(triangle);
+  }
   int patchNode(std::size_t triangle, int k) const { return patch_nodes_[6 * triangle + static_cast<std::size_t>(k)]; }
   const double* rest(std::size_t triangle) const;
   int materialOf(std::size_t triangle) const { return mesh_.material.empty() ? 0 : mesh_.material[triangle]; }
+  /// Of a number per node.
+  double meanOf(const float* values, std::size_t triangle) const {
+    const auto& t = mesh_.triangles[triangle];
+    return (static_cast<double>(values[t[0]]) + values[t[1]] + values[t[2]]) / 3;
+  }
   /// Displacements of the patch relative to node 1, ghosts included.
   void gather(std::size_t triangle, const double* displacement, double (&v)[5][3]) const;
 
@@ -144,7 +173,7 @@ class ShellElements : public ElasticElements {
   std::vector<LawConstants> constants_;  // per material
   std::vector<int> patch_nodes_;         // (triangles * 6), -1: ghost
   std::vector<char> released_;           // (triangles * 3) sides hinged by ShellMesh::hinged
-  std::vector<double> rest_;             // (triangles * kShellGhostRows)
+  std::vector<double> rest_;             // (triangles * kShellMuscleRows)
   std::vector<double> rest_area_;        // (nodes) of the triangles around the node [m^2]
   int batch_count_ = 0, piece_count_ = 1;
   std::vector<Run> runs_;
