@@ -114,7 +114,7 @@ TEST(StepInputReader, ReadsRecordingsFromBeforeThePullSpring) {
 TEST(StepInputReader, FindsFieldsByNameAmongOthers) {
   const StepInputReader reader(
       "uint8 LIMIT=4\nfloat32[] weights\nstring[] notes\nuint32 version\nuint8[6] buttons\nfloat64[7] joints\n"
-      "uint64 step\ngeometry_msgs/Point pull_target\nint32 pull_particle\n" +
+      "uint64 step\ngeometry_msgs/Point pull_target\nint32 pull_particle\nuint8 breath\n" +
       kPointDefinition);
   Bytes bytes;
   put<std::uint32_t>(2, bytes), put(1.5F, bytes), put(2.5F, bytes);
@@ -125,9 +125,12 @@ TEST(StepInputReader, FindsFieldsByNameAmongOthers) {
   put<std::uint64_t>(5, bytes);
   for (int k = 0; k < 3; ++k) put(sample().pull_target[k], bytes);
   put<std::int32_t>(sample().pull_particle, bytes);
+  put<std::uint8_t>(1, bytes);
   const RecordedStep read = reader.read(bytes.data(), bytes.size());
+  StepInput expected = sample();
+  expected.breath = Breath::Held;
   EXPECT_EQ(read.step, 5U);
-  EXPECT_EQ(firstDifference(read.input, sample()), "");
+  EXPECT_EQ(firstDifference(read.input, expected), "");
 }
 
 TEST(StepInputReader, RejectsANewerVersionByName) {
