@@ -64,10 +64,7 @@ def main():
         if row["picture"] in arguments.made:
             row.update(date=datetime.date.today().isoformat(), digest=digest(arguments.root, row["shows"]))
     if arguments.made:
-        sys.path.append(str(arguments.root / "src/vibe_sessions/src"))
-        from vibe_sessions.whole_file import open_whole
-
-        with open_whole(folder / "made.csv", newline="") as file:
+        with open(folder / "made.csv", "w", newline="", encoding="utf-8") as file:  # not whole: git keeps what was there
             writer = csv.DictWriter(file, rows[0], lineterminator="\n")
             writer.writeheader()
             writer.writerows(rows)

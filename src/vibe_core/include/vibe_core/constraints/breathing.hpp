@@ -21,11 +21,14 @@ inline double breathingTime(const State& state) {
   return state.time - state.motion.held_time;
 }
 
-/// Where the organ's own motions are: parts of a breath, of the period of contraction waves, of a beat, from 0 to 1; 0
-/// where the scene has none. A breath begins with the inspiration, a wave at mid corpus.
+/// Where the organ's own motions are, from 0 to 1; 0 where the scene has none.
 struct OrganPhases {
-  double breath = 0, wave = 0, heart = 0;
+  double breath = 0;  ///< part of a breath, which begins with the inspiration (ratio)
+  double wave = 0;    ///< part of the period of contraction waves, which begin at mid corpus (ratio)
+  double heart = 0;   ///< part of a beat (ratio)
 };
+
+/// Those of a state, from its time and from how long the breath was held.
 OrganPhases organPhases(const Scene& scene, const State& state);
 
 }  // namespace vibe

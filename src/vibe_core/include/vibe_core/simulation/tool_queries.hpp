@@ -58,7 +58,7 @@ std::vector<Eigen::Isometry3d> drawnLinkPoses(const Model& model, const State& s
 
 /// A mesh that the URDF has for the picture of a link.
 struct LinkMesh {
-  int link = -1;
+  int link = -1;                                             ///< number of the link
   Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  ///< mesh in the link [m]
   std::string file;                                          ///< or package://NAME/FILE
 };
