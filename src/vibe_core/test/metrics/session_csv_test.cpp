@@ -23,7 +23,10 @@ std::vector<std::string> cells(const std::string& line) {
 std::map<std::string, std::string> writtenRow(const State& state, const std::vector<Event>& events) {
   const test::World world(test::bareScene(), test::plainOrgan(test::icosphere(0.05, 1), 2e-3));
   const std::string file = ::testing::TempDir() + "vibe_session_csv_test.csv";
-  { SessionCsv(file).write(*world.model, state, events); }
+  SessionCsv csv(file);
+  csv.write(*world.model, state, events);
+  EXPECT_FALSE(std::ifstream(file).is_open());  // not before it is whole
+  csv.finish();
   std::ifstream in(file);
   std::string header, row;
   std::getline(in, header);

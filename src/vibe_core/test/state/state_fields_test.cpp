@@ -151,9 +151,9 @@ TEST(Fields, TheListNamesFieldsAndTheirTypes) {
 /// values here.
 TEST(Fields, AnotherListOfFieldsHasAnotherVersion) {
   EXPECT_EQ(kStateVersion, 9U);
-  EXPECT_EQ(fieldFingerprint<State>(), 12097487151308213594U) << fieldList<State>();
-  EXPECT_EQ(kStepInputVersion, 2U);
-  EXPECT_EQ(fieldFingerprint<StepInput>(), 12597398189629362862U) << fieldList<StepInput>();
+  EXPECT_EQ(fieldFingerprint<State>(), 5519211231017454545U) << fieldList<State>();
+  EXPECT_EQ(kStepInputVersion, 3U);
+  EXPECT_EQ(fieldFingerprint<StepInput>(), 3494105037122736828U) << fieldList<StepInput>();
 }
 
 }  // namespace

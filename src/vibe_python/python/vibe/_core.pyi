@@ -186,6 +186,10 @@ class Simulation:
     def model(self) -> Model:
         """Its model."""
     @property
+    def motion(self) -> dict:
+        """New dict: what moves the organ by itself, as on the topic organ/motion: parts of a breath, of the period of
+        contraction waves and of a beat, 0 to 1; whether and for how long the breath was held [s]; work of the muscle [J]."""
+    @property
     def normals(self) -> ndarray:
         """New array (particles, 3): unit normals out of the lumen."""
     @property
@@ -209,6 +213,7 @@ class Simulation:
           apc_pedal, helix_grab, needle, t_tag, cinch, insufflate: buttons, True while pressed
           joints (7,), buttons (6,): all of them, in the order of vibe.JOINTS and vibe.BUTTONS
           pull=(particle, target (3,) [m]): the spring that pulls the tissue from outside; None: it lets go
+          hold_breath: True while the breath is held
 
         Returns what happened. Ctrl+C ends it after a step."""
     def save(self, file: str) -> None:
@@ -224,6 +229,7 @@ class Simulation:
           apc_pedal, helix_grab, needle, t_tag, cinch, insufflate: buttons, True while pressed
           joints (7,), buttons (6,): all of them, in the order of vibe.JOINTS and vibe.BUTTONS
           pull=(particle, target (3,) [m]): the spring that pulls the tissue from outside; None: it lets go
+          hold_breath: True while the breath is held
 
         Returns what happened."""
     @property

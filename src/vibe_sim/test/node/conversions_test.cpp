@@ -80,7 +80,7 @@ TEST(Conversions, everyBitOfEveryFieldOfStepInputIsInTheMessage) {
   EXPECT_EQ(makeStepInput(counted, 0, 0).version, kStepInputVersion);
   BitFlip all;
   transfer(all, counted);
-  EXPECT_EQ(all.count, static_cast<std::size_t>(kJointCount + kButtonCount + 4));
+  EXPECT_EQ(all.count, static_cast<std::size_t>(kJointCount + kButtonCount + 5));
   for (std::size_t i = 0; i < all.count; ++i) {
     StepInput input;
     BitFlip flip{i};
