@@ -26,6 +26,7 @@ FEATURES = {"observation.state": {"dtype": "float32", "shape": [2], "names": ["i
 VIDEO = {"observation.images.endoscope": {"dtype": "video", "shape": [32, 48, 3], "names": ["height", "width", "channels"]}}
 EPISODES, ROWS = 3, 6
 libraries = tempfile.TemporaryDirectory()
+sys.dont_write_bytecode = True  # a child with little room would leave modules that are cut off
 
 
 def setUpModule():
