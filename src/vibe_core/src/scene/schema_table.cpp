@@ -218,8 +218,8 @@ std::vector<SchemaRow> motionRows() {
       {"motion.wave_width", [](Scene& s) -> double& { return s.motion->wave_width; }, "m", 5e-3, 0.1,
        "full width at half height of the contraction at the pylorus; 6 % less per centimetre towards it",
        "the fall: Kwiatek 2006; the width: design choice"},
-      {"motion.heart_rate", [](Scene& s) -> double& { return s.motion->heart_rate; }, "1/s", 0.3, 4, "beats of the heart",
-       "70 per minute, an adult at rest"},
+      {"motion.heart_rate", [](Scene& s) -> double& { return s.motion->heart_rate; }, "1/s", 0.3, 4,
+       "beats of the heart", "70 per minute, an adult at rest"},
       {"motion.heart_amplitude", [](Scene& s) -> double& { return s.motion->heart_amplitude; }, "m", 0, 5e-3,
        "by how much a beat moves the foundation beside the cardia", kChoice},
   };
