@@ -209,10 +209,9 @@ std::vector<SchemaRow> motionRows() {
        "of "
        "a period of 23 +- 2 s (Kwiatek 2006, doi 10.1002/jmri.20738)"},
       {"motion.wave_speed", [](Scene& s) -> double& { return s.motion->wave_speed; }, "m/s", 1e-4, 0.02,
-       "of a wave at the pylorus; it begins at mid corpus with 0.45 times that",
+       "of a wave in the distal antrum, the last 6 cm; it begins at mid corpus with 0.45 times that",
        "2.7 +- 0.1 mm/s in the distal antrum (Kwiatek 2006); in the proximal antrum it has then the 1.6 +- 0.2 mm/s of "
-       "the "
-       "first paper"},
+       "the first paper"},
       {"motion.wave_amplitude", [](Scene& s) -> double& { return s.motion->wave_amplitude; }, "m", 0, 0.02,
        "by how much the wall moves inwards at the crest of a wave", "7.0 +- 0.8 mm (Kwiatek 2006)"},
       {"motion.wave_width", [](Scene& s) -> double& { return s.motion->wave_width; }, "m", 5e-3, 0.1,

@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kWaveStart = 0.45;       // along the axis: mid corpus
 constexpr double kWaveGrown = 0.75;       // along the axis: where a wave is as deep as it gets. Design choice
-constexpr double kStartSpeed = 0.45;      // at mid corpus over that at the pylorus: 1.6 mm/s in the proximal antrum
+constexpr double kStartSpeed = 0.45;      // at mid corpus over that in the distal antrum: 1.6 mm/s in the proximal one
+constexpr double kDistal = 0.06;          // of the antrum before the pylorus, in which the speed is the same [m]
 constexpr double kNarrowing = 0.06;       // of a wave per centimetre towards the pylorus: Kwiatek 2006
 constexpr double kMostShortening = 0.58;  // of the muscle: 58 % of the lumen at the pylorus, and no wave closes it
 constexpr double kOnset = 10;             // in which the waves grow from none. Design choice [s]
@@ -63,16 +64,19 @@ WallMuscle::WallMuscle(const MotionScene& scene, const Organ& organ) : period_(1
   const StomachAxis axis = findAxis(organ);
   const std::vector<double> radii = radiiOf(axis, organ);
   const double start = kWaveStart * axis.length(), way = axis.length() - start;
-  const double first = kStartSpeed * scene.wave_speed, gain = (scene.wave_speed - first) / way;
+  const double first = kStartSpeed * scene.wave_speed,
+               gain = (scene.wave_speed - first) / std::max(way - kDistal, way / 2);
   std::vector<char> has(organ.surface.vertices.size(), 0);
   for (int v = 0; v < static_cast<int>(has.size()); ++v) {
-    const double passed = axis.lengthAt(v) - start, speed = first + gain * passed;
+    const double passed = axis.lengthAt(v) - start;
+    const double speed = std::min(first + gain * passed, scene.wave_speed);
     if (!(passed > 0) || organ.end[v] == End::Oesophagus) continue;
     has[v] = 1;
     const double width = scene.wave_width * math::exp(-kNarrowing * 100 * (passed - way));
     const double grown = smooth(passed / ((kWaveGrown - kWaveStart) * axis.length()));
     const double depth = gradeOf(scene) * scene.wave_amplitude * grown;
-    nodes_.push_back({v, math::log(speed / first) / gain, std::min(kSupport * width / speed, period_ / 2),
+    const double faster = (speed - first) / gain, arrival = math::log(speed / first) / gain + (passed - faster) / speed;
+    nodes_.push_back({v, arrival, std::min(kSupport * width / speed, period_ / 2),
                       std::min(depth / radiusAt(axis, radii, axis.lengthAt(v)), kMostShortening)});
   }
   const std::vector<double> alike(organ.surface.triangles.size(), 1);

@@ -151,8 +151,7 @@ TEST(OrganMotion, wavesAreThoseOfVolunteers) {
               100 * middle.occlusion(), 100 * near.occlusion());
   EXPECT_NEAR(60 / period, 3.0, 0.2);
   EXPECT_NEAR(period, 23, 2);
-  EXPECT_GT(speed, 1.6e-3);
-  EXPECT_LT(speed, 2.8e-3);
+  EXPECT_NEAR(speed, 2.7e-3, 0.1e-3);
   EXPECT_NEAR(middle.depth(), 7.0e-3, 0.8e-3);
   EXPECT_NEAR(near.depth(), 7.0e-3, 0.8e-3);
   EXPECT_NEAR(near.occlusion(), 0.58, 0.06);
