@@ -70,7 +70,7 @@ void add(const Eigen::Vector3d& vertex, const Rgb& colour, Scenery& scenery) {
   scenery.albedo.push_back(colour);
 }
 
-void addMesh(const SurfaceMesh& mesh, const Eigen::Isometry3d& pose, const Rgb& colour, Scenery& scenery) {
+void addMesh(const SurfaceMesh& mesh, const Eigen::Affine3d& pose, const Rgb& colour, Scenery& scenery) {
   const int first = static_cast<int>(scenery.x.size());
   for (const Eigen::Vector3d& vertex : mesh.vertices) add(pose * vertex, colour, scenery);
   for (const auto& t : mesh.triangles) {
@@ -121,7 +121,8 @@ Scenery sceneryOf(const Model& model, const State& state) {
   Scenery scenery{state.x, state.y, state.z, model.organ.surface.triangles, {}, {}};
   const std::vector<Eigen::Isometry3d> poses = drawnLinkPoses(model, state);
   for (const LinkMesh& mesh : meshesOf(model))
-    addMesh(meshOf(mesh.file), poses[mesh.link] * mesh.origin, colourOf(model.tool->linkName(mesh.link)), scenery);
+    addMesh(meshOf(mesh.file), poses[mesh.link] * mesh.origin * Eigen::Scaling(mesh.scale),
+            colourOf(model.tool->linkName(mesh.link)), scenery);
   addThreads(model, state, scenery);
   return scenery;
 }

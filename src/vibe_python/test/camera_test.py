@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
 """What the endoscope's lens sees: rays, colours by the stated formula, and the pictures of environments."""
+import os
+import tempfile
 import threading
 import unittest
 
@@ -135,6 +137,18 @@ class CameraTest(unittest.TestCase):
         before = (simulation.camera(96, 96, ANGLE, tool=True)["label"] == 6).sum()
         simulation.run(1, apc_pedal=True)  # the probe comes out
         self.assertGreater((simulation.camera(96, 96, ANGLE, tool=True)["label"] == 6).sum(), before)
+
+    def test_meshes_have_the_scale_of_the_urdf(self):
+        here = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../vibe_description/urdf/scope.urdf")
+        with open(here, encoding="utf-8") as file, tempfile.NamedTemporaryFile("w", suffix=".urdf", encoding="utf-8") as wide:
+            wide.write(file.read().replace('meshes/helix.obj"', 'meshes/helix.obj" scale="1 3 3"'))
+            wide.flush()
+            device = {}
+            for urdf in (here, wide.name):
+                simulation = vibe.Simulation(vibe.load(geometry={"particles": 300}, scope={"urdf": urdf}, render_surface=False))
+                simulation.run(60, helix_advance=0.02)
+                device[urdf] = (simulation.camera(96, 96, ANGLE, tool=True)["label"] == 6).sum()
+        self.assertGreater(device[wide.name], 1.2 * device[here])
 
     def test_threads_are_where_the_bites_are(self):
         environment = Environment("Cinch", camera=(96, 96, 2.2), pictures=["label"], tool=True, **SMALL)

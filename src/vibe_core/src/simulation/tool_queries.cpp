@@ -141,7 +141,9 @@ std::vector<LinkMesh> linkMeshes(const Model& model) {
     const urdf::LinkConstSharedPtr found = document.model().getLink(model.tool->linkName(link));
     if (!found || !found->visual) continue;
     const auto mesh = std::dynamic_pointer_cast<const urdf::Mesh>(found->visual->geometry);
-    if (mesh) meshes.push_back({link, toIsometry(found->visual->origin), mesh->filename});
+    if (mesh)
+      meshes.push_back(
+          {link, toIsometry(found->visual->origin), {mesh->scale.x, mesh->scale.y, mesh->scale.z}, mesh->filename});
   }
   return meshes;
 }

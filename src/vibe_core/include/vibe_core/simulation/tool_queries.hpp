@@ -60,6 +60,7 @@ std::vector<Eigen::Isometry3d> drawnLinkPoses(const Model& model, const State& s
 struct LinkMesh {
   int link = -1;                                             ///< number of the link
   Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  ///< mesh in the link [m]
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();           ///< of the mesh, along its axes (ratio)
   std::string file;                                          ///< or package://NAME/FILE
 };
 
