@@ -29,6 +29,16 @@ refuses() {
   grep -qE -- "$pattern" <<<"$said" || { echo "does not match: $pattern"; return 1; }
 }
 
+# pythonEnvironment NAME FILE OPTION...: build/NAME, a virtual environment with what FILE names, from the registry of Python by
+# pip with these options. It stays as long as FILE is the same.
+pythonEnvironment() {
+  local folder=$root/build/$1 names=$2
+  shift 2
+  cmp -s "$names" "$folder/installed.txt" && return
+  rm -rf "$folder" && /usr/bin/python3 -m venv --system-site-packages "$folder" &&
+    "$folder/bin/pip" install --quiet --retries 1 --timeout 10 "$@" --requirement "$names" && cp "$names" "$folder/installed.txt"
+}
+
 # systemTest MODULE OPTION...: a module of vibe_system_tests
 systemTest() (
   export PYTHONPATH=$root/src/vibe_system_tests/src${PYTHONPATH:+:$PYTHONPATH} PYTHONDONTWRITEBYTECODE=1

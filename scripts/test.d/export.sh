@@ -8,12 +8,7 @@ check 'export asks for a recording' refuses 2 'which recording' "$root/scripts/e
 check 'export refuses a format' refuses 2 "no format; the nearest is 'mcap'" "$root/scripts/export" a.bag --to mcp
 
 readonly names=$root/src/vibe_sessions/test/readers.txt environment=$root/build/readers
-makeEnvironment() {
-  cmp -s "$names" "$environment/installed.txt" && return
-  rm -rf "$environment" && /usr/bin/python3 -m venv --system-site-packages "$environment" &&
-    "$environment/bin/pip" install --quiet --retries 1 --timeout 10 --requirement "$names" && cp "$names" "$environment/installed.txt"
-}
-if ! makeEnvironment >"$scratch/pip.txt" 2>&1; then
+if ! pythonEnvironment readers "$names" >"$scratch/pip.txt" 2>&1; then
   echo "skipped the readers of others (pip could not install what $(basename "$names") names: $(tail -n 1 "$scratch/pip.txt"))"
   exit 0
 fi

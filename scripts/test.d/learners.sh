@@ -12,16 +12,14 @@ if ! /usr/bin/python3 -c 'import torch, venv' 2>/dev/null; then
   echo 'skipped Stable-Baselines3 (python3-torch or python3-venv is not installed)'
   exit 0
 fi
-/usr/bin/python3 -m venv --system-site-packages "$scratch/venv"
-if ! "$scratch/venv/bin/pip" install -q --no-deps stable-baselines3==2.4.1 gymnasium==1.0.0 cloudpickle==3.1.1 \
-  farama-notifications==0.0.4 >"$scratch/pip" 2>&1; then
+if ! pythonEnvironment learners "$root/src/vibe_python/test/learners.txt" --no-deps >"$scratch/pip" 2>&1; then
   echo 'skipped Stable-Baselines3 (it cannot be downloaded)'
   exit 0
 fi
 
 learns() {
   set +u && source "$root/devel/setup.bash"
-  "$scratch/venv/bin/python" -B "$root/src/vibe_python/scripts/learners.py" --actions 1000 --episodes 2 >"$scratch/said" &&
+  "$root/build/learners/bin/python" -B "$root/src/vibe_python/scripts/learners.py" --actions 1000 --episodes 2 >"$scratch/said" &&
     cat "$scratch/said" && [ "$(grep -c 'episodes succeed$' "$scratch/said")" -eq 2 ]
 }
 check 'PPO and SAC with hindsight of Stable-Baselines3' learns
