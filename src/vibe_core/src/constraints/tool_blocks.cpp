@@ -3,6 +3,7 @@
 
 #include "constraints/blocks.hpp"
 #include "tool/tool_motion.hpp"
+#include "tool_contact/contact_memory.hpp"
 #include "tool_contact/contact_places.hpp"
 #include "tool_contact/shape_distance.hpp"
 #include "tool_contact/surface_contacts.hpp"
@@ -27,6 +28,7 @@ class ToolContactBlock : public ConstraintBlock {
       : passable_(passableVertices(model.organ)),
         excluded_(passable_.size()),
         contacts_(*model.tool, model.organ.surface, model.organ.thickness, passable_),
+        memory_(*model.tool),
         places_(model.organ) {
     for (const ToolShape& shape : model.tool->shapes()) distance_.emplace_back(*shape.shape);
     for (auto& v : ahead_) v.resize(static_cast<std::size_t>(model.particle_count));
@@ -44,6 +46,7 @@ class ToolContactBlock : public ConstraintBlock {
   }
 
   double store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>& touches) override {
+    keepContacts(context, loads);
     for (std::size_t c = 0; c < local_point_.size(); ++c) {
       const ContactConstraint& contact = loads.contacts[first_ + c];
       if (!contact.force.isZero()) touches.push_back(touchOf(context, contact, c));
@@ -74,9 +77,28 @@ class ToolContactBlock : public ConstraintBlock {
 
   void findContacts(const StepContext& context, BodyLoads& loads) {
     const ToolPoses& poses = *context.tool;
-    for (const SurfaceContact& contact :
-         contacts_.find(poses.start, poses.end, path_, stepPolicy().touch_margin, excluded_, context.when))
-      addContact(context, contact, loads);
+    const std::vector<SurfaceContact>& found =
+        contacts_.find(poses.start, poses.end, path_, stepPolicy().touch_margin, excluded_, context.when);
+    const std::vector<SurfaceContact>& counting =
+        loads.held_still ? memory_.recall(found, poses, context.state, keptWay(context), excluded_) : found;
+    for (const SurfaceContact& contact : counting) addContact(context, contact, loads);
+  }
+
+  static double keptWay(const StepContext& context) {
+    const StepPolicy& policy = stepPolicy();
+    const double grown = 1 + policy.touch_kept_growth * context.state.hold.steps * context.step;
+    return std::min(grown * policy.touch_kept, policy.touch_kept_most);
+  }
+
+  void keepContacts(const StepContext& context, const BodyLoads& loads) const {
+    HoldMemory& hold = context.state.hold;
+    hold.contacts.clear();
+    if (!loads.held_still) return;
+    hold.contacts = memory_.kept();
+    for (std::size_t c = 0; c < hold.contacts.size(); ++c) {
+      const int link = context.model.tool->shapes()[hold.contacts[c].shape].link;
+      hold.contacts[c].force = context.tool->end[link].linear().transpose() * loads.contacts[first_ + c].force;
+    }
   }
 
   void addContact(const StepContext& context, const SurfaceContact& contact, BodyLoads& loads) {
@@ -88,6 +110,7 @@ class ToolContactBlock : public ConstraintBlock {
     ContactConstraint& constraint = loads.contacts.add();
     constraint = ContactConstraint();
     constraint.point = contact.point;
+    constraint.force = contact.force;
     constraint.normal = contact.normal;
     const double surface = contact.normal.dot(contact.tool_point) + contact.clearance;
     // What is deep inside (the tool was put there) comes out slowly, not at once.
@@ -107,15 +130,6 @@ class ToolContactBlock : public ConstraintBlock {
     for (std::size_t k = 0; k < static_cast<std::size_t>(contact.point.count); ++k)
       area += contact.point.weight[k] * model.area[contact.point.node[k]];
     return contact.clearance / (stepPolicy().touch_confined * model.scene.tissue.young_modulus * area);
-  }
-
-  static Eigen::Vector3d positionOf(const SurfacePoint& point, const State& state) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k) {
-      const int i = point.node[k];
-      sum += point.weight[k] * Eigen::Vector3d(state.x[i], state.y[i], state.z[i]);
-    }
-    return sum;
   }
 
   ToolTouch touchOf(const StepContext& context, const ContactConstraint& contact, std::size_t number) const {
@@ -158,6 +172,7 @@ class ToolContactBlock : public ConstraintBlock {
 
   std::vector<char> passable_, excluded_;  // per node
   SurfaceContacts contacts_;
+  ContactMemory memory_;
   ContactPlaces places_;
   std::vector<PointDistance> distance_;       // per shape
   std::array<std::vector<double>, 3> ahead_;  // [m]

@@ -50,6 +50,7 @@ Activity ImplicitStep::gather() {
   const InStage stage(scratch_.stages, StepStage::Loads);
   scratch_.loads.clear();
   if (tool_) {
+    scratch_.loads.held_still = tool_->holds();
     tool_->addSprings();
     context_.bend = tool_->bend();
   }

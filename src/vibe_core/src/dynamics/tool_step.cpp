@@ -19,7 +19,12 @@ ToolStep::ToolStep(const Model& model, const ToolMotion& motion, State& state, I
       state_(state),
       scratch_(scratch),
       report_(report),
-      step_(model.scene.step_period) {}
+      step_(model.scene.step_period),
+      still_(motion.inputs(0) == motion.inputs(1)) {}
+
+bool ToolStep::holds() const {
+  return still_ && state_.hold.steps * step_ >= stepPolicy().hold_time;
+}
 
 void ToolStep::addSprings() {
   motion_->linkPoses(1, scratch_.tool.end);
@@ -39,9 +44,11 @@ void ToolStep::addSprings() {
   yield.displacement = yield.free;
 }
 
-// At the end of the step, with the forces of the last one.
+// At the end of the step, with the forces of the last one. A tool that is held comes to rest where it is: these forces
+// vary with those of friction from step to step, and what they make of it would keep the wall going.
 ToolDisplacement ToolStep::expectedDisplacement() const {
   const ToolDisplacement& from = motion_->startDisplacement();
+  if (holds()) return from;
   const ToolYield yield = model_.scope_springs->during(motion_->inputs(0.5), from, from, step_).yield();
   const YieldVector moved = yield.free + yield.compliance * Eigen::Map<const YieldVector>(state_.tool_load.data());
   ToolDisplacement end = from;
@@ -148,6 +155,7 @@ void ToolStep::recoverAround() {
 void ToolStep::report(const ImplicitStepper& stepper) {
   const double tool_work = state_.energy.tool_work;
   reportForces();
+  state_.hold.steps = still_ && report_.contact_count > 0 ? state_.hold.steps + 1 : 0;
   if (model_.scope_springs) reportLoad();
   reportHand(state_.energy.tool_work - tool_work);
   reportImpedance(stepper);

@@ -20,6 +20,8 @@ class ToolStep {
   /// @param motion  of the tool as the hand moves it; must outlive this
   ToolStep(const Model& model, const ToolMotion& motion, State& state, ImplicitWorkspace& scratch, StepReport& report);
 
+  /// Whether the hand has held all joints still for a while, see HoldMemory.
+  bool holds() const;
   /// Before the blocks prepare their loads: poses at the end, and the springs of a tool that yields.
   void addSprings();
   /// Of a tool that yields, in the middle of the step; null: it is rigid.
@@ -60,6 +62,7 @@ class ToolStep {
   ImplicitWorkspace& scratch_;
   StepReport& report_;
   double step_;  // [s]
+  bool still_;   // the hand moves no joint in this step
   std::optional<ShaftBend> bend_;
   std::optional<ScopeSpringStep> springs_;
   ToolDisplacement expected_{};        // at the end of the step

@@ -18,7 +18,9 @@ namespace {
 
 constexpr std::uint64_t kMaxGrowth = 1 << 16;  // items; memory grows only with what has been read
 constexpr char kMagic[7] = {'v', 'i', 'b', 'e', 's', 'n', 'p'};
-static_assert(kStateVersion < 10, "the version is one digit in the first eight bytes");
+// In one character: 1 to 9, then from A on.
+constexpr char kVersion = static_cast<char>(kStateVersion < 10 ? '0' + kStateVersion : 'A' + kStateVersion - 10);
+static_assert(kVersion <= 'Z', "the version is one character in the first eight bytes");
 
 class Writer {
  public:
@@ -97,11 +99,10 @@ void add(const std::vector<T>& values, Fnv1a& hash) {
 }
 
 void writeHeader(const Model& model, Writer& writer) {
-  const char version = static_cast<char>('0' + kStateVersion);
   const std::uint64_t fields = fieldFingerprint<State>();
   const std::uint64_t shape = modelFingerprint(model), scene = sceneFingerprint(model);
   writer.block(kMagic, sizeof kMagic);
-  writer.block(&version, 1);
+  writer.block(&kVersion, 1);
   writer.block(&fields, 1);
   writer.block(&shape, 1);
   writer.block(&scene, 1);
@@ -111,11 +112,11 @@ void readHeader(const Model& model, const std::string& file, OtherScene other, R
   char magic[sizeof kMagic] = {}, version = 0;
   reader.block(magic, sizeof magic);
   reader.block(&version, 1);
-  if (std::memcmp(magic, kMagic, sizeof kMagic) != 0 || version < '1' || version > '9')
+  if (std::memcmp(magic, kMagic, sizeof kMagic) != 0 || version < '1' || version > 'Z')
     throw Error("'" + file + "' is not a snapshot; check the path.");
-  if (version != static_cast<char>('0' + kStateVersion))
-    throw Error("Snapshot '" + file + "' is of version " + version + ", but this build reads version " +
-                std::to_string(kStateVersion) + "; save it again with this build.");
+  if (version != kVersion)
+    throw Error("Snapshot '" + file + "' is of version " + version + ", but this build reads version " + kVersion +
+                "; save it again with this build.");
   std::uint64_t fields = 0, shape = 0, scene = 0;
   reader.block(&fields, 1);
   if (fields != fieldFingerprint<State>())

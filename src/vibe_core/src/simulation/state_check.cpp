@@ -144,6 +144,22 @@ std::string solverDamage(const State& s, std::size_t particle_count) {
   return damage.empty() ? basisDamage(s.impedance.next, particle_count) : damage;
 }
 
+bool isFinite(const KeptContact& contact) {
+  return std::isfinite(contact.clearance) && contact.force.allFinite() && contact.place.allFinite() &&
+         contact.normal.allFinite() && contact.tool_point.allFinite();
+}
+
+std::string holdDamage(const State& state, const Model& model) {
+  const int shapes = model.tool ? static_cast<int>(model.tool->shapes().size()) : 0;
+  for (const KeptContact& contact : state.hold.contacts) {
+    if (contact.shape < 0 || contact.shape >= shapes || contact.node[0] < 0 || !isFinite(contact))
+      return "it keeps a contact that cannot be";
+    for (const int node : contact.node)
+      if (node >= model.particle_count) return "it keeps a contact of a particle that does not exist";
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string findDamage(const State& state, const Model& model) {
@@ -152,6 +168,7 @@ std::string findDamage(const State& state, const Model& model) {
   if (damage.empty()) damage = toolDamage(state, model);
   if (damage.empty()) damage = solverDamage(state, static_cast<std::size_t>(count));
   if (damage.empty()) damage = procedureDamage(state.procedure, count);
+  if (damage.empty()) damage = holdDamage(state, model);
   if (damage.empty()) damage = pullDamage(state.pull, count);
   if (damage.empty() && !(std::isfinite(state.motion.held_time) && std::isfinite(state.motion.muscle_work)))
     damage = "its own motion is not a number";

@@ -38,6 +38,7 @@ struct ContactRows {
   std::array<LinearForm, 3> form;
   std::array<Eigen::Vector3d, 3> direction;  ///< normal, two tangents; unit
   double friction = 0;                       ///< Coulomb coefficient
+  std::array<double, 3> guess{};             ///< forces with which the solve begins [N]
   std::size_t load = 0;                      ///< its index in the loads
   double target = 0;                         ///< of the normal, of one that does not count [m]
   double compliance = 0;                     ///< of the normal [m/N]

@@ -69,6 +69,9 @@ void ConstraintSchur::setRows(const ConstraintRows& rows, const Factor& factor, 
   setYield(rows);
   formed_ = rows_formed_ = false;
   contact_force_.setZero(static_cast<Eigen::Index>(inequalities_.size()));
+  for (std::size_t c = 0; c < rows.counted; ++c)
+    for (std::size_t k = 0; k < (rows.contacts[c].friction > 0 ? 3U : 1U); ++k)
+      contact_force_[contact_list_[c].first + static_cast<Eigen::Index>(k)] = rows.contacts[c].guess[k];
 }
 
 void ConstraintSchur::sortRows(const ConstraintRows& rows) {

@@ -34,7 +34,8 @@ bool limitContacts(const std::vector<double>& z, RowSystem& system) {
   order.clear();
   for (std::size_t c = 0; c < rows.contacts.size(); ++c) {
     rows.contacts[c].target = system.target[rows.contactRow(c)];
-    order.emplace_back(rows.contacts[c].form[0].value(z) - rows.contacts[c].target, c);
+    const double gap = rows.contacts[c].form[0].value(z) - rows.contacts[c].target;
+    order.emplace_back(rows.contacts[c].guess[0] > 0 ? -std::numeric_limits<double>::max() : gap, c);
   }
   std::sort(order.begin(), order.end());
   for (std::size_t k = kMaxWithFriction; k < order.size(); ++k) rows.contacts[order[k].second].friction = 0;

@@ -65,7 +65,10 @@ void setContact(const BodyLoads& loads, std::size_t load, ContactRows& rows) {
   const ContactConstraint& contact = loads.contacts[load];
   const Eigen::Vector3d normal = contact.normal, tangent = normal.unitOrthogonal();
   rows.direction = {normal, tangent, normal.cross(tangent)};
-  for (std::size_t k = 0; k < 3; ++k) rows.form[k].setPoint(contact.point, rows.direction[k]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    rows.form[k].setPoint(contact.point, rows.direction[k]);
+    rows.guess[k] = rows.direction[k].dot(contact.force);
+  }
   rows.friction = contact.friction;
   rows.load = load;
   rows.compliance = contact.compliance;

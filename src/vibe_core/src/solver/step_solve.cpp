@@ -114,15 +114,16 @@ void StepSolve::iterate(StepOutcome& outcome) {
   const StepPolicy& policy = stepPolicy();
   const double longest = fallback_ ? policy.fallback_max_move * plan_.size : std::numeric_limits<double>::max();
   const int usual = plan_.settings.iterations;
+  const double tolerance = loads_.held_still ? policy.hold_tolerance : plan_.settings.tolerance;
   bool done = false;
   while (!done && !outcome.converged && !newton_.exhausted() && std::isfinite(outcome.last_move) &&
          (!newton_.failed() || newton_.startAgain())) {
     newton_.aim();
-    const bool tiny = newton_.directionLength() < std::max(plan_.settings.tolerance, newton_.resolution());
+    const bool tiny = newton_.directionLength() < std::max(tolerance, newton_.resolution());
     outcome.last_move = newton_.iterate(longest, !tiny && outcome.iterations + 1 < usual);
     // what a tool holds goes where the tool goes, and the iterations that remain find the energy again
     if (++outcome.iterations == policy.satisfy_after && !newton_.exhausted() && newton_.satisfyConstraints()) continue;
-    done = outcome.iterations >= usual && newton_.contracts();
+    done = outcome.iterations >= usual && newton_.contracts() && !loads_.held_still;
     outcome.converged = tiny;
   }
   judgeEnd(done, outcome);

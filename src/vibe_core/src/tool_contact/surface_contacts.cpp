@@ -183,9 +183,10 @@ void SurfaceContacts::addAlong(const SurfacePoint& point, int shape, const Eigen
 }
 
 void SurfaceContacts::add(const SurfacePoint& point, int shape, double fraction, const TriangleGap& gap,
-                          double clearance) {
+                          double clearance, bool nearest) {
   if (gap.normal.isZero(0)) return;
   SurfaceContact contact;
+  contact.nearest = nearest;
   contact.point = point;
   contact.shape = shape;
   contact.clearance = clearance;

@@ -23,10 +23,12 @@ std::vector<char> passableVertices(const Organ& organ);
 struct SurfaceContact {
   SurfacePoint point;
   int shape = -1;          ///< of the tool
+  bool nearest = false;    ///< the nearest point of a triangle: it moves with the tilt of the triangle
   double clearance = 0;    ///< distance of the mid-surface from the shape where it touches: half the wall, or less [m]
   double distance = 0;     ///< of the mid-surface from the shape when `normal` was taken [m]
   Eigen::Vector3d normal;  ///< unit, out of the shape, as the shape is turned at the end of the step
-  Eigen::Vector3d tool_point;  ///< of the shape's surface, at the end of the step [m]
+  Eigen::Vector3d tool_point;                       ///< of the shape's surface, at the end of the step [m]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< of the last step, if known [N]
 };
 
 /// Contacts of a tool with the triangles of a wall, continuous in time and in the state: a contact that comes or goes
@@ -93,7 +95,8 @@ class SurfaceContacts {
   void addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge, const Division& division);
   void addInterior(const SurfacePath& path, double margin, int shape, const Pair& pair, const Division& division);
   void offer(const SurfacePoint& point, const SurfacePath& path, int shape, bool hit, double margin, double share = 1);
-  void add(const SurfacePoint& point, int shape, double fraction, const TriangleGap& gap, double clearance);
+  void add(const SurfacePoint& point, int shape, double fraction, const TriangleGap& gap, double clearance,
+           bool nearest = false);
   void addAlong(const SurfacePoint& point, int shape, const Eigen::Vector3d& start, const Eigen::Vector3d& end,
                 const TriangleGap& gap, double clearance);
   void addOutside(SurfaceContact& contact, const Eigen::Vector3d& wall, const Eigen::Vector3d& core);

@@ -45,7 +45,7 @@ void SurfaceContacts::addNearest(int shape, const std::vector<char>& excluded) {
     for (std::size_t k = 0; k < 3; ++k)
       if (excluded[n[k]] == 0) yielding += gap.weight[static_cast<int>(k)];
     if (yielding < policy_.touch_least_yielding) continue;
-    add({3, n, {gap.weight[0], gap.weight[1], gap.weight[2]}}, shape, 0, gap, policy_.touch_kept_between * half);
+    add({3, n, {gap.weight[0], gap.weight[1], gap.weight[2]}}, shape, 0, gap, policy_.touch_kept_between * half, true);
   }
 }
 

@@ -119,8 +119,10 @@ struct ContactConstraint {
   Eigen::Matrix<double, 3, kYieldDofs> yield =
       Eigen::Matrix<double, 3, kYieldDofs>::Zero();  ///< how far the anchor moves per coordinate in which the tool
                                                      ///< yields [m/rad], [m/m]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< out: tool on the surface, mean over the step [N]
-  double work = 0;                                   ///< out: of this force on the surface over the step [J]
+  /// Of the tool on the surface, mean over the step; in: where the solve begins. What begins with a force keeps its row
+  /// and its friction where there are too many contacts [N]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  double work = 0;  ///< out: of this force on the surface over the step [J]
 };
 
 constexpr double kAmbientPressure = 101325;  ///< of the surroundings, absolute: the standard atmosphere [Pa]
@@ -155,6 +157,8 @@ struct BodyLoads {
   /// Contraction of the muscle of ElasticBody::shell during the step, per node (ratio); null: it is relaxed. It lives
   /// until the end of the step.
   const std::vector<float>* contraction = nullptr;
+  /// The hand holds the tool still: iterations go on until the motion that they leave is rest.
+  bool held_still = false;
   const EnergyTerm* extra = nullptr;         ///< null: none
   std::vector<StiffnessCoupling> couplings;  ///< stiffness beside that of `extra`, for the factor of later steps
 

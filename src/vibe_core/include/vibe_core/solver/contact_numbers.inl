@@ -166,6 +166,12 @@ VIBE_REAL(touch_corner_slack, 0.3, "", "part of this depth by which such a conta
           "design choice: what is beyond a corner is so far beyond it in the next step; from 0.5 on some walls trembled")
 VIBE_REAL(touch_beside, 3e-4, "m", "how much farther than the nearest shape others still count",
           "walls that rest move less in a step; a scope that lies in the wall has twice as many contacts without it")
+VIBE_REAL(touch_kept, 1e-4, "m", "way of a point beside its link up to which its contact stays as it is while the hand holds",
+          "1.3 degrees of a tip's normal, a quarter of the angle of friction")
+VIBE_REAL(touch_kept_growth, 1, "1/s", "rate at which this way grows while the hand holds, over the way",
+          "what goes to and fro farther than this comes to rest later")
+VIBE_REAL(touch_kept_most, 5e-4, "m", "the largest such way",
+          "design choice: about the angle of friction at a tip")
 VIBE_REAL(touch_within, 1e-6, "m", "distance up to which the round end of a shape counts as inside another shape",
           "design choice: far above rounding of shapes in single precision")
 

@@ -131,6 +131,10 @@ VIBE_REAL(stopped_part, 0.1, "", "share of its way below which a joint counts as
           "a joint that makes a tenth of its way pushes on")
 
 VIBE_POLICY_SECTION("Rest, loss and recovery")
+VIBE_REAL(hold_time, 0.5, "s", "time for which the hand holds all joints still until it counts as holding",
+          "design choice: longer than a pause within a motion, shorter than a look at the wall")
+VIBE_REAL(hold_tolerance, 5e-8, "m", "move below which a step ends while the hand holds, instead of StepSettings::tolerance",
+          "3 um/s at 60 Hz, below what counts as rest, and above rounding in single precision")
 VIBE_REAL(rest_speed, 2e-6, "m/s", "speed below which tissue counts as at rest",
           "a micrometre in half a second, far below what a camera or a hand resolves")
 VIBE_COUNT(rest_steps, 15, "steps at rest before the tissue sleeps",

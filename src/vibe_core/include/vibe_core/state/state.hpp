@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "vibe_core/input/step_input.hpp"
+#include "vibe_core/state/hold_memory.hpp"
 #include "vibe_core/state/impedance_memory.hpp"
 #include "vibe_core/state/procedure_state.hpp"
 #include "vibe_core/state/stepper_memory.hpp"
@@ -123,6 +124,7 @@ struct State {
 
   PullSpring pull;     ///< pulls the tissue from outside
   MotionState motion;  ///< of the organ by itself
+  HoldMemory hold;     ///< of a hand that holds still; it counts in the hash as `motion` does
 
   ProcedureState procedure;  ///< marks, needle, sutures and bleeding
 
