@@ -228,15 +228,15 @@ class InterruptedTest(ExportTest):
         wanted, number, complete = self.reference(), 0, False
         while not complete:
             number += 13
-            calls, sync = iter(range(number)), export.sync
+            calls, flush = iter(range(number)), export.flush
 
-            def full(path, calls=calls, sync=sync):
+            def full(path, calls=calls, flush=flush):
                 if next(calls, None) is None:
                     raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), path)
-                sync(path)
+                flush(path)
 
             shutil.rmtree(self.output, ignore_errors=True)
-            with mock.patch.object(export, "sync", full):
+            with mock.patch.object(export, "flush", full):
                 status, _, complained = self.call(to=self.FORMATS)
             complete = status == 0
             if not complete:
