@@ -10,13 +10,13 @@ import os
 import re
 import shutil
 import struct
-import tempfile
 import unittest
 import zlib
 from unittest import mock
 
 import numpy
 import rosbag
+from in_folder import InFolder
 from report_bags import SyntheticSession
 
 from vibe_sessions.export import main as export
@@ -33,10 +33,9 @@ def tree(folder):
     return found
 
 
-class ExportTest(unittest.TestCase):
+class ExportTest(InFolder):
     def setUp(self):
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
+        super().setUp()
         self.bag, self.output = os.path.join(self.folder, "a", "session.bag"), os.path.join(self.folder, "out")
         os.mkdir(os.path.dirname(self.bag))
 
