@@ -29,6 +29,28 @@ refuses() {
   grep -qE -- "$pattern" <<<"$said" || { echo "does not match: $pattern"; return 1; }
 }
 
+# skip SENTENCE: ends the script, with a sentence on what is not tested and why
+skip() {
+  echo "skipped $1"
+  exit 0
+}
+
+# isOrdinary [PACKAGE/PROGRAM...]: the build that is tested has no sanitizers, and these programs are in it
+isOrdinary() {
+  local program
+  [ -z "${VIBE_VARIANT:-}" ] || return 1
+  for program in "$@"; do [ -x "$root/devel/lib/$program" ] || return 1; done
+}
+
+# isSlowRun [PACKAGE/PROGRAM...]: the same, and tests that take minutes are wanted
+isSlowRun() { [ -n "${VIBE_SLOW_TESTS:-}" ] && isOrdinary "$@"; }
+
+# fails COMMAND...
+fails() { ! "$@"; }
+
+# hashOf FILE: that of the state with which a session has ended
+hashOf() { sed -n 's/^state hash: //p' "$1"; }
+
 # pythonEnvironment NAME FILE OPTION...: build/NAME, a virtual environment with what FILE names, from the registry of Python by
 # pip with these options. It stays as long as FILE is the same.
 pythonEnvironment() {
@@ -51,6 +73,54 @@ builtSystemTest() { (set +u && source "$root/devel/setup.bash" && systemTest "$@
 # processesWith NAME=VALUE: the processes that were started with this in their environment.
 processesWith() {
   grep -lzxF -- "$1" /proc/[0-9]*/environ 2>/dev/null | sed -E 's#/proc/([0-9]+)/.*#\1#' || true
+}
+
+# nobodyLeft MARK SECONDS: within this time all that was started with VIBE_TEST_MARK=MARK has ended
+nobodyLeft() {
+  local deadline=$((SECONDS + $2))
+  while [ -n "$(processesWith "VIBE_TEST_MARK=$1")" ]; do
+    [ "$SECONDS" -lt "$deadline" ] || { processesWith "VIBE_TEST_MARK=$1" | xargs -r ps -o pid,ppid,args -p; return 1; }
+    sleep 0.1
+  done
+}
+
+# begins MARK FILE PATTERN COMMAND...: with VIBE_TEST_MARK=MARK, in the background, its output in FILE; returns once a line of
+# that matches. Sets session_pid.
+begins() {
+  # bash starts background jobs deaf to SIGINT; the user's terminal does not
+  VIBE_TEST_MARK=$1 /usr/bin/python3 -c 'import os, signal, sys
+signal.signal(signal.SIGINT, signal.SIG_DFL)
+os.execv(sys.argv[1], sys.argv[1:])' "${@:4}" >"$2" 2>&1 &
+  session_pid=$!
+  local deadline=$((SECONDS + 120))
+  until grep -qsE -- "$3" "$2"; do
+    kill -0 "$session_pid" && [ "$SECONDS" -lt "$deadline" ] || { cat "$2"; return 1; }
+    sleep 0.2
+  done
+}
+
+# ends STATUS FILE: what was begun ends so; shows its output
+ends() {
+  local status=0
+  wait "$session_pid" || status=$?
+  cat "$2"
+  [ "$status" -eq "$1" ]
+}
+
+# gives STATUS FILE COMMAND...: the command ends so; shows its output, which FILE keeps
+gives() {
+  local status=0
+  "${@:3}" >"$2" 2>&1 || status=$?
+  cat "$2"
+  [ "$status" -eq "$1" ] || { echo "exit status $status, not $1"; return 1; }
+}
+
+# prints PATTERN COMMAND...: the command succeeds, and one of its lines matches
+prints() {
+  local said
+  said=$("${@:2}" 2>&1) || { printf '%s\n' "$said"; return 1; }
+  printf '%s\n' "$said"
+  grep -qE -- "$1" <<<"$said"
 }
 
 # freePort: a port that is free and stays so: below those that Linux gives to other tests, which run beside this one

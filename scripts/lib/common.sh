@@ -87,6 +87,14 @@ installMissing() {
   [ -z "$missing" ] || "$vibe_root/scripts/setup" "${flags[@]}" || exit 1
 }
 
+# workIn PART "$@": installs and builds this part of the workspace, brings it into this shell, and guards what comes
+workIn() {
+  installMissing "$1"
+  runGuarded "${@:2}"
+  isBuilt || "$vibe_root/scripts/build" --quiet --part "$1"
+  sourceWorkspace "$vibe_root/devel"
+}
+
 # changedFiles REV: what the commits since REV and the working tree have changed, as paths below the workspace. Without
 # a REV: since this branch left main.
 changedFiles() {

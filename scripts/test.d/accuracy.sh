@@ -47,10 +47,8 @@ check 'a table that nobody makes is found' finds "below 'Steps in contact' that 
 check 'a table that is left out is found' finds "the table 'states' stands in no page" docs/accuracy.md \
   's/^<!-- measured: states -->$//' --check-pages
 
-if [ ! -x "$devel/lib/vibe_benchmarks/vibe_bench" ] || [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped the quick measurements (scripts/build builds vibe_benchmarks; slow in other builds)'
-  exit 0
-fi
+isOrdinary vibe_benchmarks/vibe_bench ||
+  skip 'the quick measurements (scripts/build builds vibe_benchmarks; slow in other builds)'
 check 'quick results repeat' accuracy "$root" --check
 check 'a result that its code no longer gives is found' finds 'fem case6_bite shell force: reference_error is' \
   docs/measured/fem.csv '/^case6_bite,shell,force/s/0\.0[0-9]+/0.001/' --check --section fem/case6_bite

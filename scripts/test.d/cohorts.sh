@@ -5,10 +5,8 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 devel=$root/devel${VIBE_VARIANT:-}
-if [ ! -x "$devel/lib/vibe_core/vibe_headless" ] || [ ! -e "$devel/lib/vibe_sessions/cohort" ]; then
-  echo 'skipped cohorts (not built; scripts/build builds them)'
-  exit 0
-fi
+[ -x "$devel/lib/vibe_core/vibe_headless" ] && [ -e "$devel/lib/vibe_sessions/cohort" ] ||
+  skip 'cohorts (not built; scripts/build builds them)'
 export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 export PYTHONWARNINGS=ignore
 pids=()
@@ -84,10 +82,8 @@ throughDaskTheSame() {
 }
 
 aBadSceneIsListed() {
-  local said status=0
-  said=$(cohort bad --scene "$scratch/bad.yaml" package://vibe_core/scenes/stomach_j.yaml 2>&1) || status=$?
-  printf '%s\n' "$said"
-  [ "$status" = 1 ] && grep -q 'bad_novice0_seed1 and 3 more failed: .*bad.yaml:1.*colour' <<<"$said" &&
+  gives 1 "$scratch/bad.txt" cohort bad --scene "$scratch/bad.yaml" package://vibe_core/scenes/stomach_j.yaml &&
+    grep -q 'bad_novice0_seed1 and 3 more failed: .*bad.yaml:1.*colour' "$scratch/bad.txt" &&
     [ "$(wc -l <"$scratch/bad/cohort.csv")" = 5 ] && [ "$(wc -l <"$scratch/bad/failed.csv")" = 5 ]
 }
 

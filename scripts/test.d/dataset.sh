@@ -5,10 +5,7 @@
 # packages: vibe_bringup vibe_system_tests
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/vibe_endoscope/vibe_dataset" ]; then
-  echo 'skipped data sets of a session (they need the ordinary build)'
-  exit 0
-fi
+isOrdinary vibe_endoscope/vibe_dataset || skip 'data sets of a session (they need the ordinary build)'
 
 bag=$scratch/session/session.bag
 dataset() { "$root/scripts/dataset" "$bag" --width 160 --height 120 --rate 2 "$@"; }
@@ -19,7 +16,6 @@ refusesNew() {
   [ ! -e "$scratch/new" ] || { echo 'a folder is left'; return 1; }
 }
 errorsOf() { "$@" 2>&1 >/dev/null; }
-fails() { ! "$@"; }
 
 runsASession() { "$root/scripts/run" --headless --fast --script eye --duration 3 --output "$scratch/session"; }
 check 'dataset: a short session is recorded' runsASession
@@ -57,10 +53,7 @@ killedLeavesNothing() {
 }
 check 'dataset: a call that is killed leaves nothing that looks whole' killedLeavesNothing
 
-check 'dataset asks for a recording' refuses 2 'which recording' "$root/scripts/dataset" --output "$scratch/new"
-check 'dataset asks for a folder' refuses 2 'where to' "$root/scripts/dataset" "$bag"
 check 'dataset names a recording that is not there' refusesNew 2 "no file 'nowhere.bag'" nowhere.bag
-check 'dataset does not overwrite' refuses 2 'is not empty' "$root/scripts/dataset" "$bag" --output "$scratch/all"
 # some of what the program tells before and after the recording is repeated; the rest is in dataset_test.py
 check 'dataset refuses times after the end' refusesNew 1 "--from: '.*session.bag' ends at .* give a time" "$bag" --from 500
 head -c 100000 "$bag" >"$scratch/half.bag"

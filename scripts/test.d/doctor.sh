@@ -7,12 +7,7 @@ export ROS_MASTER_URI=http://localhost:1
 cd "$scratch" || exit 1
 
 # asks FILE...: one text, and the status that says that there is trouble
-asks() {
-  local status=0
-  "$root/scripts/doctor" "$@" >said.txt 2>&1 || status=$?
-  cat said.txt
-  [ "$status" -eq 1 ]
-}
+asks() { gives 1 said.txt "$root/scripts/doctor" "$@"; }
 
 # finds PATTERN: among the troubles that were listed last
 finds() { grep -E -- "^[0-9]+\. .*$1" said.txt || { cat said.txt; return 1; }; }

@@ -1,4 +1,5 @@
-# scripts/run --drive: who drives in wall time, what goes with whom, and that such a session is recorded and repeats.
+# scripts/run --drive: a session that somebody drives in wall time is recorded and repeats. What goes with whom is tested in
+# src/vibe_bringup/test.
 # kind: computing
 # cost: 120
 # alone-with: fake-camera
@@ -11,53 +12,15 @@ scene=$root/src/vibe_sim/test/node/scenes/light.yaml
 recording=$root/src/vibe_hardware/test/node/pad_session.evemu
 hand=script:$root/src/vibe_core/trainees/demo/smoke.yaml
 
-check 'run names who may drive' refuses 2 "nobody is called 'walk'; choose one of trainee device emulator gamepad keyboard web" \
-  "$run" --drive walk
-check 'run asks who drives' refuses 2 '^run: --drive needs a value' "$run" --drive
-for driver in device emulator gamepad keyboard web; do
-  check "--fast does not go with $driver" refuses 2 "'$driver' drives in wall time" "$run" --drive "$driver" --fast
-  check "--script does not go with $driver" refuses 2 "--script goes with --drive trainee, not with --drive $driver" \
-    "$run" --drive "$driver" --script "$scene"
-done
-check 'a hand goes with the emulator' refuses 2 '--hand goes with --drive emulator' "$run" --hand random
-check 'a hand is one of three kinds' refuses 2 "'left' is not known; write script:FILE" "$run" --drive emulator --hand left
-check 'a hand names a file that is there' refuses 2 "no file 'nowhere.yaml'" "$run" --drive emulator --hand script:nowhere.yaml
-check 'a pad goes with the gamepad' refuses 2 '--pad goes with --drive gamepad' "$run" --drive device --pad Xbox
-check 'a mapping goes with the gamepad' refuses 2 '--mapping goes with --drive gamepad' "$run" --mapping "$scene"
-check 'a mapping is there' refuses 2 "no file 'nowhere.yaml'" "$run" --drive gamepad --mapping nowhere.yaml
-check 'a recorded pad is there' refuses 2 "no file 'nowhere.evemu'" "$run" --drive gamepad --replay-pad nowhere.evemu
-check 'one pad at a time' refuses 2 'exclude each other' "$run" --drive gamepad --pad Xbox --replay-pad "$recording"
-check 'instruments are seen by a camera' refuses 2 "--instruments: 'eyes' is not known; write camera" \
-  "$run" --drive emulator --instruments eyes
-check 'a camera goes with devices' refuses 2 "goes with --drive device or emulator: 'gamepad' moves" \
-  "$run" --drive gamepad --instruments camera --camera fake
-check 'a camera goes not with a trainee' refuses 2 "goes with --drive device or emulator: 'trainee' moves" \
-  "$run" --instruments camera --camera fake
-check 'a camera is for instruments' refuses 2 'go with --instruments camera; add it' "$run" --drive emulator --camera gige:
-check 'a camera needs a calibration' refuses 2 'add --vision-config FILE' "$run" --drive emulator --instruments camera
-check 'a calibration is there' refuses 2 "no file 'nowhere.yaml'" \
-  "$run" --drive emulator --instruments camera --vision-config nowhere.yaml
-check 'a simulated camera has its own calibration' refuses 2 'remove one of them' \
-  "$run" --drive emulator --instruments camera --camera fake --vision-config "$scene"
-check 'the keyboard needs a display' refuses 2 'DISPLAY is not set' "$run" --drive keyboard
-check 'the keyboard needs rviz' refuses 2 'remove --headless' "$run" --drive keyboard --headless
-
-if [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped sessions (scripts/run uses the ordinary build, not this one)'
-  exit 0
-fi
+isOrdinary || skip 'sessions (scripts/run uses the ordinary build, not this one)'
 
 # drives NAME OPTION...: a session on the light scene ends well, is complete, and repeats to the same state.
 drives() {
-  local name=$1 status=0
-  shift
-  "$run" --scene "$scene" --headless --output "$scratch/$name" "$@" >"$scratch/$name.txt" 2>&1 || status=$?
-  cat "$scratch/$name.txt"
-  [ "$status" -eq 0 ] && grep -q '^state hash: ' "$scratch/$name/summary.txt" || return 1
+  local name=$1
+  gives 0 "$scratch/$name.txt" "$run" --scene "$scene" --headless --output "$scratch/$name" "${@:2}" &&
+    grep -q '^state hash: ' "$scratch/$name/summary.txt" || return 1
   [ "$(grep -c 'x real time' "$scratch/$name.txt")" -ge 3 ] || { echo 'not a line a second'; return 1; }
-  "$root/scripts/replay" "$scratch/$name/session.bag" >"$scratch/$name.replay" 2>&1 || status=$?
-  tail -n 2 "$scratch/$name.replay"
-  [ "$status" -eq 0 ] && grep -q '^the same: all ' "$scratch/$name.replay"
+  gives 0 "$scratch/$name.replay" "$root/scripts/replay" "$scratch/$name/session.bag" && grep -q '^the same: all ' "$scratch/$name.replay"
 }
 
 # reaches NAME DEPTH SPREAD: the deepest insertion that a step has used [m], and by how much it may differ.
@@ -118,46 +81,27 @@ check 'a session without its gamepad says what it looked for and goes on' waitsF
 
 namesBadMapping() {
   printf 'name: wrong\njoints:\n  insertion: {axis: ABS_Y, mode: rate, rte: 1 cm/s}\n' >"$scratch/wrong.yaml"
-  local status=0
-  "$run" --drive gamepad --scene "$scene" --headless --mapping "$scratch/wrong.yaml" --duration 3 \
-    --output "$scratch/wrong" >"$scratch/wrong.txt" 2>&1 || status=$?
-  cat "$scratch/wrong.txt"
-  [ "$status" -eq 1 ] && grep -q "wrong.yaml:3: joints.insertion.rte: .*did you mean 'rate'" "$scratch/wrong.txt" &&
+  gives 1 "$scratch/wrong.txt" "$run" --drive gamepad --scene "$scene" --headless --mapping "$scratch/wrong.yaml" --duration 3 \
+    --output "$scratch/wrong" && grep -q "wrong.yaml:3: joints.insertion.rte: .*did you mean 'rate'" "$scratch/wrong.txt" &&
     grep -q '^run: gamepad_node died' "$scratch/wrong.txt"
 }
 check 'a wrong mapping is one clear error' namesBadMapping
 
 # startSession NAME OPTION...: in the background, without an end; returns once it takes steps. Sets session_pid.
 startSession() {
-  local name=$1
-  shift
-  # bash starts background jobs deaf to SIGINT; the user's terminal does not
-  VIBE_TEST_MARK=$name-$$ /usr/bin/python3 -c 'import os, signal, sys
-signal.signal(signal.SIGINT, signal.SIG_DFL)
-os.execv(sys.argv[1], sys.argv[1:])' "$run" --scene "$scene" --output "$scratch/$name" "$@" >"$scratch/$name.txt" 2>&1 &
-  session_pid=$!
-  local deadline=$((SECONDS + 120))
-  until grep -qsE ' ([1-9][0-9]*\.[0-9]+|0\.0?[1-9][0-9]*) x real time' "$scratch/$name.txt"; do
-    kill -0 "$session_pid" && [ "$SECONDS" -lt "$deadline" ] || { cat "$scratch/$name.txt"; return 1; }
-    sleep 0.2
-  done
+  begins "$1-$$" "$scratch/$1.txt" ' ([1-9][0-9]*\.[0-9]+|0\.0?[1-9][0-9]*) x real time' \
+    "$run" --scene "$scene" --output "$scratch/$1" "${@:2}"
 }
 
 endsOnInterrupt() {
-  local status=0
   startSession endless --drive emulator --hand "$hand" --headless || return 1
   kill -INT "$session_pid"
-  wait "$session_pid" || status=$?
-  cat "$scratch/endless.txt"
-  [ "$status" -eq 0 ] && grep -q '^state hash: ' "$scratch/endless.txt" && [ -s "$scratch/endless/session.bag" ] &&
-    [ -z "$(processesWith "VIBE_TEST_MARK=endless-$$")" ]
+  ends 0 "$scratch/endless.txt" && grep -q '^state hash: ' "$scratch/endless.txt" && [ -s "$scratch/endless/session.bag" ] &&
+    nobodyLeft "endless-$$" 0
 }
 check 'a session without an end is summed up when it is interrupted' endsOnInterrupt
 
-if ! command -v Xvfb >/dev/null; then
-  echo 'skipped driving with the keyboard (there is no Xvfb; scripts/setup installs it)'
-  exit 0
-fi
+command -v Xvfb >/dev/null || skip 'driving with the keyboard (there is no Xvfb; scripts/setup installs it)'
 
 # startDisplay: a virtual display of this test, in DISPLAY; ends with this shell.
 startDisplay() {
@@ -190,13 +134,11 @@ closesRviz() {
 
 keyboardDrives() {
   startDisplay && startSession keyboard --drive keyboard || return 1
-  local deadline=$((SECONDS + 180)) status=0
+  local deadline=$((SECONDS + 180))
   # rviz asks the tool to drive when it has drawn its first pictures
   until grep -qs '^t =   1[0-9]\.' "$scratch/keyboard.txt" || ! kill -0 "$session_pid" 2>/dev/null; do sleep 0.5; done
   closesRviz 'the session goes on without rviz' "$deadline" || return 1
-  wait "$session_pid" || status=$?
-  cat "$scratch/keyboard.txt"
-  [ "$status" -eq 0 ] && grep -q '^rviz was closed: the session ends.' "$scratch/keyboard.txt" &&
+  ends 0 "$scratch/keyboard.txt" && grep -q '^rviz was closed: the session ends.' "$scratch/keyboard.txt" &&
     grep -q '^state hash: ' "$scratch/keyboard.txt" && [ "$(commands keyboard)" -gt 0 ]
 }
 check 'rviz drives with the keyboard from its start, and closing it ends the session' keyboardDrives
@@ -214,27 +156,23 @@ windowOf() {
 }
 
 staysWithTheResult() {
-  local status=0 deadline=$((SECONDS + 180))
+  local deadline=$((SECONDS + 180))
   startDisplay && startSession result --drive emulator --hand "$hand" --duration 6 || return 1
   until grep -q '^The session has ended. It is still shown by rviz, until it is closed, or Ctrl-C.' "$scratch/result.txt"; do
     [ "$SECONDS" -lt "$deadline" ] && kill -0 "$session_pid" || { cat "$scratch/result.txt"; return 1; }
     sleep 0.2
   done
   closesRviz 'rviz cannot be closed' "$deadline" || return 1
-  wait "$session_pid" || status=$?
-  cat "$scratch/result.txt"
-  [ "$status" -eq 0 ] && grep -q '^recorded: ' "$scratch/result.txt"
+  ends 0 "$scratch/result.txt" && grep -q '^recorded: ' "$scratch/result.txt"
 }
 check 'rviz shows how a session ended until it is closed' staysWithTheResult
 
 saysThatRvizDied() {
-  local status=0 rviz
+  local rviz
   startDisplay && QT_QPA_PLATFORM=wayland startSession died --drive emulator --hand "$hand" --duration 20 &&
     rviz=$(windowOf died) || return 1
   grep -qz '^QT_QPA_PLATFORM=xcb$' "/proc/$rviz/environ" && kill -KILL "$rviz" || return 1
-  wait "$session_pid" || status=$?
-  cat "$scratch/died.txt"
-  [ "$status" -eq 1 ] && grep -q '^On this Wayland desktop rviz runs through Xwayland' "$scratch/died.txt" &&
+  ends 1 "$scratch/died.txt" && grep -q '^On this Wayland desktop rviz runs through Xwayland' "$scratch/died.txt" &&
     grep -q '^rviz died; the session goes on without it.' "$scratch/died.txt" && grep -q '^state hash: ' "$scratch/died.txt" &&
     grep -q '^run: rviz died with status -9' "$scratch/died.txt" && grep -q '^rviz died' "$scratch/died/log/rviz.log"
 }

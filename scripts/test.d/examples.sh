@@ -31,14 +31,8 @@ noticesADifference() {
 }
 check 'a difference to the files is noticed' noticesADifference
 
-if [ ! -f "$devel/setup.bash" ]; then
-  echo 'skipped examples (not built; scripts/build builds what they need)'
-  exit 0
-fi
-if [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped examples with sanitizers (they are built as users build them)'
-  exit 0
-fi
+[ -f "$devel/setup.bash" ] || skip 'examples (not built; scripts/build builds what they need)'
+isOrdinary || skip 'examples with sanitizers (they are built as users build them)'
 set +u
 # shellcheck disable=SC1091
 source "$devel/setup.bash"

@@ -4,14 +4,9 @@
 # packages: vibe_bringup vibe_msgs vibe_sessions vibe_python
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-check 'export asks for a recording' refuses 2 'which recording' "$root/scripts/export" --to csv
-check 'export refuses a format' refuses 2 "no format; the nearest is 'mcap'" "$root/scripts/export" a.bag --to mcp
-
 readonly names=$root/src/vibe_sessions/test/readers.txt environment=$root/build/readers
-if ! pythonEnvironment readers "$names" >"$scratch/pip.txt" 2>&1; then
-  echo "skipped the readers of others (pip could not install what $(basename "$names") names: $(tail -n 1 "$scratch/pip.txt"))"
-  exit 0
-fi
+pythonEnvironment readers "$names" >"$scratch/pip.txt" 2>&1 ||
+  skip "the readers of others (pip could not install what $(basename "$names") names: $(tail -n 1 "$scratch/pip.txt"))"
 
 readers() { (set +u && source "$root/devel/setup.bash" && cd "$root/src/vibe_sessions/test" && exec "$environment/bin/python" -B export_readers.py "$1"); }
 for part in McapReaders Ros2Package ParquetReader UsdReader LerobotReader; do

@@ -6,12 +6,7 @@
 # packages: vibe_system_tests
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-for program in vibe_sim/sim_node vibe_hardware/hardware_node vibe_vision/vision_node; do
-  if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/$program" ]; then
-    echo 'skipped faults (they need the ordinary build)'
-    exit 0
-  fi
-done
+isOrdinary vibe_sim/sim_node vibe_hardware/hardware_node vibe_vision/vision_node || skip 'faults (they need the ordinary build)'
 unset DISPLAY
 
 faults() { builtSystemTest faults "$@"; }

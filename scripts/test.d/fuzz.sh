@@ -17,15 +17,11 @@
 # several programs name is compiled once, and with those of its folder that the same programs name.
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped fuzzing (it has sanitizers of its own; runs with scripts/test)'
-  exit 0
-fi
+isOrdinary || skip 'fuzzing (it has sanitizers of its own; runs with scripts/test)'
 echo 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }' >"$scratch/empty.cpp"
 if ! clang++ -fsanitize=fuzzer,address,undefined "$scratch/empty.cpp" -o "$scratch/empty" >"$scratch/clang.log" 2>&1; then
   sed 's/^/    /' "$scratch/clang.log"
-  echo 'skipped fuzzing (needs clang and libclang-rt-14-dev; scripts/setup installs them)'
-  exit 0
+  skip 'fuzzing (needs clang and libclang-rt-14-dev; scripts/setup installs them)'
 fi
 
 seconds=${VIBE_FUZZ_SECONDS:-$([ -n "${VIBE_SLOW_TESTS:-}" ] && echo 60 || echo 10)}

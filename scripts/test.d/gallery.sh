@@ -17,22 +17,12 @@ isShown() {
 }
 check 'every file of the gallery is in its page' isShown
 
-if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/vibe_sim/sim_node" ]; then
-  echo 'skipped the examples (they need the ordinary build)'
-  exit 0
-fi
+isOrdinary vibe_sim/sim_node || skip 'the examples (they need the ordinary build)'
 set +u
 # shellcheck disable=SC1091
 source "$root/devel/setup.bash"
 set -u
 
-# prints PATTERN COMMAND...: the command succeeds, and one of its lines matches.
-prints() {
-  local said
-  said=$("${@:2}" 2>&1) || { printf '%s\n' "$said"; return 1; }
-  printf '%s\n' "$said"
-  grep -qE -- "$1" <<<"$said"
-}
 isPicture() { [ "$(head -c 4 "$1" | tail -c 3)" = PNG ]; }
 
 # A graph of its own: a master and the simulator, as the page says, and a recorder. In simulated time, so that a busy

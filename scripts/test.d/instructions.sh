@@ -37,14 +37,9 @@ fn=(5)
 FILE
 
 # The first step of a run is not counted: it makes the first factor.
-counts() {
-  local said
-  said=$(/usr/bin/python3 -B "$root/scripts/lib/instructions.py" none --read "$scratch/counted" free)
-  printf '%s\n' "$said"
-  grep -qE '^free +2 +2\.000 +0\.000 +0\.050 +0\.000 +1\.500 +0\.500 +0\.000 +0\.000$' <<<"$said"
-}
-
-check 'instructions per step, with those of what is called' counts
+check 'instructions per step, with those of what is called' \
+  prints '^free +2 +2\.000 +0\.000 +0\.050 +0\.000 +1\.500 +0\.500 +0\.000 +0\.000$' \
+  /usr/bin/python3 -B "$root/scripts/lib/instructions.py" none --read "$scratch/counted" free
 sed -i 's/countedStep/notCounted/' "$scratch/counted"
 check 'a file without a step is refused' refuses 1 "has counted no step of 'free'" \
   /usr/bin/python3 -B "$root/scripts/lib/instructions.py" none --read "$scratch/counted" free

@@ -1,4 +1,4 @@
-# scripts/latency: what it refuses, and that it follows a jump of the hand through all stages, up to the pixel.
+# scripts/latency follows a jump of the hand through all stages, up to the pixel.
 # kind: timed
 # cost: 120
 # alone-with: fake-camera
@@ -7,21 +7,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin # python3 of Debian, which has numpy
 
 latency=$root/scripts/latency
-check 'latency refuses no blinks' refuses 2 "not '0'" "$latency" --blinks 0
-check 'latency refuses a rate that is no number' refuses 2 "not 'fast'" "$latency" --rate fast
-check 'latency refuses more steps than a jump may take' refuses 2 "not '1000'" "$latency" --rate 1000
-check 'latency refuses more steps than there may be' refuses 2 "not '1001'" "$latency" --steps --rate 1001
-check 'latency refuses to measure for no time' refuses 2 "not '0'" "$latency" --steps --minutes 0
-check 'latency refuses a lead too far' refuses 2 "not '201'" "$latency" --sway --lead 201
-check 'latency refuses to predict jumps' refuses 2 'goes with --sway' "$latency" --lead 10
-check 'latency refuses a priority that is none' refuses 2 "from 0 to 98" "$latency" --realtime 99
-check 'latency refuses a scene that is not there' refuses 2 'no file' "$latency" --scene nowhere.yaml
-check 'latency refuses a folder that is there' refuses 2 'is there already' "$latency" --output "$scratch"
-
-if [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped measurements (scripts/latency uses the ordinary build, not this one)'
-  exit 0
-fi
+isOrdinary || skip 'measurements (scripts/latency uses the ordinary build, not this one)'
 
 # measure NAME OPTION...: a few blinks into $scratch/NAME.
 measure() {

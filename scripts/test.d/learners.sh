@@ -4,18 +4,11 @@
 # packages: vibe_core vibe_python
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped Stable-Baselines3 (scripts/test --slow lets it learn)'
-  exit 0
-fi
-if ! /usr/bin/python3 -c 'import torch, venv' 2>/dev/null; then
-  echo 'skipped Stable-Baselines3 (python3-torch or python3-venv is not installed)'
-  exit 0
-fi
-if ! pythonEnvironment learners "$root/src/vibe_python/test/learners.txt" --no-deps >"$scratch/pip" 2>&1; then
-  echo 'skipped Stable-Baselines3 (it cannot be downloaded)'
-  exit 0
-fi
+isSlowRun || skip 'Stable-Baselines3 (scripts/test --slow lets it learn)'
+/usr/bin/python3 -c 'import torch, venv' 2>/dev/null ||
+  skip 'Stable-Baselines3 (python3-torch or python3-venv is not installed)'
+pythonEnvironment learners "$root/src/vibe_python/test/learners.txt" --no-deps >"$scratch/pip" 2>&1 ||
+  skip 'Stable-Baselines3 (it cannot be downloaded)'
 
 learns() {
   set +u && source "$root/devel/setup.bash"

@@ -31,6 +31,14 @@ refusesToFix() {
   refuses 1 'not clean: format' bash -c '"$1" --only format --fix 2>&1 >/dev/null' - "$tree/scripts/lint" && [ ! -e "$bin/ran" ]
 }
 
+# passes CHECK TREE: nothing is found
+passes() { "$2/scripts/lint" --only "$1" || { echo 'finds a problem where none is'; return 1; }; }
+
+# sees CHECK TREE WORD...: lint finds something, and grep with these words finds it in what lint says
+sees() {
+  refuses 1 "not clean: $1" bash -c '"$1" --only "$2" 2>&1 >"$3"' - "$2/scripts/lint" "$1" "$2/said" && cat "$2/said" && grep -q "${@:3}" "$2/said"
+}
+
 # Makes a small workspace without a problem, in a folder with a space in its name, and prints the folder.
 copyOfTree() {
   local tree
@@ -53,11 +61,10 @@ findsRosIn() {
   local tree
   tree=$(copyOfTree)
   echo '#include <ros/time.h>' >"$tree/src/vibe_sim/node/allowed.cpp"
-  "$tree/scripts/lint" --only door || { echo 'finds ROS where none is'; return 1; }
+  passes door "$tree" || return 1
   mkdir -p "$(dirname "$tree/src/$1")"
   echo "$2" >"$tree/src/$1"
-  refuses 1 'not clean: door' bash -c '"$1" --only door 2>&1 >"$2"' - "$tree/scripts/lint" "$tree/said" &&
-    grep -F "$1:1:" "$tree/said"
+  sees door "$tree" -F "$1:1:"
 }
 check 'lint sees ROS in the core' findsRosIn vibe_core/src/program/a.cpp '#include <ros/ros.h>'
 check 'lint sees a message in a public header' findsRosIn vibe_core/include/vibe_core/program/a.hpp \
@@ -90,11 +97,10 @@ check 'lint sees a picture that is older than what it shows' seesAnOldPicture
 findsRoomProblem() {
   local tree
   tree=$(copyOfTree)
-  "$tree/scripts/lint" --only rooms || { echo 'finds a problem in an orderly tree'; return 1; }
+  passes rooms "$tree" || return 1
   mkdir -p "$(dirname "$tree/src/vibe_core/$1")"
   printf '#include <vector>\n%s\n' "$2" >>"$tree/src/vibe_core/$1"
-  refuses 1 'not clean: rooms' bash -c '"$1" --only rooms 2>&1 >"$2"' - "$tree/scripts/lint" "$tree/said" &&
-    cat "$tree/said" && grep -qE "^src/vibe_core/$1:[0-9]+: .*$3" "$tree/said"
+  sees rooms "$tree" -E "^src/vibe_core/$1:[0-9]+: .*$3"
 }
 check 'lint sees a circle between rooms' \
   findsRoomProblem src/state/a.cpp '#include "solver/stepper.hpp"' 'solver comes after state'
@@ -112,10 +118,9 @@ seesRoomsOfTheCameras() {
   tree=$(copyOfTree)
   mkdir -p "$tree"/src/vibe_vision/src/{tag,track}
   touch "$tree/src/vibe_vision/src/track/a.hpp"
-  "$tree/scripts/lint" --only rooms || return 1
+  passes rooms "$tree" || return 1
   echo '#include "track/a.hpp"' >"$tree/src/vibe_vision/src/tag/a.cpp"
-  refuses 1 'not clean: rooms' bash -c '"$1" --only rooms 2>&1 >"$2"' - "$tree/scripts/lint" "$tree/said" &&
-    grep -F 'src/vibe_vision/src/tag/a.cpp:1: tag includes "track/a.hpp", but track comes after tag' "$tree/said"
+  sees rooms "$tree" -F 'src/vibe_vision/src/tag/a.cpp:1: tag includes "track/a.hpp", but track comes after tag'
 }
 check 'lint sees a circle between rooms of the cameras' seesRoomsOfTheCameras
 
@@ -125,10 +130,9 @@ findsName() {
   tree=$(copyOfTree) core=$tree/src/vibe_core
   printf '#pragma once\nnamespace vibe {\nenum Kind { kFirst, kSecond };\n}  // namespace vibe\n' >"$core/include/vibe_core/solver/kind.hpp"
   printf 'namespace vibe {\nnamespace {\nint used() {\n  return kFirst;\n}\n}  // namespace\n}  // namespace vibe\n' >"$core/src/solver/use.cpp"
-  "$tree/scripts/lint" --only names || { echo 'finds a problem where none is'; return 1; }
+  passes names "$tree" || return 1
   printf 'namespace vibe {\nnamespace {\n%s\n}  // namespace\n}  // namespace vibe\n' "$2" >"$core/src/solver/$1"
-  refuses 1 'not clean: names' bash -c '"$1" --only names 2>&1 >"$2"' - "$tree/scripts/lint" "$tree/said" &&
-    cat "$tree/said" && grep -qE "^src/vibe_core/src/solver/[a-z]+.[ch]pp:[34]: .*$3" "$tree/said"
+  sees names "$tree" -E "^src/vibe_core/src/solver/[a-z]+.[ch]pp:[34]: .*$3"
 }
 check 'lint sees a value that hides that of a header' findsName other.cpp 'enum Item { kFirst = 7 };' \
   "'kFirst' hides that of .*kind.hpp in use.cpp"
@@ -146,10 +150,9 @@ findsWriter() {
   tree=$(copyOfTree)
   printf 'with whole(path) as part, open(part, "w") as file:\n    pass\nopen(log, "a")  # not whole: a log\nopen(path)\n' >"$tree/src/vibe_core/good.py"
   printf 'WholeFile whole(file, "Table");\nstd::ofstream out(whole.part());\nstd::ifstream in(file);\n' >"$tree/src/vibe_core/src/good.cpp"
-  "$tree/scripts/lint" --only writers || { echo 'finds a problem where none is'; return 1; }
+  passes writers "$tree" || return 1
   printf '\n\n%s\n' "$2" >"$tree/src/vibe_core/src/$1"
-  refuses 1 'not clean: writers' bash -c '"$1" --only writers 2>&1 >"$2"' - "$tree/scripts/lint" "$tree/said" &&
-    grep -F "src/vibe_core/src/$1:3:$2" "$tree/said"
+  sees writers "$tree" -F "src/vibe_core/src/$1:3:$2"
 }
 seesWriters() {
   findsWriter bad.py 'with open(path, "w", encoding="utf-8") as file:' && findsWriter bad.py 'figure.savefig(picture)' &&
@@ -166,10 +169,9 @@ findsLink() {
   rm "$tree/docs/architecture.md"
   printf '# Title\n\n## A `name` here\n\n`[no](link.md)`\n\n```\n[no](link.md)\n```\n' >"$tree/docs/a.md"
   printf '# Other\n\n[a](a.md#a-name-here), [folder](../src), [web](https://example.org/x.md)\n' >"$tree/docs/b.md"
-  "$tree/scripts/lint" --only links || { echo 'finds a problem where none is'; return 1; }
+  passes links "$tree" || return 1
   printf '\n%s\n' "$1" >>"$tree/docs/b.md"
-  refuses 1 'not clean: links' bash -c '"$1" --only links 2>&1 >"$2"' - "$tree/scripts/lint" "$tree/said" &&
-    cat "$tree/said" && grep -qE "^docs/b.md: $2" "$tree/said"
+  sees links "$tree" -E "^docs/b.md: $2"
 }
 check 'lint sees a link to a file that is not there' findsLink '[x](c.md)' "'c.md' is not there"
 check 'lint sees a link to a heading that is not there' findsLink '[x](a.md#a-name)' "'a.md#a-name': that page has no such heading"

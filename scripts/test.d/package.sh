@@ -5,10 +5,7 @@
 # packages: packaging vibe_bringup vibe_python vibe_web
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if ! command -v dh_listpackages >/dev/null; then
-  echo 'skipped package (no debhelper; scripts/setup installs it)'
-  exit 0
-fi
+command -v dh_listpackages >/dev/null || skip 'package (no debhelper; scripts/setup installs it)'
 
 # describe SYSTEM [WORKSPACE]
 describe() {

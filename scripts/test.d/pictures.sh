@@ -8,11 +8,7 @@ references=$root/docs/pictures
 region=860x610+20+70 # where rviz draws: figures in panels and the frame rate change all the time
 states=(rest marked grabbed sutured cinched)
 compare() { systemTest compare_pictures --region "$region" "$@"; }
-fails() {
-  local status=0
-  "$@" || status=$?
-  [ "$status" -eq 1 ] || { echo "status $status, not 1"; return 1; }
-}
+fails() { gives 1 "$scratch/said" "$@"; }
 
 # --- the measure itself: what must not count, and what must
 similarPicturesPass() {
@@ -51,10 +47,7 @@ check 'pictures: every state differs from every other' otherStatesFail
 check 'pictures: another size is refused' otherSizeIsRefused
 
 program=$root/devel/lib/vibe_rviz_plugins/rviz_report
-if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$program" ]; then
-  echo 'skipped what rviz draws (it needs the ordinary build with tests)'
-  exit 0
-fi
+isOrdinary vibe_rviz_plugins/rviz_report || skip 'what rviz draws (it needs the ordinary build with tests)'
 
 # --- what rviz draws now
 mkdir "$scratch/now"

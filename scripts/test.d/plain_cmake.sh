@@ -10,14 +10,8 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 catkin_build=$root/build${VIBE_VARIANT:-}
 catkin_devel=$root/devel${VIBE_VARIANT:-}
-if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$catkin_devel/lib/vibe_core/vibe_headless" ]; then
-  echo 'skipped plain CMake (needs the Release build; scripts/build makes it)'
-  exit 0
-fi
-if ! command -v clang++ >/dev/null; then
-  echo 'skipped plain CMake (needs clang++; scripts/setup installs it)'
-  exit 0
-fi
+isOrdinary vibe_core/vibe_headless || skip 'plain CMake (needs the Release build; scripts/build makes it)'
+command -v clang++ >/dev/null || skip 'plain CMake (needs clang++; scripts/setup installs it)'
 
 scratch=$(readlink -f -- "$scratch")
 source=$scratch/source/vibe_core

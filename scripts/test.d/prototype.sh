@@ -7,10 +7,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 devel=$root/devel${VIBE_VARIANT:-}
 headless=$devel/lib/vibe_core/vibe_headless
-if [ ! -x "$headless" ] || [ ! -f "$devel/lib/libvibe_prototype.so" ]; then
-  echo 'skipped the prototype (not built; scripts/build builds it)'
-  exit 0
-fi
+[ -x "$headless" ] && [ -f "$devel/lib/libvibe_prototype.so" ] || skip 'the prototype (not built; scripts/build builds it)'
 export ROS_PACKAGE_PATH=$root/src
 
 # scene NAME CINCH DEFORMATION

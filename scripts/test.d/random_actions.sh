@@ -6,10 +6,8 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 variant=${VIBE_VARIANT:-}
 setup=$root/devel$variant/setup.bash
-if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ "$variant" = -threads ] || [ ! -e "$root/devel$variant/lib/python3/dist-packages/vibe" ]; then
-  echo 'skipped random actions in all environments (scripts/test --slow makes them, where the Python module is built)'
-  exit 0
-fi
+[ -n "${VIBE_SLOW_TESTS:-}" ] && [ "$variant" != -threads ] && [ -e "$root/devel$variant/lib/python3/dist-packages/vibe" ] ||
+  skip 'random actions in all environments (scripts/test --slow makes them, where the Python module is built)'
 
 # Python is not built with the sanitizers, so their library has to come first. What Python and numpy keep until they end
 # would be reported as lost, and freed memory is kept to be watched, so growth is not judged.

@@ -3,10 +3,7 @@
 # cost: 10
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if ! command -v rosdep >/dev/null; then
-  echo 'skipped rosdep (not installed; scripts/setup installs it)'
-  exit 0
-fi
+command -v rosdep >/dev/null || skip 'rosdep (not installed; scripts/setup installs it)'
 mkdir "$scratch/sources"
 export ROSDEP_SOURCE_PATH=$scratch/sources ROS_HOME=$scratch ROSDISTRO_INDEX_URL=file://$scratch/index.yaml
 printf '%%YAML 1.1\n---\ndistributions: {}\ntype: index\nversion: 4\n' >"$scratch/index.yaml"

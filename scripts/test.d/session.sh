@@ -4,22 +4,10 @@
 # packages: vibe_bringup vibe_web
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped sessions (scripts/run uses the ordinary build, not this one)'
-  exit 0
-fi
+isOrdinary || skip 'sessions (scripts/run uses the ordinary build, not this one)'
 unset DISPLAY
 run=$root/scripts/run
 python() { /usr/bin/env PYTHONPATH="$root/devel/lib/python3/dist-packages" /usr/bin/python3 "$@"; }
-
-# nobodyLeft MARK SECONDS
-nobodyLeft() {
-  local deadline=$((SECONDS + $2))
-  while [ -n "$(processesWith "VIBE_TEST_MARK=$1")" ]; do
-    [ "$SECONDS" -lt "$deadline" ] || { processesWith "VIBE_TEST_MARK=$1" | xargs -r ps -o pid,ppid,args -p; return 1; }
-    sleep 0.2
-  done
-}
 
 isRecorded() {
   [ -s "$1/session.bag" ] && [ -z "$(find "$1" -name '*.active')" ] || { ls "$1"; return 1; }
@@ -41,14 +29,10 @@ for topic, found in numbers.items():
 PYTHON
 }
 
-hashOf() { sed -n 's/^state hash: //p' "$1"; }
-
 endsWell() {
   local folder="$scratch/first session"
-  (cd / && "$run" --headless --fast --record-all --duration 2 --output "$folder") >"$scratch/first.txt" 2>&1 ||
-    { cat "$scratch/first.txt"; return 1; }
-  cat "$scratch/first.txt"
-  [ -n "$(hashOf "$folder/summary.txt")" ] && grep -qxF "state hash: $(hashOf "$folder/summary.txt")" "$scratch/first.txt" &&
+  gives 0 "$scratch/first.txt" env -C / "$run" --headless --fast --record-all --duration 2 --output "$folder" &&
+    [ -n "$(hashOf "$folder/summary.txt")" ] && grep -qxF "state hash: $(hashOf "$folder/summary.txt")" "$scratch/first.txt" &&
     isRecorded "$folder" && nothingIsLost "$folder" 120
 }
 check 'a session ends well, summed up and recorded without a loss' endsWell
@@ -95,34 +79,17 @@ PYTHON
 check 'a recording that was filled in has every message of the session' isFilledIn
 
 check 'a session is not recorded over another' refuses 2 'already holds a session' "$run" --headless --output "$scratch/second"
-check 'run names a scene that is not there' refuses 2 "no file 'nowhere.yaml'" "$run" --scene nowhere.yaml
-check 'run names a duration that is none' refuses 2 "not 'long'" "$run" --duration long
-check 'run refuses a folder it cannot make' refuses 2 "cannot write to '/proc/session'" "$run" --output /proc/session
-check 'run says which option lacks its value' refuses 2 '^run: --mesh needs a value' "$run" --mesh
 
 failsOnBadScene() {
   sed 's/^\([a-z]*\):/\1_of_no_meaning:/' "$root/src/vibe_core/scenes/stomach.yaml" >"$scratch/bad.yaml"
-  local status=0
-  "$run" --headless --fast --duration 1 --scene "$scratch/bad.yaml" --output "$scratch/bad" >"$scratch/bad.txt" 2>&1 || status=$?
-  cat "$scratch/bad.txt"
-  [ "$status" -eq 1 ] && grep -q 'bad.yaml:[0-9]*' "$scratch/bad.txt" && grep -q 'run: sim_node ended with status' "$scratch/bad.txt"
+  gives 1 "$scratch/bad.txt" "$run" --headless --fast --duration 1 --scene "$scratch/bad.yaml" --output "$scratch/bad" &&
+    grep -q 'bad.yaml:[0-9]*' "$scratch/bad.txt" && grep -q 'run: sim_node ended with status' "$scratch/bad.txt"
 }
 check 'a bad scene is one clear error' failsOnBadScene
 
 # startSession MARK [OPTION...]: a session of an hour, in the background; sets session_pid. Returns once it takes steps.
 startSession() {
-  # bash starts background jobs deaf to SIGINT; the user's terminal does not
-  local mark=$1
-  shift
-  VIBE_TEST_MARK=$mark /usr/bin/python3 -c 'import os, signal, sys
-signal.signal(signal.SIGINT, signal.SIG_DFL)
-os.execv(sys.argv[1], sys.argv[1:])' "$run" --headless --duration 3600 --output "$scratch/$mark" "$@" >"$scratch/$mark.txt" 2>&1 &
-  session_pid=$!
-  local deadline=$((SECONDS + 120))
-  until grep -qs 'x real time' "$scratch/$mark.txt"; do
-    kill -0 "$session_pid" && [ "$SECONDS" -lt "$deadline" ] || { cat "$scratch/$mark.txt"; return 1; }
-    sleep 0.2
-  done
+  begins "$1" "$scratch/$1.txt" 'x real time' "$run" --headless --duration 3600 --output "$scratch/$1" "${@:2}"
 }
 
 # doors MARK: ADDRESS:PORT of every TCP port that the programs of a session listen on, as in /proc/net/tcp: 0100007F is
@@ -147,14 +114,12 @@ listensOnlyTo() {
 
 # One session for both: control of the address, that another one is told apart.
 isClosedAndSurvivesInterrupt() {
-  local mark=interrupted-$$ status=0
+  local mark=interrupted-$$
   startSession "$mark" || return 1
   listensOnlyTo "$mark" 0100007F || { echo 'listens to the network'; return 1; }
   ! listensOnlyTo "$mark" 00000000 >/dev/null || { echo 'tells no address apart'; return 1; }
   kill -INT "$session_pid"
-  wait "$session_pid" || status=$?
-  cat "$scratch/$mark.txt"
-  [ "$status" -eq 0 ] && grep -q '^state hash: ' "$scratch/$mark.txt" && isRecorded "$scratch/$mark" && nobodyLeft "$mark" 0
+  ends 0 "$scratch/$mark.txt" && grep -q '^state hash: ' "$scratch/$mark.txt" && isRecorded "$scratch/$mark" && nobodyLeft "$mark" 0
 }
 check 'a session listens on the loopback interface only; interrupted, it is summed up and leaves nothing' isClosedAndSurvivesInterrupt
 
@@ -179,30 +144,24 @@ cleansUpAfterKill() {
 check 'a killed session leaves no process and a complete recording' cleansUpAfterKill
 
 keepsRecording() {
-  local mark=slow-$$ status=0
+  local mark=slow-$$
   startSession "$mark" --record-all --fast --duration 15 || return 1
   signalProgram "$mark" STOP 'lib/vibe_sim/vibe_record$' && sleep 2 &&
     signalProgram "$mark" CONT 'lib/vibe_sim/vibe_record$' || return 1
-  wait "$session_pid" || status=$?
-  cat "$scratch/$mark.txt"
-  [ "$status" -eq 0 ] && nothingIsLost "$scratch/$mark" 900
+  ends 0 "$scratch/$mark.txt" && nothingIsLost "$scratch/$mark" 900
 }
 check 'a recorder that stands still for two seconds loses nothing' keepsRecording
 
 namesTheDead() {
-  local mark=dead-$$ status=0
+  local mark=dead-$$
   startSession "$mark" || return 1
   signalProgram "$mark" KILL 'lib/vibe_sim/vibe_trainee$' || return 1
-  wait "$session_pid" || status=$?
-  cat "$scratch/$mark.txt"
-  [ "$status" -eq 1 ] && grep -q '^run: vibe_trainee died' "$scratch/$mark.txt" && nobodyLeft "$mark" 0
+  ends 1 "$scratch/$mark.txt" && grep -q '^run: vibe_trainee died' "$scratch/$mark.txt" && nobodyLeft "$mark" 0
 }
 check 'a session names the program that died' namesTheDead
 
-if [ ! -f "$root/devel/share/vibe_web/page/index.html" ]; then
-  echo 'skipped the page of a session (the build left it out: it needs nodejs and npm)'
-  exit 0
-fi
+[ -f "$root/devel/share/vibe_web/page/index.html" ] ||
+  skip 'the page of a session (the build left it out: it needs nodejs and npm)'
 # a port, and a home for certificates
 port=$(freePort)
 export ROS_HOME=$scratch/home
@@ -214,7 +173,7 @@ sys.exit(sys.argv[2] not in page.read().decode())' "$1://127.0.0.1:$port/" "$2"
 }
 
 showsItsEnd() {
-  local mark=shown-$$ status=0 deadline=$((SECONDS + 120))
+  local mark=shown-$$ deadline=$((SECONDS + 120))
   startSession "$mark" --web --port "$port" --fast --duration 2 || return 1
   until grep -q '^The session has ended. It is still shown by the page, until Ctrl-C.' "$scratch/$mark.txt"; do
     [ "$SECONDS" -lt "$deadline" ] || return 1
@@ -222,21 +181,18 @@ showsItsEnd() {
   done
   isRecorded "$scratch/$mark" && grep -q '^state hash: ' "$scratch/$mark.txt" && answers http '<canvas' || return 1
   kill -INT "$session_pid"
-  wait "$session_pid" || status=$?
-  cat "$scratch/$mark.txt"
-  [ "$status" -eq 0 ] && nobodyLeft "$mark" 0
+  ends 0 "$scratch/$mark.txt" && nobodyLeft "$mark" 0
 }
 check 'a page shows how a session ended, until Ctrl-C' showsItsEnd
 
 opensThePageAlone() {
-  local mark=lan-$$ status=0 open
+  local mark=lan-$$ open
   startSession "$mark" --drive web --lan --port "$port" || return 1
   grep -q "https://.*:$port/#token=" "$scratch/$mark.txt" && answers https '<canvas' || { cat "$scratch/$mark.txt"; return 1; }
   open=$(doors "$mark" | grep -Ev '^(0100007F|00000000000000000000000001000000):')
   printf '%s\n' "$open"
   kill -INT "$session_pid"
-  wait "$session_pid" || status=$?
-  [ "$status" -eq 0 ] && [ -n "$open" ] && ! grep -v ":$(printf %04X "$port")$" <<<"$open"
+  ends 0 "$scratch/$mark.txt" && [ -n "$open" ] && ! grep -v ":$(printf %04X "$port")$" <<<"$open"
 }
 check 'with --lan the port of the page alone is open to the network' opensThePageAlone
 
@@ -244,9 +200,8 @@ namesTakenPort() {
   /usr/bin/python3 -m http.server --bind 127.0.0.1 "$port" >"$scratch/http.txt" 2>&1 &
   local server=$! status=0
   until answers http Directory 2>/dev/null; do sleep 0.1; done
-  "$run" --headless --web --port "$port" --duration 3600 --output "$scratch/taken" >"$scratch/taken.txt" 2>&1 || status=$?
+  gives 1 "$scratch/taken.txt" "$run" --headless --web --port "$port" --duration 3600 --output "$scratch/taken" || status=1
   kill "$server"
-  cat "$scratch/taken.txt"
-  [ "$status" -eq 1 ] && grep -q "port $port of 127.0.0.1 cannot be had .*; choose another one with .*--port" "$scratch/taken.txt"
+  [ "$status" -eq 0 ] && grep -q "port $port of 127.0.0.1 cannot be had .*; choose another one with .*--port" "$scratch/taken.txt"
 }
 check 'a port that is taken is said with its remedy' namesTakenPort

@@ -58,7 +58,7 @@ check 'setup takes what an installed package provides' providedIsInstalled
 
 # --- an apt that gets its lists and then fails
 saysThatAptFailed() {
-  local copy=$scratch/failing said status=0
+  local copy=$scratch/failing
   mkdir -p "$copy/bin" "$copy/src/pkg"
   cp -r "$root/scripts" "$copy/"
   printf '#!/bin/sh\ncase "$*" in *update*) ;; *) exit 100 ;; esac\n' >"$copy/bin/apt-get"
@@ -67,9 +67,8 @@ saysThatAptFailed() {
   sed -i "s#export PATH=#export PATH=$copy/bin:#" "$copy/scripts/lib/common.sh"
   echo 'odd vibe-no-such-package' >>"$copy/scripts/apt_packages.txt"
   echo '<package format="2"><name>pkg</name><depend>odd</depend></package>' >"$copy/src/pkg/package.xml"
-  said=$("$copy/scripts/setup" --yes 2>&1) || status=$?
-  printf '%s\n' "$said"
-  [ "$status" -eq 1 ] && grep -q 'apt-get install failed' <<<"$said" && ! grep -q 'apt succeeded' <<<"$said"
+  gives 1 "$scratch/said" "$copy/scripts/setup" --yes && grep -q 'apt-get install failed' "$scratch/said" &&
+    ! grep -q 'apt succeeded' "$scratch/said"
 }
 check 'setup says that apt failed' saysThatAptFailed
 

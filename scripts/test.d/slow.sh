@@ -4,18 +4,10 @@
 # packages: vibe_bringup
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped the whole main job (scripts/test --slow makes it)'
-  exit 0
-fi
+isSlowRun || skip 'the whole main job (scripts/test --slow makes it)'
 unset DISPLAY
 
-hashOf() { sed -n 's/^state hash: //p' "$1"; }
-
-session() {
-  "$root/scripts/run" --headless --fast --duration 60 --output "$scratch/$1" >"$scratch/$1.txt" 2>&1 ||
-    { cat "$scratch/$1.txt"; return 1; }
-}
+session() { gives 0 "$scratch/$1.txt" "$root/scripts/run" --headless --fast --duration 60 --output "$scratch/$1"; }
 
 sameHash() {
   local first second

@@ -5,10 +5,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 program=$root/devel/lib/vibe_rviz_plugins/rviz_report
-if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$program" ]; then
-  echo 'skipped half an hour of rviz (scripts/test --slow makes it)'
-  exit 0
-fi
+isSlowRun vibe_rviz_plugins/rviz_report || skip 'half an hour of rviz (scripts/test --slow makes it)'
 
 record() {
   "$root/scripts/run" --headless --fast --record-all --script "$root/src/vibe_core/trainees/demo/five_states.yaml" --output "$scratch/session"

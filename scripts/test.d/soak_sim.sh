@@ -4,21 +4,14 @@
 # packages: vibe_system_tests
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped two hours of the simulator (scripts/test --slow makes them)'
-  exit 0
-fi
+isSlowRun || skip 'two hours of the simulator (scripts/test --slow makes them)'
 
-soak() {
-  builtSystemTest soak_sim "$@" >"$scratch/soak.txt" 2>&1 || { cat "$scratch/soak.txt"; return 1; }
-}
-check 'two hours of simulated time, and the memory of the simulator does not grow' soak --minutes 120
+check 'two hours of simulated time, and the memory of the simulator does not grow' \
+  gives 0 "$scratch/soak.txt" builtSystemTest soak_sim --minutes 120
 if [ -s "$scratch/soak.txt" ]; then sed 's/^/    /' "$scratch/soak.txt"; fi
 
 # The control: that the check can fail.
 failsOnGrowth() {
-  local status=0
-  soak --minutes 5 --most-growth -1000 || status=$?
-  [ "$status" -eq 1 ] && grep -q '^soak: memory grows by' "$scratch/soak.txt"
+  gives 1 "$scratch/soak.txt" builtSystemTest soak_sim --minutes 5 --most-growth -1000 && grep -q '^soak: memory grows by' "$scratch/soak.txt"
 }
 check 'growth that is not allowed is an error' failsOnGrowth

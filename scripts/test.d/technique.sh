@@ -4,10 +4,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 program=$root/devel${VIBE_VARIANT:-}/lib/vibe_core/vibe_technique
-if [ ! -x "$program" ]; then
-  echo 'skipped vibe_technique (not built; scripts/build builds it)'
-  exit 0
-fi
+[ -x "$program" ] || skip 'vibe_technique (not built; scripts/build builds it)'
 docs=$root/docs/technique.md
 
 # codeBlock N: the text of the N-th block of code of the docs.

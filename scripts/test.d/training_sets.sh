@@ -5,10 +5,7 @@
 # packages: vibe_core vibe_python
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped the loaders of training sets (scripts/test --slow installs and runs them)'
-  exit 0
-fi
+isSlowRun || skip 'the loaders of training sets (scripts/test --slow installs and runs them)'
 readonly tests=$root/src/vibe_python/test environment=$root/build/judges
 getPackages() { "$environment/bin/pip" install --quiet --retries 1 --timeout 10 "$@"; }
 makeEnvironment() {
@@ -18,10 +15,8 @@ makeEnvironment() {
     getPackages --no-deps --require-hashes --target "$environment/writer" --requirement "$tests/reader_tools.txt" &&
     cp "$tests/judges.txt" "$environment/installed.txt"
 }
-if ! makeEnvironment >"$scratch/pip.txt" 2>&1; then
-  echo "skipped the loaders of training sets (pip could not install what judges.txt names: $(tail -n 1 "$scratch/pip.txt"))"
-  exit 0
-fi
+makeEnvironment >"$scratch/pip.txt" 2>&1 ||
+  skip "the loaders of training sets (pip could not install what judges.txt names: $(tail -n 1 "$scratch/pip.txt"))"
 
 writes() { (set +u && source "$root/devel/setup.bash" && PYTHONPATH=$PYTHONPATH:$environment/writer exec /usr/bin/python3 -B "$tests/judge_sets.py" write "$scratch"); }
 reads() { HF_HUB_OFFLINE=1 HF_HOME=$scratch/cache "$environment/bin/python" -B "$tests/judge_sets.py" "$@"; }

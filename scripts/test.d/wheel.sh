@@ -5,10 +5,8 @@
 # packages: vibe_core vibe_python
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ] || ! command -v debootstrap >/dev/null; then
-  echo 'skipped the wheel (scripts/test --slow makes it, where debootstrap is installed)'
-  exit 0
-fi
+isSlowRun && command -v debootstrap >/dev/null ||
+  skip 'the wheel (scripts/test --slow makes it, where debootstrap is installed)'
 
 program='import vibe
 model = vibe.load()

@@ -126,6 +126,7 @@ class Run(OptionsTest):
     def test_wrong_values(self):
         for sentence, words in (
             ("--mesh needs a value", "--mesh"),
+            ("--drive needs a value", "--drive"),
             ("--script needs a value", "--script --fast"),
             ("--scene: there is no file 'nowhere.yaml'", "--scene nowhere.yaml"),
             ("no file 'package://vibe_core/no.yaml'", "--scene package://vibe_core/no.yaml"),
@@ -133,6 +134,11 @@ class Run(OptionsTest):
             ("not '0.0'", "--duration 0.0"),
             ("--drive: nobody is called 'walk'; choose one of trainee device", "--drive walk"),
             ("'left' is not known; write script:FILE", "--drive emulator --hand left"),
+            ("no file 'nowhere.yaml'", "--drive emulator --hand script:nowhere.yaml"),
+            ("no file 'nowhere.yaml'", "--drive gamepad --mapping nowhere.yaml"),
+            ("no file 'nowhere.evemu'", "--drive gamepad --replay-pad nowhere.evemu"),
+            ("no file 'nowhere.yaml'", "--drive emulator --instruments camera --vision-config nowhere.yaml"),
+            ("--instruments: 'eyes' is not known; write camera", "--drive emulator --instruments eyes"),
             ("cannot write to '/proc/session' (", "--output /proc/session"),
             ("file.yaml' (it is a file); give a folder", "--output file.yaml"),
             ("--scene: '.' is a folder, not a file", "--scene ."),
@@ -143,13 +149,15 @@ class Run(OptionsTest):
 
     def test_what_goes_with_what(self):
         for sentence, words in (
-            ("'device' drives in wall time", "--drive device --fast"),
-            ("--script goes with --drive trainee, not with --drive gamepad", "--drive gamepad --script first"),
+            ("--hand goes with --drive emulator", "--hand random"),
+            ("--pad goes with --drive gamepad", "--drive device --pad Xbox"),
+            ("--mapping goes with --drive gamepad", "--mapping file.yaml"),
             ("--replay-pad goes with --drive gamepad", "--replay-pad file.yaml"),
             ("--config goes with --drive emulator", "--config file.yaml"),
             ("exclude each other", "--drive gamepad --pad X --replay-pad file.yaml"),
             ("go with --instruments camera; add it", "--drive emulator --camera gige:"),
             ("'trainee' moves the instruments itself", "--instruments camera"),
+            ("'gamepad' moves the instruments itself", "--drive gamepad --instruments camera --camera fake"),
             ("add --vision-config FILE", "--drive emulator --instruments camera"),
             ("remove one of them", "--drive device --instruments camera --camera fake --vision-config file.yaml"),
             ("DISPLAY is not set", "--drive keyboard"),
@@ -161,6 +169,10 @@ class Run(OptionsTest):
             ("--behind goes with --web or --drive web", "--behind https://lab.example/"),
         ):
             self.refuses(sentence, "run", *words.split())
+        for driver in ("device", "emulator", "gamepad", "keyboard", "web"):
+            self.refuses("'{}' drives in wall time".format(driver), "run", "--drive", driver, "--fast")
+            sentence = "--script goes with --drive trainee, not with --drive " + driver
+            self.refuses(sentence, "run", "--drive", driver, "--script", "first")
         self.accepts("run", "--drive", "device", "--config", "file.yaml")
 
     def test_a_page_that_was_not_built_is_said_before_anything_starts(self):
@@ -279,7 +291,11 @@ class OthersTest(OptionsTest):
 
     def test_latency(self):
         self.refuses("--blinks needs a whole number above zero, not '0'", "latency", "--blinks", "0")
+        self.refuses("not 'fast'", "latency", "--rate", "fast")
         self.refuses("at most 100 Hz, not '1000'", "latency", "--rate", "1000")
+        self.refuses("not '1001'", "latency", "--steps", "--rate", "1001")
+        self.refuses("not '0'", "latency", "--steps", "--minutes", "0")
+        self.refuses("no file 'nowhere.yaml'", "latency", "--scene", "nowhere.yaml")
         self.refuses("--lead needs 0 to 200 ms, not '201'", "latency", "--sway", "--lead", "201")
         self.refuses("goes with --sway", "latency", "--lead", "10")
         self.refuses("from 0 to 98", "latency", "--realtime", "99")
@@ -292,6 +308,7 @@ class OthersTest(OptionsTest):
         self.refuses("which recording?", "report")
         self.refuses("--jobs needs a number above zero, not '0'", "report", "--jobs", "0", "a.bag")
         self.refuses("--group: 'x' is neither", "report", "--group", "x", "a.bag")
+        self.refuses("--output needs a value", "report", "a.bag", "--output")
         self.refuses("which recording?", "export")
         self.refuses("'mcp' is no format; the nearest is 'mcap'", "export", "a.bag", "--to", "csv,mcp")
         self.refuses("--to-time must be later", "export", "a.bag", "--to", "csv", "--output", "x", "--from", "2", "--to-time", "1")

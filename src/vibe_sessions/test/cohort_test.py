@@ -10,11 +10,12 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 import warnings
 from unittest import mock
+
+from in_folder import InFolder
 
 from vibe_sessions import cohort
 from vibe_sessions.cohort_plan import Plan
@@ -26,10 +27,9 @@ from vibe_sessions.headless import SessionError
 HERE = os.path.dirname(os.path.abspath(__file__))
 
 
-class CohortTest(unittest.TestCase):
+class CohortTest(InFolder):
     def setUp(self):
-        self.folder = tempfile.mkdtemp(prefix="vibe_cohort_")
-        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        super().setUp()
         programs = os.path.join(self.folder, "prefix", "lib", "vibe_core")
         os.makedirs(programs)
         shutil.copy(os.path.join(HERE, "fake_headless.py"), os.path.join(programs, "vibe_headless"))
@@ -44,12 +44,6 @@ class CohortTest(unittest.TestCase):
     def restore(self):
         os.environ.clear()
         os.environ.update(self.before)
-
-    def write(self, name, text=""):
-        path = os.path.join(self.folder, name)
-        with open(path, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        return path
 
     def arguments(self, name, *more):
         return ["--output", os.path.join(self.folder, name), "--script", self.script, "--scene", self.scene,

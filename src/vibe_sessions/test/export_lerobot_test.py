@@ -1,14 +1,13 @@
 """Episodes of a recording: which steps are rows of which goal, and how a goal ended."""
 
 import os
-import shutil
-import tempfile
 import unittest
 
 import genpy
 import numpy
 import rosbag
 from geometry_msgs.msg import PoseStamped, Vector3, WrenchStamped
+from in_folder import InFolder
 from sensor_msgs.msg import JointState
 from vibe_msgs.msg import GoalProgress, ProcedureEvent, StepInput, StepResult, ToolContact, ToolContacts, TraineeProgress
 
@@ -21,11 +20,10 @@ GOALS = [(1, 0.5, GoalProgress.REACHED), (2, 1.2, GoalProgress.REACHED), (3, 1.6
 SLIP = 0.9  # [s]
 
 
-class EpisodesTest(unittest.TestCase):
+class EpisodesTest(InFolder):
     def setUp(self):
-        folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, folder)
-        self.path = os.path.join(folder, "session.bag")
+        super().setUp()
+        self.path = os.path.join(self.folder, "session.bag")
 
     def write(self, steps=120, goals=True, reset=None, kinds=()):
         """Joint k has the position time + k where it is measured, and minus that where it is commanded."""

@@ -10,13 +10,13 @@ import os
 import re
 import shutil
 import struct
-import tempfile
 import unittest
 import zlib
 from unittest import mock
 
 import numpy
 import rosbag
+from in_folder import InFolder
 from report_bags import SyntheticSession
 
 from vibe_sessions.export import main as export
@@ -33,10 +33,9 @@ def tree(folder):
     return found
 
 
-class ExportTest(unittest.TestCase):
+class ExportTest(InFolder):
     def setUp(self):
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
+        super().setUp()
         self.bag, self.output = os.path.join(self.folder, "a", "session.bag"), os.path.join(self.folder, "out")
         os.mkdir(os.path.dirname(self.bag))
 
@@ -228,15 +227,15 @@ class InterruptedTest(ExportTest):
         wanted, number, complete = self.reference(), 0, False
         while not complete:
             number += 13
-            calls, sync = iter(range(number)), export.sync
+            calls, flush = iter(range(number)), export.flush
 
-            def full(path, calls=calls, sync=sync):
+            def full(path, calls=calls, flush=flush):
                 if next(calls, None) is None:
                     raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), path)
-                sync(path)
+                flush(path)
 
             shutil.rmtree(self.output, ignore_errors=True)
-            with mock.patch.object(export, "sync", full):
+            with mock.patch.object(export, "flush", full):
                 status, _, complained = self.call(to=self.FORMATS)
             complete = status == 0
             if not complete:

@@ -10,6 +10,7 @@ import tempfile
 import unittest
 
 import numpy
+from in_folder import InFolder
 
 from vibe_sessions.headless import SessionError, call, find_in_package, find_program
 from vibe_sessions.imports.main import main
@@ -34,17 +35,7 @@ buttons:
 SI = {"time": "s", "length": "m", "angle": "rad"}
 
 
-class ImportTest(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.mkdtemp(prefix="vibe_import_")
-        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
-
-    def write(self, name, content):
-        path = os.path.join(self.folder, name)
-        with open(path, "wb") as stream:
-            stream.write(content if isinstance(content, bytes) else content.encode())
-        return path
-
+class ImportTest(InFolder):
     def map(self, text=MAP, **units):
         return self.write("map.yaml", text.format(scene=SCENE, **{**SI, **units}))
 

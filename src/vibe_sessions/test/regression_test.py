@@ -5,11 +5,11 @@ import glob
 import io
 import os
 import re
-import shutil
-import tempfile
 import unittest
 from unittest import mock
 import xml.etree.ElementTree as ElementTree
+
+from in_folder import InFolder
 
 from vibe_sessions import regression, regression_units
 from vibe_sessions.headless import SessionError, find_program
@@ -30,19 +30,12 @@ def headless():
         return None
 
 
-class FileTest(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.mkdtemp(prefix="vibe_regression_")
-        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
-
-    def write(self, text, name="x.regression.yaml"):
-        path = os.path.join(self.folder, name)
-        with open(path, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        return path
+class FileTest(InFolder):
+    def file(self, text, name="x.regression.yaml"):
+        return self.write(name, text)
 
     def expecting(self, lines, scene=SPHERE):
-        return self.write(f"scene: {scene}\nexpect:\n" + "".join(f"  {line}\n" for line in lines.splitlines()))
+        return self.file(f"scene: {scene}\nexpect:\n" + "".join(f"  {line}\n" for line in lines.splitlines()))
 
     def read(self, lines):
         return read_regression(self.expecting(lines), KNOWN).expect[0]
@@ -115,11 +108,11 @@ class ReadingTest(FileTest):
                 ("- " * 100000, None, ("nested too deeply",)),
                 ("- 1\n", 1, ("map",)),
                 ("", None, ("map",))):
-            self.refused(self.write(text), line, *words)
+            self.refused(self.file(text), line, *words)
         self.refused(os.path.join(self.folder, "none"), None, "cannot be read")
 
     def test_paths_are_relative_to_the_file(self):
-        self.write("name: s\n", "scene.yaml")
+        self.file("name: s\n", "scene.yaml")
         result = read_regression(self.expecting("bites: 1", scene="scene.yaml"), KNOWN)
         self.assertEqual(result.scene, os.path.join(self.folder, "scene.yaml"))
 
@@ -171,7 +164,7 @@ class VerdictTest(FileTest):
         text = regression.updated(file, values, "f" * 16)
         self.assertEqual(text, f"scene: {SPHERE}\nexpect:\n  max_force: {{value: 1.38 N, tolerance: 5 %}}  # why\n"
                          '  bites: 4   # count\n  volume: {min: 1 L}\n  state_hash: "' + "f" * 16 + '"\n')
-        self.assertEqual(len(read_regression(self.write(text), KNOWN).expect), 4)
+        self.assertEqual(len(read_regression(self.file(text), KNOWN).expect), 4)
 
 
 class UnitTest(unittest.TestCase):
@@ -220,9 +213,9 @@ class SceneTest(FileTest):
 
     def sphere(self, modulus):
         """The shipped regression of the sphere with another stiffness."""
-        self.write(f"base: {SPHERE}\ntissue:\n  young_modulus: {modulus} kPa\n", "scene.yaml")
+        self.file(f"base: {SPHERE}\ntissue:\n  young_modulus: {modulus} kPa\n", "scene.yaml")
         with open(os.path.join(SHIPPED, "sphere.regression.yaml"), encoding="utf-8") as stream:
-            return self.write(stream.read().replace(SPHERE, "scene.yaml"))
+            return self.file(stream.read().replace(SPHERE, "scene.yaml"))
 
     def test_a_changed_scene_fails_and_names_the_measure(self):
         status, said, _ = self.call(self.sphere(60))
@@ -240,9 +233,9 @@ class SceneTest(FileTest):
         self.assertEqual(self.call(file)[0], 0)
 
     def test_bad_files_do_not_stop_the_others(self):
-        bad = self.write(f"scene: {SPHERE}\nexpect: {{no_such: 1}}\n", "bad.yaml")
+        bad = self.file(f"scene: {SPHERE}\nexpect: {{no_such: 1}}\n", "bad.yaml")
         xml = os.path.join(self.folder, "x.xml")
-        good = self.write(f"scene: {SPHERE}\nduration: 0.1 s\nexpect: {{bites: 0, events.pressure reached: 0}}\n")
+        good = self.file(f"scene: {SPHERE}\nduration: 0.1 s\nexpect: {{bites: 0, events.pressure reached: 0}}\n")
         status, said, wrong = self.call(bad, good, f"--gtest_output=xml:{xml}")
         self.assertEqual((status, wrong.count("\n")), (2, 1))
         self.assertIn("bad.yaml:2: unknown measure 'no_such'", wrong)
@@ -250,7 +243,7 @@ class SceneTest(FileTest):
         self.assertEqual(ElementTree.parse(xml).getroot().get("errors"), "1")
 
     def test_what_the_simulator_refuses_is_one_sentence(self):
-        self.write("colour: red\n", "scene.yaml")
+        self.file("colour: red\n", "scene.yaml")
         status, _, wrong = self.call(self.expecting("bites: 0", scene="scene.yaml"))
         self.assertEqual((status, wrong.count("\n")), (2, 1), wrong)
         self.assertIn("colour", wrong)

@@ -3,13 +3,12 @@
 import json
 import math
 import os
-import shutil
 import struct
-import tempfile
 import unittest
 from unittest import mock
 
 import rosbag
+from in_folder import InFolder
 from report_bags import RADIUS, SyntheticSession
 
 from vibe_sessions.report.bag_file import Connection
@@ -23,11 +22,7 @@ from vibe_sessions.report.references import REFERENCES, verdict
 import numpy
 
 
-class NumbersTest(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
-
+class NumbersTest(InFolder):
     def read(self, **options):
         path = SyntheticSession(os.path.join(self.folder, "session.bag"), **options).write()
         recording = read_recording(path)

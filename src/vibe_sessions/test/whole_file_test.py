@@ -7,8 +7,9 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import unittest
+
+from in_folder import InFolder
 
 from vibe_sessions.headless import find_in_package
 from vibe_sessions.whole_file import open_whole, whole
@@ -37,18 +38,9 @@ PROGRAMS = {  # arguments that write OUT, and how large a file they may write [b
 }
 
 
-class WholeFileTest(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.mkdtemp(prefix="vibe_whole_")
-        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
-
+class WholeFileTest(InFolder):
     def path(self, name):
         return os.path.join(self.folder, name)
-
-    def write(self, name, text):
-        with open(self.path(name), "w", encoding="utf-8") as file:
-            file.write(text)
-        return self.path(name)
 
     def read(self, name):
         with open(self.path(name), encoding="utf-8") as file:

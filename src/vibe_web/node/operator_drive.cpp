@@ -1,7 +1,6 @@
 #include "operator_drive.hpp"
 
 #include <chrono>
-#include <cmath>
 #include <limits>
 #include <random>
 
@@ -10,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/byte_writer.hpp"
+#include "state_text.hpp"
 
 namespace vibe::web {
 
@@ -24,17 +24,9 @@ double steadyNow() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::string text(const json& value) {
-  return value.dump(-1, ' ', false, json::error_handler_t::replace);
-}
-
 bool isButton(int key) {
   const operating::KeyBinding* binding = operating::findBinding(key);
   return binding != nullptr && binding->kind == operating::KeyBinding::Kind::Button;
-}
-
-json numberOrNull(double value) {
-  return std::isfinite(value) ? json(value) : json(nullptr);
 }
 
 using Heard = boost::function<void(const vibe_msgs::ReplayStatus::ConstPtr&)>;
@@ -119,7 +111,7 @@ void OperatorDrive::takeSeat(ClientId client, WebServer& server) {
   if (!had) ++seats_;
   // a recording cannot be driven; a recorder, too, listens to replay/command
   if (!started_ && player_.getNumPublishers() == 0) drive_.start(""), started_ = true;
-  server.send(client, Kind::Grant, textMessage(Kind::Grant, text({{"seat", seats_}, {"grant", seat_.grant()}})));
+  server.send(client, Kind::Grant, textMessage(Kind::Grant, dumped({{"seat", seats_}, {"grant", seat_.grant()}})));
 }
 
 void OperatorDrive::replay(const Command& command) {
@@ -149,16 +141,14 @@ void OperatorDrive::moveAxes(double seconds) {
 
 void OperatorDrive::publish(WebServer& server) {
   const operating::DriveView view = drive_.view();
-  json joints = json::array();
-  for (const double joint : view.joints) joints.push_back(numberOrNull(joint));
-  const std::string now = text({{"seat", seat_.holder() != 0 ? seats_ : 0},
-                                {"driving", view.driving},
-                                {"trouble", seat_.holder() != 0 ? view.trouble : ""},
-                                {"step", view.step.text},
-                                {"keys", view.keys_down},
-                                {"gear", static_cast<int>(view.gear)},
-                                {"buttons", view.buttons},
-                                {"joints", joints}});
+  const std::string now = dumped({{"seat", seat_.holder() != 0 ? seats_ : 0},
+                                  {"driving", view.driving},
+                                  {"trouble", seat_.holder() != 0 ? view.trouble : ""},
+                                  {"step", view.step.text},
+                                  {"keys", view.keys_down},
+                                  {"gear", static_cast<int>(view.gear)},
+                                  {"buttons", view.buttons},
+                                  {"joints", view.joints}});
   if (now == published_) return;
   published_ = now;
   server.publish(Kind::Operator, textMessage(Kind::Operator, now));

@@ -106,8 +106,7 @@ void SessionStream::findRobot() {
 }
 
 void SessionStream::publishScene() {
-  if (organ_)
-    server_.publish(Kind::Scene, textMessage(Kind::Scene, scene_.dump(-1, ' ', false, json::error_handler_t::replace)));
+  if (organ_) server_.publish(Kind::Scene, textMessage(Kind::Scene, dumped(scene_)));
 }
 
 void SessionStream::takeTopology(const vibe_msgs::TissueTopology& message) {

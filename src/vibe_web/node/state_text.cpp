@@ -1,7 +1,5 @@
 #include "state_text.hpp"
 
-#include <cmath>
-
 #include <nlohmann/json.hpp>
 
 #include "vibe_operator/messages/number_text.hpp"
@@ -21,7 +19,7 @@ json measureText(const operating::ShownMeasure& measure, const operating::Sessio
   return {{"label", measure.label},
           {"unit", measure.unit},
           {"decimals", measure.decimals},
-          {"value", std::isfinite(value) ? json(value) : json(nullptr)},
+          {"value", value},
           {"range", operating::rangeText(measure)},
           {"rating", operating::ratingText(rating)},
           {"outside", rating == operating::Rating::Outside},
@@ -34,12 +32,11 @@ json setText(const operating::SutureRow& row) {
           {"help", row.help}};
 }
 
-/// Texts of messages may hold any bytes.
+}  // namespace
+
 std::string dumped(const json& text) {
   return text.dump(-1, ' ', false, json::error_handler_t::replace);
 }
-
-}  // namespace
 
 std::string stateText(const vibe_msgs::ProcedureState& state, const vibe_msgs::SkillMetrics* skill,
                       const vibe_msgs::SutureArray* sutures) {

@@ -8,8 +8,12 @@
 #include <vibe_msgs/ReplayStatus.h>
 #include <vibe_msgs/SkillMetrics.h>
 #include <vibe_msgs/SutureArray.h>
+#include <nlohmann/json_fwd.hpp>
 
 namespace vibe::web {
+
+/// Texts of messages may hold any bytes. Numbers that are not finite become null.
+std::string dumped(const nlohmann::json& text);
 
 /// Message Kind::State as JSON: what the session says of itself, and the measures beside their published values with
 /// the words of the panel of rviz. Numbers that are not defined are null.

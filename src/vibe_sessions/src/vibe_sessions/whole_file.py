@@ -1,5 +1,6 @@
 """Files that are there whole or not at all, also after a power cut, a full disk or kill -9. Standard library only."""
 import contextlib
+import hashlib
 import os
 
 
@@ -16,9 +17,9 @@ def whole(path):
     part = os.path.join(folder, ".part-" + name)
     try:
         yield part
-        _flush(part)
+        flush(part)
         os.replace(part, target)
-        _flush(folder)
+        flush(folder)
     except BaseException as error:
         if isinstance(error, OSError) and error.filename in (None, part):
             error.filename = path  # of a full disk, too, the sentence says which file it is
@@ -34,10 +35,16 @@ def open_whole(path, mode="w", encoding="utf-8", **how):
         yield file
 
 
-def _flush(path):
-    """From memory to the disk."""
+def flush(path):
+    """A file or folder, from memory to the disk."""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
+
+
+def digest(path):
+    """SHA-256 of a file."""
+    with open(path, "rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()

@@ -2,27 +2,15 @@
 // the folder.
 
 import { readdirSync, statSync, writeFileSync } from 'node:fs';
-import { check, emulateHeadset, expect, launch, leftOut, until, violations, wait } from './checks.mjs';
+import { check, emulateHeadset, errors, expect, insertion, launch, leftOut, openPage, rest, until, violations, wait } from './checks.mjs';
 
 const [port, chromium, folder] = process.argv.slice(2);
 const kPicture = 240; // edge of the endoscope's picture [px]
 
 const browser = await launch(chromium);
-
-const errors = [];
-async function openPage(rate = 15) {
-  const page = await browser.newPage();
-  await page.setViewport({ width: 850, height: 600 });
-  page.on('pageerror', (error) => errors.push(String(error)));
-  page.on('console', (message) => message.type() === 'error' && errors.push(message.text()));
-  await page.goto(`http://localhost:${port}/#size=${kPicture}&rate=${rate}`);
-  await until(() => page.evaluate(() => window.vibe?.stats.drawn > 2), 'a picture of the organ', 120);
-  return page;
-}
-
+const open = (rate) => openPage(browser, `${port}/#size=${kPicture}&rate=${rate}`, [850, 600], 2);
 const save = (page, name) => page.screenshot({ path: `${folder}/${name}.png` });
 const operator = (page) => page.evaluate(() => window.vibe.drive.operator);
-const insertion = async (page) => (await operator(page)).joints[0];
 
 /** Mean and deviation of the grey levels of the endoscope's picture within this share of its radius, and beyond it. */
 const levels = (page) => page.evaluate(() => {
@@ -51,16 +39,9 @@ async function takeControl(page) {
   await until(async () => (await operator(page))?.driving && page.evaluate(() => window.vibe.drive.driving), 'control of the scope');
 }
 
-async function rest(page) {
-  for (let last = NaN; ; last = await insertion(page)) {
-    await wait(700);
-    if ((await insertion(page)) === last) return last;
-  }
-}
-
 let page;
 await check('the page shows the organ', async () => {
-  page = await openPage();
+  page = await open(15);
   await until(() => page.evaluate(() => window.vibe.stage.counts.calls >= 10), 'the robot');
   await wait(1000);
   await save(page, 'organ');
@@ -150,7 +131,7 @@ await check('a gamepad drives', async () => {
 });
 
 await check('a page that hangs lets go', async () => {
-  const begin = await rest(page), watcher = await openPage(2); // which draws little, and answers soon
+  const begin = await rest(page), watcher = await open(2); // which draws little, and answers soon
   await takeControl(page); // again, if the other page has taken long to open
   await page.keyboard.down('w');
   await until(async () => (await insertion(page)) > begin, 'motion');

@@ -26,6 +26,31 @@ export async function until(condition, what, seconds = 60) {
   }
 }
 
+/** What pages have complained of. */
+export const errors = [];
+
+/** A page that has drawn more than `drawn` pictures of the organ. @param prepare  before it is opened */
+export async function openPage(browser, address, [width, height], drawn = 0, prepare = async () => {}) {
+  const page = await browser.newPage();
+  await page.setViewport({ width, height });
+  page.on('pageerror', (error) => errors.push(String(error)));
+  page.on('console', (message) => message.type() === 'error' && errors.push(message.text()));
+  await prepare(page);
+  await page.goto(`http://localhost:${address}`);
+  await until(() => page.evaluate((n) => window.vibe?.stats.drawn > n, drawn), 'a picture of the organ', 120);
+  return page;
+}
+
+export const insertion = (page) => page.evaluate(() => window.vibe.drive.operator.joints[0]);
+
+/** Until the scope stands still; how far it is in then. */
+export async function rest(page) {
+  for (let last = NaN; ; last = await insertion(page)) {
+    await wait(700);
+    if ((await insertion(page)) === last) return last;
+  }
+}
+
 export async function check(name, body) {
   let problem = '', detail;
   try {

@@ -1,15 +1,13 @@
 // Keys, fingers and focus of Chromium in random order: what the page holds is held, and nothing when all has come up. Arguments:
 // PORT CHROMIUM SEQUENCES. The mouse stands for a finger.
 
-import { check, expect, launch, until, violations, wait } from './checks.mjs';
+import { check, expect, launch, openPage, until, violations, wait } from './checks.mjs';
 
 const [port, chromium, sequences] = process.argv.slice(2);
 const kHeld = { w: 87, ArrowUp: 0x01000013, ' ': 32, 3: 51, g: 71, Shift: 0x01000020 }, kOthers = ['Control', 'Alt', 'Tab', 'Enter'];
 const kButtonKey = 82, kSelector = '#move button[data-key="82"]'; // closes the arm
-const browser = await launch(chromium), page = await browser.newPage();
-await page.setViewport({ width: 700, height: 300 });
-await page.goto(`http://localhost:${port}/#size=64&rate=1`); // draws little, and hears soon
-await until(() => page.evaluate(() => window.vibe?.stats.drawn > 0), 'a picture', 120);
+const browser = await launch(chromium);
+const page = await openPage(browser, `${port}/#size=64&rate=1`, [700, 300]); // draws little, and hears soon
 await page.click('#control');
 await until(() => page.evaluate(() => window.vibe.drive.driving), 'control');
 const held = () => page.evaluate(() => window.vibe.drive.hands.held().keys);

@@ -1,35 +1,21 @@
 // The room of an emulated headset. Arguments: PORT CHROMIUM FOLDER; pictures go into the folder.
 
-import { check, emulateHeadset, expect, launch, until, wait } from './checks.mjs';
+import { check, emulateHeadset, errors, expect, launch, openPage, rest, until, wait } from './checks.mjs';
 import { covered, disparities, letters, prepare } from './room_geometry.mjs';
 
 const [port, chromium, folder] = process.argv.slice(2);
 const kPicture = 120; // edge of the endoscope's picture [px]
 const browser = await launch(chromium);
-const errors = [];
 
-async function openPage(prepare, more = '') {
-  const page = await browser.newPage();
-  await page.setViewport({ width: 800, height: 400 });
-  page.on('pageerror', (error) => errors.push(String(error)));
-  page.on('console', (message) => message.type() === 'error' && errors.push(message.text()));
-  await prepare(page);
-  await page.goto(`http://localhost:${port}/#size=${kPicture}&rate=10${more}`);
-  await until(() => page.evaluate(() => window.vibe?.stats.drawn > 2 && window.vibe.stage.robot.ranges.length > 0), 'a picture of the organ', 120);
+async function open(prepare, more = '') {
+  const page = await openPage(browser, `${port}/#size=${kPicture}&rate=10${more}`, [800, 400], 2, prepare);
+  await until(() => page.evaluate(() => window.vibe.stage.robot.ranges.length > 0), 'the robot', 120);
   return page;
 }
 
 const save = (page, name) => page.screenshot({ path: `${folder}/${name}.png` });
 const driving = (page) => page.evaluate(() => window.vibe.drive.driving);
-const insertion = (page) => page.evaluate(() => window.vibe.drive.operator.joints[0]);
 const said = (page) => page.evaluate(() => window.vibe.headset().says());
-
-async function rest(page) {
-  for (let last = NaN; ; last = await insertion(page)) {
-    await wait(700);
-    if ((await insertion(page)) === last) return last;
-  }
-}
 
 async function enter(page, button = '#headset') {
   await page.bringToFront();
@@ -39,7 +25,7 @@ async function enter(page, button = '#headset') {
 
 let page;
 await check('entering takes control, and the room says so', async () => {
-  page = await openPage(emulateHeadset);
+  page = await open(emulateHeadset);
   await prepare(page);
   await enter(page);
   await until(() => driving(page), 'control of the scope');
@@ -152,7 +138,7 @@ await check('the hand beside the handle works the device', async () => {
 });
 
 await check('who looks on sees head and hands', async () => {
-  const other = await openPage(async () => {}, '&view=instructor');
+  const other = await open(undefined, '&view=instructor');
   await page.bringToFront(); // else it hides, and is silent
   const head = () => other.evaluate(() => {
     const { driver } = window.vibe.stage;
@@ -216,7 +202,7 @@ await check('a hand pinches the handle and drives', async () => {
 });
 
 await check('who enters while another page drives is told so in the room', async () => {
-  const other = await openPage(emulateHeadset);
+  const other = await open(emulateHeadset);
   await enter(other);
   await until(async () => (await said(other)).now === 'Another page drives.', 'that another page drives');
   await other.close();

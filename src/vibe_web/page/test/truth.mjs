@@ -1,20 +1,12 @@
 // What the page says when the simulator or the server stops, and when clocks are set. Arguments: PORT CHROMIUM, and the processes of
 // the simulator and the server.
 
-import { check, expect, launch, until, wait } from './checks.mjs';
+import { check, expect, launch, openPage, until, wait } from './checks.mjs';
 
 const [port, chromium, simulator, server] = process.argv.slice(2);
 const browser = await launch(chromium);
-
-async function openPage() {
-  const page = await browser.newPage();
-  await page.setViewport({ width: 700, height: 300 });
-  await page.goto(`http://localhost:${port}/#size=64&rate=5`);
-  await until(() => page.evaluate(() => window.vibe?.stats.drawn > 0), 'a picture', 120);
-  return page;
-}
-
-const page = await openPage();
+const open = () => openPage(browser, `${port}/#size=64&rate=5`, [700, 300]);
+const page = await open();
 const shown = (id, of = page) => of.$eval('#' + id, ({ textContent }) => textContent);
 const held = () => page.evaluate(() => [...window.vibe.drive.hands.held().keys, ...window.vibe.drive.operator.keys]);
 const takes = (of) => of.evaluate(() => document.getElementById('control').click());
@@ -72,7 +64,7 @@ await check('a server that stops is told; what was held is let go, and wants a n
 });
 
 await check('a refusal stands until the place is free', async () => {
-  const other = await openPage();
+  const other = await open();
   await takes(other);
   await until(async () => (await shown('status', other)).startsWith('Another page drives'), 'a refusal');
   await takes(page); // gives back

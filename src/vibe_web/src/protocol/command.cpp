@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace vibe::web {
 
@@ -27,57 +28,33 @@ double shareAt(const std::uint8_t* bytes, std::size_t place) {
   return std::clamp(at<std::int16_t>(bytes, place) / 32767.0, -1.0, 1.0);
 }
 
-std::optional<Command> readRate(const std::uint8_t* bytes, std::size_t size) {
-  Command command;
-  command.kind = Command::Kind::Rate;
+bool readRate(const std::uint8_t* bytes, std::size_t size, Command& command) {
   command.rate = size == 2 ? bytes[1] : 0;
-  if (command.rate < 1 || command.rate > kMaxRate) return std::nullopt;
-  return command;
+  return command.rate >= 1 && command.rate <= kMaxRate;
 }
 
-std::optional<Command> readDrawn(const std::uint8_t* bytes, std::size_t size) {
-  Command command;
-  command.kind = Command::Kind::Drawn;
-  if (size != 2) return std::nullopt;
-  command.drawn = bytes[1];
-  return command;
-}
-
-std::optional<Command> readWord(Command::Kind kind, std::size_t size) {
-  Command command;
-  command.kind = kind;
-  if (size != 1) return std::nullopt;
-  return command;
-}
-
-std::optional<Command> readDrive(const std::uint8_t* bytes, std::size_t size) {
-  if (size < kDriveHead) return std::nullopt;
+bool readDrive(const std::uint8_t* bytes, std::size_t size, Command& command) {
+  if (size < kDriveHead) return false;
   const std::size_t keys = bytes[1];
-  if (keys > kMaxKeys || size != kDriveHead + 4 * keys) return std::nullopt;
-  Command command;
-  command.kind = Command::Kind::Drive;
+  if (keys > kMaxKeys || size != kDriveHead + 4 * keys) return false;
   command.grant = at<std::uint32_t>(bytes, 4);
   command.number = at<std::uint32_t>(bytes, 8);
   for (std::size_t k = 0; k < kAxes; ++k) command.axes[k] = shareAt(bytes, 12 + 2 * k);
   for (std::size_t k = 0; k < keys; ++k) {
     const auto key = at<std::uint32_t>(bytes, kDriveHead + 4 * k);
-    if (key > kLastKey) return std::nullopt;
+    if (key > kLastKey) return false;
     command.keys.push_back(static_cast<int>(key));
   }
-  return command;
+  return true;
 }
 
-std::optional<Command> readReplay(const std::uint8_t* bytes, std::size_t size) {
-  if (size != 16 || bytes[1] > 3) return std::nullopt;
-  Command command;
-  command.kind = Command::Kind::Replay;
+bool readReplay(const std::uint8_t* bytes, std::size_t size, Command& command) {
+  if (size != 16 || bytes[1] > 3) return false;
   command.play = (bytes[1] & 1) != 0;
   command.seek = (bytes[1] & 2) != 0;
   command.speed = static_cast<double>(at<float>(bytes, 4));
   command.time = at<double>(bytes, 8);
-  if (!(command.speed >= kSlowest - 1e-6 && command.speed <= kFastest)) return std::nullopt;
-  if (!(command.time >= 0 && command.time <= kLongest)) return std::nullopt;
-  return command;
+  return command.speed >= kSlowest - 1e-6 && command.speed <= kFastest && command.time >= 0 && command.time <= kLongest;
 }
 
 bool isPose(const ViewerState::Pose& pose) {
@@ -86,53 +63,52 @@ bool isPose(const ViewerState::Pose& pose) {
   return near && std::abs(norm - 1) <= kUnit;  // neither is true of what is not a number
 }
 
-std::optional<Command> readViewer(const std::uint8_t* bytes, std::size_t size) {
+bool readViewer(const std::uint8_t* bytes, std::size_t size, ViewerState& viewer) {
   constexpr std::size_t pose_size = sizeof(ViewerState::Pose);
   const auto buttons = size < kViewerHead ? 0U : at<std::uint16_t>(bytes, 2);
   if (size != kViewerHead + kViewerBodies * pose_size || bytes[1] >> kViewerBodies || buttons >> kViewerButtons)
-    return std::nullopt;
-  Command command;
-  command.kind = Command::Kind::Viewer;
-  ViewerState& viewer = command.viewer;
+    return false;
   for (std::size_t k = 0; k < kViewerBodies; ++k) {
     if ((bytes[1] >> k & 1) == 0) continue;
     viewer.poses[k] = at<ViewerState::Pose>(bytes, kViewerHead + k * pose_size);
-    if (!isPose(*viewer.poses[k])) return std::nullopt;
+    if (!isPose(*viewer.poses[k])) return false;
   }
   for (std::size_t k = 0; k < kViewerButtons; ++k) viewer.buttons[k] = (buttons >> k & 1) != 0;
   for (std::size_t k = 0; k < viewer.sticks.size(); ++k) viewer.sticks[k] = shareAt(bytes, 4 + 2 * k);
-  return command;
+  return true;
 }
 
-std::optional<Command> readPing(const std::uint8_t* bytes, std::size_t size) {
-  if (size != 16) return std::nullopt;
-  Command command;
-  std::copy_n(bytes + 8, 8, command.ping.begin());
-  return command;
+/// The rest of a command whose kind is known; whether it is one.
+bool read(const std::uint8_t* bytes, std::size_t size, Command& command) {
+  switch (command.kind) {
+    case Command::Kind::Rate:
+      return readRate(bytes, size, command);
+    case Command::Kind::Take:
+    case Command::Kind::GiveBack:
+      return size == 1;
+    case Command::Kind::Drive:
+      return readDrive(bytes, size, command);
+    case Command::Kind::Replay:
+      return readReplay(bytes, size, command);
+    case Command::Kind::Ping:
+      if (size == 16) std::copy_n(bytes + 8, 8, command.ping.begin());
+      return size == 16;
+    case Command::Kind::Drawn:
+      if (size == 2) command.drawn = bytes[1];
+      return size == 2;
+    case Command::Kind::Viewer:
+      return readViewer(bytes, size, command.viewer);
+  }
+  return false;
 }
 
 }  // namespace
 
 std::optional<Command> decodeCommand(const std::uint8_t* bytes, std::size_t size) {
   if (size == 0) return std::nullopt;
-  switch (static_cast<Command::Kind>(bytes[0])) {
-    case Command::Kind::Rate:
-      return readRate(bytes, size);
-    case Command::Kind::Take:
-    case Command::Kind::GiveBack:
-      return readWord(static_cast<Command::Kind>(bytes[0]), size);
-    case Command::Kind::Drive:
-      return readDrive(bytes, size);
-    case Command::Kind::Replay:
-      return readReplay(bytes, size);
-    case Command::Kind::Ping:
-      return readPing(bytes, size);
-    case Command::Kind::Drawn:
-      return readDrawn(bytes, size);
-    case Command::Kind::Viewer:
-      return readViewer(bytes, size);
-  }
-  return std::nullopt;
+  Command command;
+  command.kind = static_cast<Command::Kind>(bytes[0]);
+  return read(bytes, size, command) ? std::optional(std::move(command)) : std::nullopt;
 }
 
 }  // namespace vibe::web

@@ -3,7 +3,6 @@
 import contextlib
 import errno
 import fcntl
-import hashlib
 import json
 import os
 import shutil
@@ -14,6 +13,7 @@ import sys
 from ..report.bag_file import BagError
 from ..report.main import find_bags
 from ..report.session_work import names_of
+from ..whole_file import digest, flush
 from .mcap import Mcap
 from .mesh import KEPT, Mesh
 from .options import check, parser
@@ -24,23 +24,9 @@ WRITERS = {"csv": Csv, "parquet": Parquet, "mcap": Mcap, "mesh": Mesh}
 ABOUT = "export.json"  # in each folder: of what it is
 
 
-def digest_of(path):
-    found = hashlib.sha256()
-    with open(path, "rb") as file:
-        for block in iter(lambda: file.read(1 << 20), b""):
-            found.update(block)
-    return found.hexdigest()
-
-
 def read(path):
     with open(path, encoding="utf-8", errors="replace") as file:
         return file.read()
-
-
-def sync(path):
-    handle = os.open(path, os.O_RDONLY)
-    os.fsync(handle)
-    os.close(handle)
 
 
 class Folder:
@@ -75,9 +61,9 @@ class Folder:
             file.write(self._about)
         for folder, _, names in os.walk(self.part, topdown=False):
             for name in [*names, "."]:
-                sync(os.path.join(folder, name))
+                flush(os.path.join(folder, name))
         os.rename(self.part, self.path)
-        sync(os.path.dirname(self.path))
+        flush(os.path.dirname(self.path))
         print("{}: {}".format(self.path, what), flush=True)
 
 
@@ -125,7 +111,7 @@ def export_one(arguments, bag, place):
     """All formats of one recording that are not complete."""
     with Source(bag, None if arguments.fill else arguments.topics) as source:
         is_compact = source.is_compact()
-    about = {"recording": os.path.basename(bag), "sha256": digest_of(bag)}
+    about = {"recording": os.path.basename(bag), "sha256": digest(bag)}
     folders = {name: Folder(place, name, arguments, "topics", "fill", **about) for name in arguments.to if name in WRITERS}
     left = {name: folder for name, folder in folders.items() if not folder.is_complete()}
     for fill in (False, True):
@@ -141,7 +127,7 @@ def export_set(arguments, bags):
     """The data set of all recordings."""
     from . import lerobot
 
-    recordings = [[os.path.basename(bag), digest_of(bag)] for bag in bags.values()]
+    recordings = [[os.path.basename(bag), digest(bag)] for bag in bags.values()]
     folder = Folder(arguments.output, "lerobot", arguments, "lerobot_version", "images", recordings=recordings)
     if folder.is_complete():
         return

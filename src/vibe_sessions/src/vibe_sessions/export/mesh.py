@@ -5,10 +5,10 @@ import os
 import numpy
 
 from ..report.bag_file import BagError
+from ..report.point_cloud import fields_of_cloud, positions_of
 
 KEPT = 0.5  # of tissue/particles in a compact recording [Hz]
 RATE = 24  # time codes per second, as most films have frames
-TYPES = {1: "<i1", 2: "<u1", 3: "<i2", 4: "<u2", 5: "<i4", 6: "<u4", 7: "<f4", 8: "<f8"}  # by datatype of PointField
 PLY = {"i1": "char", "u1": "uchar", "i2": "short", "u2": "ushort", "i4": "int", "u4": "uint", "f4": "float", "f8": "double"}
 BEGIN = "#usda 1.0\n(\n    endTimeCode = "  # which is known last
 LAYER = """{end:20}
@@ -39,11 +39,9 @@ SURFACE = """
 
 def points_of(cloud):
     """A structured array with the fields of a cloud."""
-    fields = [field for field in cloud.fields if field.count == 1]
-    kinds = [(field.name, TYPES[field.datatype]) for field in fields]
-    places = {"names": [name for name, _ in kinds], "formats": [kind for _, kind in kinds],
-              "offsets": [field.offset for field in fields], "itemsize": cloud.point_step}  # fmt: skip
-    return numpy.frombuffer(cloud.data, numpy.dtype(places)).astype(kinds)
+    points = fields_of_cloud(cloud)
+    kinds = [(field.name, points.dtype[field.name]) for field in cloud.fields if field.count == 1]
+    return points[[name for name, _ in kinds]].astype(kinds)
 
 
 def write_ply(path, points, triangles, comment):
@@ -89,7 +87,7 @@ class Mesh:
             self._usd.write("" if self._revision is None else SHOWN.format(self._first - 1, self._first, code))
             self._revision, self._first, counts = revision, code, ", ".join("3" * len(triangles))
             self._usd.write(SURFACE.format(revision=revision, counts=counts, indices=", ".join(map(str, triangles.ravel()))))
-        positions = numpy.stack([points[axis] for axis in "xyz"], axis=1).ravel().tolist()
+        positions = positions_of(points).ravel().tolist()
         self._usd.write("            {!r}: [{}],\n".format(code, ("({:.9g}, {:.9g}, {:.9g}), " * len(points)).format(*positions)[:-2]))
 
     def finish(self):

@@ -3,7 +3,8 @@
 import argparse
 import difflib
 import importlib.util
-import sys
+
+from ..report.options import Parser
 
 FORMATS = ("csv", "parquet", "mcap", "lerobot", "mesh")
 DESCRIPTION = """\
@@ -12,12 +13,6 @@ set for learning (lerobot) and the moving wall (mesh: USD and PLY). docs/export.
 EPILOG = """\
 Each format is a folder DIR/SESSION/FORMAT, that of lerobot DIR/lerobot. A format that is complete is kept: after an
 interruption the same command goes on. The same call gives the same bytes. Ends with status 0, or 2 after one sentence."""
-
-
-class Parser(argparse.ArgumentParser):
-    def error(self, message):
-        print("export: {} (--help lists what there is)".format(message), file=sys.stderr)
-        sys.exit(2)
 
 
 def number(unit, least):

@@ -5,9 +5,9 @@ import numpy
 import pandas
 from PIL import Image
 
+from vibe_sessions.imports.map_file import JOINTS
 from vibe_sessions.published.plan import SPLITS, key_of, split_of
 
-JOINTS = ["insertion", "rotation", "tip_up_down", "tip_left_right", "helix_advance", "helix_rotation", "needle_driver"]
 WINDOWS = (6, 30)  # steps back over which motion is looked at
 RIDGE = 1.0
 NEIGHBOURS = 5
@@ -19,7 +19,7 @@ def read(folder):
     steps = pandas.read_csv(os.path.join(folder, "steps.csv"))
     times = numpy.loadtxt(os.path.join(folder, "images", "times.txt"), ndmin=2)
     rows = numpy.clip(numpy.searchsorted(steps["time"], times[:, 1] - 1 - 1e-6), 0, len(steps) - 1)  # time begins at 1 s
-    motion = steps[JOINTS + ["tip_x", "tip_y", "tip_z"]].to_numpy()
+    motion = steps[[*JOINTS, "tip_x", "tip_y", "tip_z"]].to_numpy()
     moved = [motion[rows] - motion[numpy.maximum(rows - back, 0)] for back in WINDOWS]
     images = os.path.join(folder, "images")
     names = ["{:06.0f}".format(number) for number in times[:, 0]]

@@ -1,7 +1,6 @@
 """Makes a set of sessions to be published."""
 import csv
 import functools
-import hashlib
 import os
 import resource
 import time
@@ -14,7 +13,7 @@ from vibe_sessions.published.baselines import COLUMNS, baselines
 from vibe_sessions.published.card import LICENCE, card
 from vibe_sessions.published.member import make_member
 from vibe_sessions.published.plan import MOST, SetPlan, key_of, member, split_of, write_scenes
-from vibe_sessions.whole_file import open_whole
+from vibe_sessions.whole_file import digest, open_whole
 
 DESCRIPTION = """\
 Makes sessions of experts and novices on all shipped stomachs in three grades of breathing, with forces, contacts, deformation,
@@ -41,11 +40,6 @@ def files_below(folder):
         folders[:] = sorted(name for name in folders if name != "rows" and not name.startswith("."))
         yield from (os.path.relpath(os.path.join(place, name), folder) for name in sorted(names)
                     if not name.startswith(".") and name not in ("SHA256SUMS", "cohort.yaml"))
-
-
-def digest(path):
-    with open(path, "rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 def describe(plan, folder):

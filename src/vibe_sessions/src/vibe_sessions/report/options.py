@@ -17,7 +17,7 @@ class Parser(argparse.ArgumentParser):
     """Errors in the words of the other scripts."""
 
     def error(self, message):
-        print("report: {} (--help lists what there is)".format(message), file=sys.stderr)
+        print("{}: {} (--help lists what there is)".format(self.prog, message), file=sys.stderr)
         sys.exit(2)
 
 

@@ -7,8 +7,8 @@ from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
 from .drawing import INK, SET_COLOURS, SOFT, WIDTH, figure, jpeg, styled
+from .point_cloud import particles_of
 
-POINT_TYPES = {1: "i1", 2: "u1", 3: "<i2", 4: "<u2", 5: "<i4", 6: "<u4", 7: "<f4", 8: "<f8"}  # of PointCloud2
 # direction to the camera: azimuth from the patient's front to the left, elevation [deg]
 VIEWS = (("From the front", 15, 8), ("From the left and behind", 125, 8))
 OUTSIDE, INSIDE = "#f6d9d1", "#b4574d"
@@ -19,32 +19,11 @@ OVERSAMPLING = 2
 DPI = 150
 
 
-def fields_of_cloud(cloud):
-    """The points of a sensor_msgs/PointCloud2 as an array with named fields."""
-    kinds = {f.name: (POINT_TYPES[f.datatype], f.offset) for f in cloud.fields if f.datatype in POINT_TYPES}
-    layout = numpy.dtype(
-        {
-            "names": list(kinds),
-            "formats": [kind for kind, _ in kinds.values()],
-            "offsets": [offset for _, offset in kinds.values()],
-            "itemsize": cloud.point_step,
-        }
-    )
-    return numpy.frombuffer(cloud.data, layout, count=cloud.width * cloud.height)
-
-
 class Organ:
     """Vertices [mm], triangles and grades of the surface to draw."""
 
     def __init__(self, topology, cloud):
-        rest = numpy.array(topology.rest_positions).reshape(-1, 3)
-        self.is_rest = cloud is None or cloud.width * cloud.height != len(rest)
-        points, grades = rest, numpy.zeros(len(rest))
-        if not self.is_rest:
-            fields = fields_of_cloud(cloud)
-            points = numpy.stack([fields[axis] for axis in "xyz"], axis=1).astype(float)
-            if "grade" in fields.dtype.names:
-                grades = fields["grade"].astype(float)
+        points, grades, self.is_rest = particles_of(topology, cloud)
         if len(topology.render_triangles) > 0:
             self.triangles = numpy.array(topology.render_triangles).reshape(-1, 3)
             points, grades = self._render_vertices(topology, points, grades)

@@ -2,6 +2,7 @@
 
 import struct
 from array import array
+from collections import Counter
 from dataclasses import dataclass, field
 
 import numpy
@@ -11,8 +12,9 @@ from .message_types import StepReader, after_header, offset_of, parse, stamp_of
 from .sessions import SessionTracker, StampOwners, choose_session, identity_of
 from .topics import INPUTS, find_topics, namespaces_of
 
-# topics of which only the last message counts
-NEWEST = ("procedure/skill_metrics", "trainee/progress", "session_info", "tissue/topology", "tissue/particles", "scene")
+# topics of which only the last message counts, and the fields that keep it
+NEWEST = {"procedure/skill_metrics": "skill", "trainee/progress": "progress", "session_info": "info",
+          "tissue/topology": "topology", "tissue/particles": "particles"}  # fmt: skip
 SAMPLES = 600  # of the threads, at most: a message has every point to draw
 FIRST_WALL_TIME = 1e6  # stamps of simulated time begin at 1 s [s]
 
@@ -122,11 +124,7 @@ class Reader:
 
     def read(self):
         recording = self.recording
-        totals = {}
-        for key, connection in self._bag.connections.items():
-            name = (connection.topic, connection.datatype)
-            totals[name] = totals.get(name, 0) + self._bag.count(key)
-        recording.topics = sorted((*name, count) for name, count in totals.items())
+        self._count_topics(self._bag.count)
         self._check()
         handlers = self._handlers()
         for connection, received, data in self._bag.messages(handlers):
@@ -134,6 +132,12 @@ class Reader:
                 handlers[connection](connection, received, data)
         self._finish()
         return recording
+
+    def _count_topics(self, count):
+        totals = Counter()
+        for key, connection in self._bag.connections.items():
+            totals[(connection.topic, connection.datatype)] += count(key)
+        self.recording.topics = sorted((*name, messages) for name, messages in totals.items())
 
     def _is_ours(self, connection, data):
         """Whether a message belongs to the session; the first of the namespace if no identity is asked for."""
@@ -190,7 +194,7 @@ class Reader:
             "suturing_device/tracking": self._tracking,
             "/diagnostics": self._diagnostic,
             **{topic: self._input for topic in INPUTS},
-            **{topic: self._keep for topic in NEWEST},
+            **{topic: self._keep for topic in (*NEWEST, "scene")},
         }
         if not self._topics["scope/measured_cp"] or not self._topics["scope/measured_cf"]:
             table["step_result"] = self._result
@@ -286,12 +290,8 @@ class Reader:
         self._tell_sessions()
         self._sort_steps()
         recording.begin = recording.stamps[0]
-        recording.skill = self._newest("procedure/skill_metrics")
-        recording.sutures = self._newest("sutures")
-        recording.progress = self._newest("trainee/progress")
-        recording.info = self._newest("session_info")
-        recording.topology = self._newest("tissue/topology")
-        recording.particles = self._newest("tissue/particles")
+        for topic, name in {**NEWEST, "sutures": "sutures"}.items():
+            setattr(recording, name, self._newest(topic))
         scene = self._newest("scene")
         recording.scene = scene.data if scene is not None else ""
         if recording.info is not None and recording.info.scene:
@@ -313,10 +313,9 @@ class Reader:
             first.setdefault(key, place)
         order = [first[key] for key in sorted(first)]
         recording.doubled = len(keys) - len(order)
-        recording.stamps = array("q", (recording.stamps[k] for k in order))
-        recording.steps = array("Q", (recording.steps[k] for k in order))
-        recording.runs = array("L", (recording.runs[k] for k in order))
-        recording.hashes = array("B", (recording.hashes[k] for k in order))
+        for name in ("stamps", "steps", "runs", "hashes"):
+            column = getattr(recording, name)
+            setattr(recording, name, array(column.typecode, (column[k] for k in order)))
 
     def _tell_sessions(self):
         tracker, recording = self._tracker, self.recording
@@ -330,11 +329,7 @@ class Reader:
                 len(sessions), self._chosen + 1, ours.name()
             )
         )
-        totals = dict(((name, kind), 0) for name, kind, _ in recording.topics)
-        for key, connection in self._bag.connections.items():
-            counted = self._counts.get(key, 0) if key in self._handled else self._bag.count(key)
-            totals[(connection.topic, connection.datatype)] += counted
-        recording.topics = sorted((*name, count) for name, count in totals.items())
+        self._count_topics(lambda key: self._counts.get(key, 0) if key in self._handled else self._bag.count(key))
 
     def _newest(self, short):
         for connection in reversed(self._topics[short]):

@@ -8,7 +8,7 @@ import json
 import numpy
 
 from ..headless import find_in_package
-from .organ import fields_of_cloud
+from .point_cloud import particles_of
 
 STEPS = 65535  # of a coordinate between the lowest and the highest
 MILLILITRE = 1e-6  # [m^3]
@@ -30,12 +30,7 @@ def organ_data(recording):
     topology, cloud = recording.topology, recording.particles
     if topology is None or len(topology.triangles) == 0:
         return ""
-    rest = numpy.array(topology.rest_positions).reshape(-1, 3)
-    points, grades = rest, numpy.zeros(len(rest))
-    if cloud is not None and cloud.width * cloud.height == len(rest):
-        fields = fields_of_cloud(cloud)
-        points = numpy.stack([fields[axis] for axis in "xyz"], axis=1).astype(float)
-        grades = fields["grade"] if "grade" in fields.dtype.names else grades
+    points, grades, _ = particles_of(topology, cloud)
     points = numpy.nan_to_num(points)
     lowest = points.min(axis=0)
     step = (points.max(axis=0) - lowest) / STEPS
@@ -45,7 +40,7 @@ def organ_data(recording):
             "lowest": lowest.tolist(),
             "step": step.tolist(),
             "places": packed(places, "<u2"),
-            "rest": packed(rest, "<f4"),
+            "rest": packed(topology.rest_positions, "<f4"),
             "triangles": packed(topology.triangles, "<u4"),
             "grades": packed(numpy.clip(numpy.nan_to_num(grades), 0, 3), "u1"),
             "sutures": sutures_data(recording.sutures),
