@@ -18,6 +18,9 @@ check() {
   fi
 }
 
+# fails COMMAND...: succeeds when the command does not
+fails() { ! "$@"; }
+
 # refuses CODE PATTERN COMMAND...: succeeds when the command ends with CODE, says one line, and that line matches.
 refuses() {
   local code=$1 pattern=$2 status=0 said
@@ -27,6 +30,22 @@ refuses() {
   [ "$status" -eq "$code" ] || { echo "exit status $status, not $code"; return 1; }
   [ "$(grep -c . <<<"$said")" -eq 1 ] || { echo 'not one line'; return 1; }
   grep -qE -- "$pattern" <<<"$said" || { echo "does not match: $pattern"; return 1; }
+}
+
+# ordinaryBuild WHAT [PATH...]: ends the script in a build with sanitizers, or if one of these is not in devel/
+ordinaryBuild() {
+  local path missing=${VIBE_VARIANT:-}
+  for path in "${@:2}"; do [ -e "$root/devel/$path" ] || missing=$path; done
+  [ -n "$missing" ] || return 0
+  echo "skipped $1 (needs the ordinary build; scripts/build --tests makes it)"
+  exit 0
+}
+
+# onDemand WHAT: ends the script unless scripts/test --slow has started it, in the ordinary build
+onDemand() {
+  [ -n "${VIBE_SLOW_TESTS:-}" ] && [ -z "${VIBE_VARIANT:-}" ] && return
+  echo "skipped $1 (scripts/test --slow runs it)"
+  exit 0
 }
 
 # pythonEnvironment NAME FILE OPTION...: build/NAME, a virtual environment with what FILE names, from the registry of Python by
@@ -48,9 +67,40 @@ systemTest() (
 # builtSystemTest MODULE OPTION...: the same for one that needs what is built
 builtSystemTest() { (set +u && source "$root/devel/setup.bash" && systemTest "$@"); }
 
+# withMessages FILE|- ARGUMENT...: Python that knows the messages of the workspace
+withMessages() { PYTHONPATH=$root/devel/lib/python3/dist-packages /usr/bin/python3 "$@"; }
+
 # processesWith NAME=VALUE: the processes that were started with this in their environment.
 processesWith() {
   grep -lzxF -- "$1" /proc/[0-9]*/environ 2>/dev/null | sed -E 's#/proc/([0-9]+)/.*#\1#' || true
+}
+
+# startSession NAME OPTION...: scripts/run in the background, with the folder $scratch/NAME, its output in NAME.txt; sets
+# session_pid. Returns once it takes steps or, a short one, has taken all. Ends with the check.
+startSession() {
+  local name=$1 deadline=$((SECONDS + 120))
+  # bash starts background jobs deaf to SIGINT; the user's terminal does not
+  VIBE_TEST_MARK=$name-$$ /usr/bin/python3 -c 'import os, signal, sys
+signal.signal(signal.SIGINT, signal.SIG_DFL)
+os.execv(sys.argv[1], sys.argv[1:])' "$root/scripts/run" --output "$scratch/$name" "${@:2}" >"$scratch/$name.txt" 2>&1 &
+  session_pid=$!
+  trap 'kill $(jobs -rp) 2>/dev/null; wait' EXIT
+  until grep -qsE '^state hash: | ([1-9][0-9]*\.[0-9]+|0\.0?[1-9][0-9]*) x real time' "$scratch/$name.txt"; do
+    kill -0 "$session_pid" && [ "$SECONDS" -lt "$deadline" ] || { cat "$scratch/$name.txt"; return 1; }
+    sleep 0.2
+  done
+}
+
+# programsOf NAME: the processes of this session
+programsOf() { processesWith "VIBE_TEST_MARK=$1-$$"; }
+
+# nobodyLeft MARK SECONDS: within this time all that was started with VIBE_TEST_MARK=MARK has ended
+nobodyLeft() {
+  local deadline=$((SECONDS + $2))
+  while [ -n "$(processesWith "VIBE_TEST_MARK=$1")" ]; do
+    [ "$SECONDS" -lt "$deadline" ] || { processesWith "VIBE_TEST_MARK=$1" | xargs -r ps -o pid,ppid,args -p; return 1; }
+    sleep 0.1
+  done
 }
 
 # freePort: a port that is free and stays so: below those that Linux gives to other tests, which run beside this one

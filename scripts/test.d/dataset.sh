@@ -5,10 +5,7 @@
 # packages: vibe_bringup vibe_system_tests
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/vibe_endoscope/vibe_dataset" ]; then
-  echo 'skipped data sets of a session (they need the ordinary build)'
-  exit 0
-fi
+ordinaryBuild 'data sets of a session' lib/vibe_endoscope/vibe_dataset
 
 bag=$scratch/session/session.bag
 dataset() { "$root/scripts/dataset" "$bag" --width 160 --height 120 --rate 2 "$@"; }
@@ -19,7 +16,6 @@ refusesNew() {
   [ ! -e "$scratch/new" ] || { echo 'a folder is left'; return 1; }
 }
 errorsOf() { "$@" 2>&1 >/dev/null; }
-fails() { ! "$@"; }
 
 runsASession() { "$root/scripts/run" --headless --fast --script eye --duration 3 --output "$scratch/session"; }
 check 'dataset: a short session is recorded' runsASession

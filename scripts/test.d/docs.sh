@@ -4,16 +4,12 @@
 # packages: docs vibe_msgs vibe_core vibe_bringup vibe_python
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-fails() { ! "$@"; }
 lists() { (cd "$root/docs/site" && /usr/bin/python3 -B -c "import reference, sys; sys.exit(reference.empty('$1'))"); }
 check 'docs: a page with rows lists something' lists '# Keys\n\n| key | unit |\n|---|---|\n| `a` | m |\n'
 check 'docs: a table without rows is seen' fails lists '# Keys\n\n| key | unit |\n|---|---|\n'
 check 'docs: a page without tables and headings is seen' fails lists '# Command lines\n\nWhat `--help` prints.\n'
 
-if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/vibe_core/vibe_headless" ]; then
-  echo 'skipped the site (it needs the ordinary build)'
-  exit 0
-fi
+ordinaryBuild 'the site' lib/vibe_core/vibe_headless
 said=$("$root/scripts/docs" --output "$scratch/docs" 2>&1)
 status=$?
 case $said in *'docs: missing: '*) echo "skipped the site: $said"; exit 0 ;; esac

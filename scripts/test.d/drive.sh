@@ -1,5 +1,5 @@
 # scripts/run --drive: who drives in wall time, what goes with whom, and that such a session is recorded and repeats.
-# kind: computing
+# kind: waiting
 # cost: 120
 # alone-with: fake-camera
 # packages: vibe_bringup vibe_system_tests
@@ -42,10 +42,7 @@ check 'a simulated camera has its own calibration' refuses 2 'remove one of them
 check 'the keyboard needs a display' refuses 2 'DISPLAY is not set' "$run" --drive keyboard
 check 'the keyboard needs rviz' refuses 2 'remove --headless' "$run" --drive keyboard --headless
 
-if [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped sessions (scripts/run uses the ordinary build, not this one)'
-  exit 0
-fi
+ordinaryBuild sessions
 
 # drives NAME OPTION...: a session on the light scene ends well, is complete, and repeats to the same state.
 drives() {
@@ -62,7 +59,7 @@ drives() {
 
 # reaches NAME DEPTH SPREAD: the deepest insertion that a step has used [m], and by how much it may differ.
 reaches() {
-  /usr/bin/env PYTHONPATH="$root/devel/lib/python3/dist-packages" /usr/bin/python3 - "$scratch/$1/session.bag" "$2" "$3" <<'PYTHON'
+  withMessages - "$scratch/$1/session.bag" "$2" "$3" <<'PYTHON'
 import sys
 import rosbag
 inputs = [message for _, message, _ in rosbag.Bag(sys.argv[1]).read_messages(topics=["/applied_input"])]
@@ -91,7 +88,7 @@ check 'a session leaves a recording of its gamepad' padIsRecorded
 
 # instrumentsMove NAME: the camera, and nobody else, has moved helix and needle driver by centimetres.
 instrumentsMove() {
-  /usr/bin/env PYTHONPATH="$root/devel/lib/python3/dist-packages" /usr/bin/python3 - "$scratch/$1/session.bag" <<'PYTHON'
+  withMessages - "$scratch/$1/session.bag" <<'PYTHON'
 import sys
 import rosbag
 bag = rosbag.Bag(sys.argv[1])
@@ -127,30 +124,17 @@ namesBadMapping() {
 }
 check 'a wrong mapping is one clear error' namesBadMapping
 
-# startSession NAME OPTION...: in the background, without an end; returns once it takes steps. Sets session_pid.
-startSession() {
-  local name=$1
-  shift
-  # bash starts background jobs deaf to SIGINT; the user's terminal does not
-  VIBE_TEST_MARK=$name-$$ /usr/bin/python3 -c 'import os, signal, sys
-signal.signal(signal.SIGINT, signal.SIG_DFL)
-os.execv(sys.argv[1], sys.argv[1:])' "$run" --scene "$scene" --output "$scratch/$name" "$@" >"$scratch/$name.txt" 2>&1 &
-  session_pid=$!
-  local deadline=$((SECONDS + 120))
-  until grep -qsE ' ([1-9][0-9]*\.[0-9]+|0\.0?[1-9][0-9]*) x real time' "$scratch/$name.txt"; do
-    kill -0 "$session_pid" && [ "$SECONDS" -lt "$deadline" ] || { cat "$scratch/$name.txt"; return 1; }
-    sleep 0.2
-  done
-}
+# start NAME OPTION...: a session without an end
+start() { startSession "$1" --scene "$scene" "${@:2}"; }
 
 endsOnInterrupt() {
   local status=0
-  startSession endless --drive emulator --hand "$hand" --headless || return 1
+  start endless --drive emulator --hand "$hand" --headless || return 1
   kill -INT "$session_pid"
   wait "$session_pid" || status=$?
   cat "$scratch/endless.txt"
   [ "$status" -eq 0 ] && grep -q '^state hash: ' "$scratch/endless.txt" && [ -s "$scratch/endless/session.bag" ] &&
-    [ -z "$(processesWith "VIBE_TEST_MARK=endless-$$")" ]
+    [ -z "$(programsOf endless)" ]
 }
 check 'a session without an end is summed up when it is interrupted' endsOnInterrupt
 
@@ -159,11 +143,10 @@ if ! command -v Xvfb >/dev/null; then
   exit 0
 fi
 
-# startDisplay: a virtual display of this test, in DISPLAY; ends with this shell.
+# startDisplay: a virtual display, in DISPLAY; ends with the check, as the session does.
 startDisplay() {
   exec {display_pipe}<> <(:)
   Xvfb -displayfd "$display_pipe" -screen 0 1280x800x24 >/dev/null 2>&1 &
-  trap 'kill '"$!" EXIT
   local number
   read -r -t 60 -u "$display_pipe" number || { echo 'no virtual display'; return 1; }
   export DISPLAY=:$number
@@ -171,7 +154,7 @@ startDisplay() {
 
 # commands NAME: how many commands of rviz the recording of a session holds.
 commands() {
-  /usr/bin/env PYTHONPATH="$root/devel/lib/python3/dist-packages" /usr/bin/python3 - "$scratch/$1/session.bag" <<'PYTHON'
+  withMessages - "$scratch/$1/session.bag" <<'PYTHON'
 import sys
 import rosbag
 topics = rosbag.Bag(sys.argv[1]).read_messages(topics=["/scope/servo_jp"], return_connection_header=True)
@@ -189,7 +172,7 @@ closesRviz() {
 }
 
 keyboardDrives() {
-  startDisplay && startSession keyboard --drive keyboard || return 1
+  startDisplay && start keyboard --drive keyboard || return 1
   local deadline=$((SECONDS + 180)) status=0
   # rviz asks the tool to drive when it has drawn its first pictures
   until grep -qs '^t =   1[0-9]\.' "$scratch/keyboard.txt" || ! kill -0 "$session_pid" 2>/dev/null; do sleep 0.5; done
@@ -205,7 +188,7 @@ check 'rviz drives with the keyboard from its start, and closing it ends the ses
 windowOf() {
   local pid deadline=$((SECONDS + 60))
   while [ "$SECONDS" -lt "$deadline" ]; do
-    for pid in $(processesWith "VIBE_TEST_MARK=$1-$$"); do
+    for pid in $(programsOf "$1"); do
       if [[ $(readlink "/proc/$pid/exe") == */rviz ]]; then echo "$pid"; return; fi
     done
     sleep 0.2
@@ -215,7 +198,7 @@ windowOf() {
 
 staysWithTheResult() {
   local status=0 deadline=$((SECONDS + 180))
-  startDisplay && startSession result --drive emulator --hand "$hand" --duration 6 || return 1
+  startDisplay && start result --drive emulator --hand "$hand" --duration 6 || return 1
   until grep -q '^The session has ended. It is still shown by rviz, until it is closed, or Ctrl-C.' "$scratch/result.txt"; do
     [ "$SECONDS" -lt "$deadline" ] && kill -0 "$session_pid" || { cat "$scratch/result.txt"; return 1; }
     sleep 0.2
@@ -229,9 +212,10 @@ check 'rviz shows how a session ended until it is closed' staysWithTheResult
 
 saysThatRvizDied() {
   local status=0 rviz
-  startDisplay && QT_QPA_PLATFORM=wayland startSession died --drive emulator --hand "$hand" --duration 20 &&
-    rviz=$(windowOf died) || return 1
+  startDisplay && QT_QPA_PLATFORM=wayland start died --drive emulator --hand "$hand" && rviz=$(windowOf died) || return 1
   grep -qz '^QT_QPA_PLATFORM=xcb$' "/proc/$rviz/environ" && kill -KILL "$rviz" || return 1
+  until grep -q '^rviz died; the session goes on without it.' "$scratch/died.txt"; do kill -0 "$session_pid" || break; sleep 0.2; done
+  kill -INT "$session_pid"
   wait "$session_pid" || status=$?
   cat "$scratch/died.txt"
   [ "$status" -eq 1 ] && grep -q '^On this Wayland desktop rviz runs through Xwayland' "$scratch/died.txt" &&

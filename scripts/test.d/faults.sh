@@ -1,17 +1,12 @@
 # What is around the nodes breaks: programs, master, peers, devices, clocks. Figures: the table that is printed.
-# kind: timed
+# kind: waiting
 # cost: 200
 # timeout: 2400
 # alone-with: fake-camera
 # packages: vibe_system_tests
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-for program in vibe_sim/sim_node vibe_hardware/hardware_node vibe_vision/vision_node; do
-  if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/$program" ]; then
-    echo 'skipped faults (they need the ordinary build)'
-    exit 0
-  fi
-done
+ordinaryBuild faults lib/vibe_sim/sim_node lib/vibe_hardware/hardware_node lib/vibe_vision/vision_node
 unset DISPLAY
 
 faults() { builtSystemTest faults "$@"; }

@@ -17,10 +17,7 @@
 # several programs name is compiled once, and with those of its folder that the same programs name.
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped fuzzing (it has sanitizers of its own; runs with scripts/test)'
-  exit 0
-fi
+ordinaryBuild fuzzing # it has sanitizers of its own
 echo 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }' >"$scratch/empty.cpp"
 if ! clang++ -fsanitize=fuzzer,address,undefined "$scratch/empty.cpp" -o "$scratch/empty" >"$scratch/clang.log" 2>&1; then
   sed 's/^/    /' "$scratch/clang.log"

@@ -17,10 +17,7 @@ isShown() {
 }
 check 'every file of the gallery is in its page' isShown
 
-if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/vibe_sim/sim_node" ]; then
-  echo 'skipped the examples (they need the ordinary build)'
-  exit 0
-fi
+ordinaryBuild 'the examples' lib/vibe_sim/sim_node
 set +u
 # shellcheck disable=SC1091
 source "$root/devel/setup.bash"

@@ -17,15 +17,6 @@ sleep "$2"
 FAMILY
 chmod +x "$scratch/family"
 
-# nobodyLeft SECONDS: within this time the whole family has ended.
-nobodyLeft() {
-  local deadline=$((SECONDS + $1))
-  while [ -n "$(processesWith "VIBE_TEST_MARK=$mark")" ]; do
-    [ "$SECONDS" -lt "$deadline" ] || { processesWith "VIBE_TEST_MARK=$mark" | xargs -r ps -o pid,ppid,args -p; return 1; }
-    sleep 0.1
-  done
-}
-
 # startFamily SECONDS: starts it under a guard, in the background; sets guard_pid.
 startFamily() {
   VIBE_TEST_MARK=$mark /usr/bin/python3 "$root/scripts/lib/guard.py" "$scratch/family" "$mark" "$1" &
@@ -49,12 +40,12 @@ passesStatus() {
 check 'guard ends with the status of its command' passesStatus
 
 endsAfterNormalEnd() {
-  startFamily 5 && wait "$guard_pid" && nobodyLeft 0
+  startFamily 5 && wait "$guard_pid" && nobodyLeft "$mark" 0
 }
 check 'nothing is left when the command has ended' endsAfterNormalEnd
 
 endsAfter() {
-  startFamily 300 && kill "-$1" "$guard_pid" && nobodyLeft 15
+  startFamily 300 && kill "-$1" "$guard_pid" && nobodyLeft "$mark" 15
 }
 check 'nothing is left after SIGKILL' endsAfter KILL
 check 'nothing is left after SIGTERM' endsAfter TERM

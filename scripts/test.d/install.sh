@@ -4,10 +4,7 @@
 # packages: examples vibe_bringup vibe_benchmarks vibe_python vibe_rviz_plugins vibe_testing
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -n "${VIBE_VARIANT:-}" ] || [ ! -d "$root/build/vibe_core" ]; then
-  echo 'skipped install (not built, or with sanitizers)'
-  exit 0
-fi
+ordinaryBuild install lib/vibe_core/vibe_headless
 prefix=$(sed -n 's/^CMAKE_INSTALL_PREFIX:PATH=//p' "$root/build/CMakeCache.txt")
 space=$scratch$prefix # catkin writes the setup files to this prefix, whatever `cmake --install --prefix` says
 

@@ -1,5 +1,5 @@
 # scripts/latency: what it refuses, and that it follows a jump of the hand through all stages, up to the pixel.
-# kind: timed
+# kind: waiting
 # cost: 120
 # alone-with: fake-camera
 # packages: vibe_bringup vibe_latency
@@ -18,10 +18,7 @@ check 'latency refuses a priority that is none' refuses 2 "from 0 to 98" "$laten
 check 'latency refuses a scene that is not there' refuses 2 'no file' "$latency" --scene nowhere.yaml
 check 'latency refuses a folder that is there' refuses 2 'is there already' "$latency" --output "$scratch"
 
-if [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped measurements (scripts/latency uses the ordinary build, not this one)'
-  exit 0
-fi
+ordinaryBuild measurements
 
 # measure NAME OPTION...: a few blinks into $scratch/NAME.
 measure() {

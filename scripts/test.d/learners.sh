@@ -4,10 +4,7 @@
 # packages: vibe_core vibe_python
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped Stable-Baselines3 (scripts/test --slow lets it learn)'
-  exit 0
-fi
+onDemand Stable-Baselines3
 if ! /usr/bin/python3 -c 'import torch, venv' 2>/dev/null; then
   echo 'skipped Stable-Baselines3 (python3-torch or python3-venv is not installed)'
   exit 0

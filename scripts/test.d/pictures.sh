@@ -51,10 +51,7 @@ check 'pictures: every state differs from every other' otherStatesFail
 check 'pictures: another size is refused' otherSizeIsRefused
 
 program=$root/devel/lib/vibe_rviz_plugins/rviz_report
-if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$program" ]; then
-  echo 'skipped what rviz draws (it needs the ordinary build with tests)'
-  exit 0
-fi
+ordinaryBuild 'what rviz draws' lib/vibe_rviz_plugins/rviz_report
 
 # --- what rviz draws now
 mkdir "$scratch/now"

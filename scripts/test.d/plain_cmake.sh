@@ -8,12 +8,8 @@
 # packages: README.md vibe_core vibe_python
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-catkin_build=$root/build${VIBE_VARIANT:-}
-catkin_devel=$root/devel${VIBE_VARIANT:-}
-if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$catkin_devel/lib/vibe_core/vibe_headless" ]; then
-  echo 'skipped plain CMake (needs the Release build; scripts/build makes it)'
-  exit 0
-fi
+catkin_devel=$root/devel
+ordinaryBuild 'plain CMake' lib/vibe_core/vibe_headless
 if ! command -v clang++ >/dev/null; then
   echo 'skipped plain CMake (needs clang++; scripts/setup installs it)'
   exit 0
@@ -182,7 +178,7 @@ cLibraryHasOtherBits() {
 check 'plain CMake configures the core in an empty environment' configures
 grep -v '^CMAKE_DISABLE_FIND_PACKAGE_catkin:' "$build/CMakeCache.txt" >"$scratch/cache"
 check 'plain CMake names no part of ROS when it compiles' namesNoRos "$build/compile_commands.json" "$scratch/cache"
-namesCatkin() { ! namesNoRos "$catkin_build/CMakeCache.txt"; }
+namesCatkin() { ! namesNoRos "$root/build/CMakeCache.txt"; }
 check 'control: the catkin build does name ROS' namesCatkin
 check 'plain CMake builds the core' builds
 check 'plain CMake installs the core' bare cmake --install "$build"

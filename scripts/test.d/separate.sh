@@ -4,8 +4,5 @@
 # timeout: 7200
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped sources one by one (scripts/test --slow compiles them)'
-  exit 0
-fi
+onDemand 'sources one by one'
 check 'every source compiles by itself' "$root/scripts/build" --separate --tests

@@ -4,10 +4,7 @@
 # packages: vibe_bringup
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped the whole main job (scripts/test --slow makes it)'
-  exit 0
-fi
+onDemand 'the whole main job'
 unset DISPLAY
 
 hashOf() { sed -n 's/^state hash: //p' "$1"; }

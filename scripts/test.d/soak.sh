@@ -5,10 +5,8 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 program=$root/devel/lib/vibe_rviz_plugins/rviz_report
-if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$program" ]; then
-  echo 'skipped half an hour of rviz (scripts/test --slow makes it)'
-  exit 0
-fi
+onDemand 'half an hour of rviz'
+ordinaryBuild 'half an hour of rviz' lib/vibe_rviz_plugins/rviz_report
 
 record() {
   "$root/scripts/run" --headless --fast --record-all --script "$root/src/vibe_core/trainees/demo/five_states.yaml" --output "$scratch/session"

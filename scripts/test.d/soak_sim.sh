@@ -4,10 +4,7 @@
 # packages: vibe_system_tests
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped two hours of the simulator (scripts/test --slow makes them)'
-  exit 0
-fi
+onDemand 'two hours of the simulator'
 
 soak() {
   builtSystemTest soak_sim "$@" >"$scratch/soak.txt" 2>&1 || { cat "$scratch/soak.txt"; return 1; }

@@ -5,10 +5,7 @@
 # packages: vibe_core vibe_python
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ]; then
-  echo 'skipped the loaders of training sets (scripts/test --slow installs and runs them)'
-  exit 0
-fi
+onDemand 'the loaders of training sets'
 readonly tests=$root/src/vibe_python/test environment=$root/build/judges
 getPackages() { "$environment/bin/pip" install --quiet --retries 1 --timeout 10 "$@"; }
 makeEnvironment() {

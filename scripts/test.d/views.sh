@@ -6,10 +6,7 @@
 # packages: vibe_bringup vibe_system_tests
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/vibe_endoscope/endoscope_camera" ]; then
-  echo 'skipped what the endoscope shows (it needs the ordinary build)'
-  exit 0
-fi
+ordinaryBuild 'what the endoscope shows' lib/vibe_endoscope/endoscope_camera
 if ! /usr/bin/python3 -c 'import numpy, PIL, scipy' 2>/dev/null; then
   echo 'not ok views need python3-numpy, python3-pil and python3-scipy; scripts/setup installs them'
   exit 0
