@@ -18,6 +18,7 @@ import test_list
 import test_results
 
 UNITS_OF_A_CORE = 2
+OVERBOOKED = 1.25  # units in use for each that there is: what computes waits now and then, too
 MOST_UNSTABLE = 3
 MOST_REPEATED = 10  # where more fail, the reason is no accident, and to run them one by one would take long
 MOST_LINES = 400  # of the output of a failed test
@@ -137,7 +138,7 @@ def run_all(options, scratch):
     test_list.write(tests, suite.folder, scratch)
     os.environ["VIBE_VARIANT"] = options.variant
     say("{} tests on {} cores; the output of each is kept in {}".format(len(tests), options.cores, suite.folder))
-    suite.phase("-LE", UNITS_OF_A_CORE * options.cores)
+    suite.phase("-LE", int(OVERBOOKED * UNITS_OF_A_CORE * options.cores))
     suite.phase("-L", 1)
     return suite.close()
 
