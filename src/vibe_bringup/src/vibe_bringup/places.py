@@ -4,8 +4,6 @@ import errno
 import fcntl
 import os
 
-from vibe_sessions.headless import find_in_package
-
 ROBOT = "package://vibe_description/urdf/scope.urdf"
 RVIZ_CONFIG = "package://vibe_description/rviz/vibe.rviz"
 SCENE = "package://vibe_core/scenes/stomach.yaml"
@@ -38,6 +36,8 @@ def find(address):
 
 def program(package, name):
     """The path of a program of a package. rosrun would look for it for half a second of processor time."""
+    from vibe_sessions.headless import find_in_package  # here: scripts read their options without it
+
     path = find_in_package(package, name)
     if path is None:
         raise FileNotFoundError(errno.ENOENT, "no such program; build its package and source its workspace", package + "/" + name)
