@@ -18,6 +18,9 @@ check() {
   fi
 }
 
+# fails COMMAND...: succeeds when the command does not
+fails() { ! "$@"; }
+
 # refuses CODE PATTERN COMMAND...: succeeds when the command ends with CODE, says one line, and that line matches.
 refuses() {
   local code=$1 pattern=$2 status=0 said
@@ -70,10 +73,32 @@ systemTest() (
 # builtSystemTest MODULE OPTION...: the same for one that needs what is built
 builtSystemTest() { (set +u && source "$root/devel/setup.bash" && systemTest "$@"); }
 
+# withMessages FILE|- ARGUMENT...: Python that knows the messages of the workspace
+withMessages() { PYTHONPATH=$root/devel/lib/python3/dist-packages /usr/bin/python3 "$@"; }
+
 # processesWith NAME=VALUE: the processes that were started with this in their environment.
 processesWith() {
   grep -lzxF -- "$1" /proc/[0-9]*/environ 2>/dev/null | sed -E 's#/proc/([0-9]+)/.*#\1#' || true
 }
+
+# startSession NAME OPTION...: scripts/run in the background, with the folder $scratch/NAME, its output in NAME.txt; sets
+# session_pid. Returns once it takes steps or, a short one, has taken all. Ends with the check.
+startSession() {
+  local name=$1 deadline=$((SECONDS + 120))
+  # bash starts background jobs deaf to SIGINT; the user's terminal does not
+  VIBE_TEST_MARK=$name-$$ /usr/bin/python3 -c 'import os, signal, sys
+signal.signal(signal.SIGINT, signal.SIG_DFL)
+os.execv(sys.argv[1], sys.argv[1:])' "$root/scripts/run" --output "$scratch/$name" "${@:2}" >"$scratch/$name.txt" 2>&1 &
+  session_pid=$!
+  trap 'kill $(jobs -rp) 2>/dev/null; wait' EXIT
+  until grep -qsE '^state hash: | ([1-9][0-9]*\.[0-9]+|0\.0?[1-9][0-9]*) x real time' "$scratch/$name.txt"; do
+    kill -0 "$session_pid" && [ "$SECONDS" -lt "$deadline" ] || { cat "$scratch/$name.txt"; return 1; }
+    sleep 0.2
+  done
+}
+
+# programsOf NAME: the processes of this session
+programsOf() { processesWith "VIBE_TEST_MARK=$1-$$"; }
 
 # nobodyLeft MARK SECONDS: within this time all that was started with VIBE_TEST_MARK=MARK has ended
 nobodyLeft() {

@@ -1,11 +1,12 @@
 """Runs one test for ctest: with folders of its own for ROS and for sockets, and so that nothing it starts outlives it.
 
 Usage: run_test.py SCRATCH LOG RESULT COMMAND [ARGUMENT...]. LOG gets the output. RESULT is the file into which the test
-writes its cases, `lines` if it prints them, or empty. The test passes if the command ends with status 0, no case has
+writes its cases, `lines` if it prints them, or empty. LOG.seconds gets the processor time. The test passes if the command ends with status 0, no case has
 failed and, where there is a RESULT, there is at least one case.
 """
 
 import os
+import resource
 import shutil
 import signal
 import sys
@@ -34,6 +35,9 @@ def main():
         os.environ[name] = os.path.join(scratch, folder)
         os.makedirs(os.environ[name], mode=0o700)
     status = guard.run(command)
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    with open(log + ".seconds", "w", encoding="ascii") as file:  # not whole: a log
+        file.write("{:.1f}".format(used.ru_utime + used.ru_stime))
     shutil.rmtree(scratch, ignore_errors=True)
     end = end_of(status)
     if status == 0 and not test_results.read(log, result_file).is_good():

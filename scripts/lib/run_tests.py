@@ -18,6 +18,7 @@ import test_list
 import test_results
 
 UNITS_OF_A_CORE = 2
+OVERBOOKED = 1.5  # units in use for each that there is: what computes waits now and then, too
 MOST_UNSTABLE = 3
 MOST_REPEATED = 10  # where more fail, the reason is no accident, and to run them one by one would take long
 MOST_LINES = 400  # of the output of a failed test
@@ -80,6 +81,14 @@ class Suite:
             failed = again
         self.failed += failed
 
+    def processor_time(self, name):
+        """Of a test, as run_test.py has written it [s]; none of one that was stopped."""
+        path = self.tests[name].log + ".seconds"
+        if not os.path.exists(path):
+            return "-"
+        with open(path, encoding="ascii") as text:
+            return text.read()
+
     def result_of(self, name):
         """The cases of a test; where it failed as a whole, that is one."""
         test = self.tests[name]
@@ -104,7 +113,8 @@ class Suite:
         slowest = sorted(self.seconds, key=lambda name: -self.seconds[name])[:SLOWEST]
         skipped = [sentence for result in results.values() for sentence in result.skipped]
         show_list("Skipped:", sorted(set(skipped)))
-        show_list("Slowest:", ["{:>8.1f} s  {}".format(self.seconds[name], name) for name in slowest])
+        show_list("Slowest, and processor time:", ["{:>8.1f} s {:>8} s  {}".format(
+            self.seconds[name], self.processor_time(name), name) for name in slowest])
         show_list("Unstable:", ["{0}: failed, and passed when it ran again alone ({0}.first.log)".format(
             name.replace("/", "_")) for name in self.unstable])
         show_list("Failed:", failures)
@@ -137,7 +147,7 @@ def run_all(options, scratch):
     test_list.write(tests, suite.folder, scratch)
     os.environ["VIBE_VARIANT"] = options.variant
     say("{} tests on {} cores; the output of each is kept in {}".format(len(tests), options.cores, suite.folder))
-    suite.phase("-LE", UNITS_OF_A_CORE * options.cores)
+    suite.phase("-LE", int(OVERBOOKED * UNITS_OF_A_CORE * options.cores))
     suite.phase("-L", 1)
     return suite.close()
 

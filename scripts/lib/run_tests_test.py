@@ -100,6 +100,7 @@ class RunnerTest(unittest.TestCase):
         said = self.run_it()
         self.assertIn("Skipped:\n  no board\n  two (later)\n", said)
         self.assertNotIn("figure", said)
+        self.assertRegex(said, r"Slowest, and processor time:\n +[0-9.]+ s +[0-9.]+ s  ")
         self.closes(said, "4 passed, 0 failed, 2 skipped")
         self.assertIn("\nfigure 7\n", self.run_it("--verbose"))
 
@@ -164,7 +165,7 @@ class RunnerTest(unittest.TestCase):
                  for test in json.loads(listing)["tests"]}
         wanted = {"locked": dict(LABELS=["computing"], PROCESSORS=2, RESOURCE_LOCK=["a", "b"], COST=7, TIMEOUT=9),
                   "pack_rostest_x": dict(LABELS=["waiting"], TIMEOUT=1200),
-                  "wide": dict(LABELS=["timed"], PROCESSORS=4, RESOURCE_LOCK=["a"], COST=40, TIMEOUT=50)}
+                  "wide": dict(LABELS=["timed"], PROCESSORS=4, RESOURCE_LOCK=["a"], COST=1040, TIMEOUT=50)}
         for name, properties in wanted.items():
             self.assertEqual({key: found[name].get(key) for key in properties}, properties, name)
 

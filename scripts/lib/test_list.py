@@ -15,6 +15,7 @@ import sys
 
 KINDS = ("computing", "waiting", "timed")
 UNITS = {"computing": 2, "waiting": 1, "timed": 2}  # of the two that each core has
+WIDE_FIRST = 1000  # added to the cost of a test that takes more than a core, which would wait for room until the end
 TIMEOUT = 1200.0  # of a test that names none [s]
 LISTING_TIMEOUT = 60.0  # for a program to list its cases [s]
 HEADER_LINES = 15
@@ -91,6 +92,8 @@ def script_test(path):
     check_declaration(path, said)
     words = {"cost": "COST", "units": "PROCESSORS", "alone-with": "RESOURCE_LOCK", "timeout": "TIMEOUT"}
     properties = {word: said[key] for key, word in words.items() if key in said}
+    if int(said.get("units", 0)) > UNITS["computing"]:
+        properties["COST"] = WIDE_FIRST + int(said.get("cost", 0))
     name = os.path.basename(path)[: -len(".sh")]
     return Test(name, ["bash", path], said["kind"], properties, set(said.get("packages", "any").split()), is_script=True)
 

@@ -1,6 +1,6 @@
 # scripts/run --drive: a session that somebody drives in wall time is recorded and repeats. What goes with whom is tested in
 # src/vibe_bringup/test.
-# kind: computing
+# kind: waiting
 # cost: 120
 # alone-with: fake-camera
 # packages: vibe_bringup vibe_system_tests
@@ -25,7 +25,7 @@ drives() {
 
 # reaches NAME DEPTH SPREAD: the deepest insertion that a step has used [m], and by how much it may differ.
 reaches() {
-  /usr/bin/env PYTHONPATH="$root/devel/lib/python3/dist-packages" /usr/bin/python3 - "$scratch/$1/session.bag" "$2" "$3" <<'PYTHON'
+  withMessages - "$scratch/$1/session.bag" "$2" "$3" <<'PYTHON'
 import sys
 import rosbag
 inputs = [message for _, message, _ in rosbag.Bag(sys.argv[1]).read_messages(topics=["/applied_input"])]
@@ -54,7 +54,7 @@ check 'a session leaves a recording of its gamepad' padIsRecorded
 
 # instrumentsMove NAME: the camera, and nobody else, has moved helix and needle driver by centimetres.
 instrumentsMove() {
-  /usr/bin/env PYTHONPATH="$root/devel/lib/python3/dist-packages" /usr/bin/python3 - "$scratch/$1/session.bag" <<'PYTHON'
+  withMessages - "$scratch/$1/session.bag" <<'PYTHON'
 import sys
 import rosbag
 bag = rosbag.Bag(sys.argv[1])
@@ -87,27 +87,26 @@ namesBadMapping() {
 }
 check 'a wrong mapping is one clear error' namesBadMapping
 
-# startSession NAME OPTION...: in the background, without an end; returns once it takes steps. Sets session_pid.
-startSession() {
-  begins "$1-$$" "$scratch/$1.txt" ' ([1-9][0-9]*\.[0-9]+|0\.0?[1-9][0-9]*) x real time' \
-    "$run" --scene "$scene" --output "$scratch/$1" "${@:2}"
-}
+# start NAME OPTION...: a session without an end
+start() { startSession "$1" --scene "$scene" "${@:2}"; }
 
 endsOnInterrupt() {
-  startSession endless --drive emulator --hand "$hand" --headless || return 1
+  local status=0
+  start endless --drive emulator --hand "$hand" --headless || return 1
   kill -INT "$session_pid"
-  ends 0 "$scratch/endless.txt" && grep -q '^state hash: ' "$scratch/endless.txt" && [ -s "$scratch/endless/session.bag" ] &&
-    nobodyLeft "endless-$$" 0
+  wait "$session_pid" || status=$?
+  cat "$scratch/endless.txt"
+  [ "$status" -eq 0 ] && grep -q '^state hash: ' "$scratch/endless.txt" && [ -s "$scratch/endless/session.bag" ] &&
+    [ -z "$(programsOf endless)" ]
 }
 check 'a session without an end is summed up when it is interrupted' endsOnInterrupt
 
 command -v Xvfb >/dev/null || skip 'driving with the keyboard (there is no Xvfb; scripts/setup installs it)'
 
-# startDisplay: a virtual display of this test, in DISPLAY; ends with this shell.
+# startDisplay: a virtual display, in DISPLAY; ends with the check, as the session does.
 startDisplay() {
   exec {display_pipe}<> <(:)
   Xvfb -displayfd "$display_pipe" -screen 0 1280x800x24 >/dev/null 2>&1 &
-  trap 'kill '"$!" EXIT
   local number
   read -r -t 60 -u "$display_pipe" number || { echo 'no virtual display'; return 1; }
   export DISPLAY=:$number
@@ -115,7 +114,7 @@ startDisplay() {
 
 # commands NAME: how many commands of rviz the recording of a session holds.
 commands() {
-  /usr/bin/env PYTHONPATH="$root/devel/lib/python3/dist-packages" /usr/bin/python3 - "$scratch/$1/session.bag" <<'PYTHON'
+  withMessages - "$scratch/$1/session.bag" <<'PYTHON'
 import sys
 import rosbag
 topics = rosbag.Bag(sys.argv[1]).read_messages(topics=["/scope/servo_jp"], return_connection_header=True)
@@ -133,8 +132,8 @@ closesRviz() {
 }
 
 keyboardDrives() {
-  startDisplay && startSession keyboard --drive keyboard || return 1
-  local deadline=$((SECONDS + 180))
+  startDisplay && start keyboard --drive keyboard || return 1
+  local deadline=$((SECONDS + 180)) status=0
   # rviz asks the tool to drive when it has drawn its first pictures
   until grep -qs '^t =   1[0-9]\.' "$scratch/keyboard.txt" || ! kill -0 "$session_pid" 2>/dev/null; do sleep 0.5; done
   closesRviz 'the session goes on without rviz' "$deadline" || return 1
@@ -147,7 +146,7 @@ check 'rviz drives with the keyboard from its start, and closing it ends the ses
 windowOf() {
   local pid deadline=$((SECONDS + 60))
   while [ "$SECONDS" -lt "$deadline" ]; do
-    for pid in $(processesWith "VIBE_TEST_MARK=$1-$$"); do
+    for pid in $(programsOf "$1"); do
       if [[ $(readlink "/proc/$pid/exe") == */rviz ]]; then echo "$pid"; return; fi
     done
     sleep 0.2
@@ -156,8 +155,8 @@ windowOf() {
 }
 
 staysWithTheResult() {
-  local deadline=$((SECONDS + 180))
-  startDisplay && startSession result --drive emulator --hand "$hand" --duration 6 || return 1
+  local status=0 deadline=$((SECONDS + 180))
+  startDisplay && start result --drive emulator --hand "$hand" --duration 6 || return 1
   until grep -q '^The session has ended. It is still shown by rviz, until it is closed, or Ctrl-C.' "$scratch/result.txt"; do
     [ "$SECONDS" -lt "$deadline" ] && kill -0 "$session_pid" || { cat "$scratch/result.txt"; return 1; }
     sleep 0.2
@@ -168,11 +167,14 @@ staysWithTheResult() {
 check 'rviz shows how a session ended until it is closed' staysWithTheResult
 
 saysThatRvizDied() {
-  local rviz
-  startDisplay && QT_QPA_PLATFORM=wayland startSession died --drive emulator --hand "$hand" --duration 20 &&
-    rviz=$(windowOf died) || return 1
+  local status=0 rviz
+  startDisplay && QT_QPA_PLATFORM=wayland start died --drive emulator --hand "$hand" && rviz=$(windowOf died) || return 1
   grep -qz '^QT_QPA_PLATFORM=xcb$' "/proc/$rviz/environ" && kill -KILL "$rviz" || return 1
-  ends 1 "$scratch/died.txt" && grep -q '^On this Wayland desktop rviz runs through Xwayland' "$scratch/died.txt" &&
+  until grep -q '^rviz died; the session goes on without it.' "$scratch/died.txt"; do kill -0 "$session_pid" || break; sleep 0.2; done
+  kill -INT "$session_pid"
+  wait "$session_pid" || status=$?
+  cat "$scratch/died.txt"
+  [ "$status" -eq 1 ] && grep -q '^On this Wayland desktop rviz runs through Xwayland' "$scratch/died.txt" &&
     grep -q '^rviz died; the session goes on without it.' "$scratch/died.txt" && grep -q '^state hash: ' "$scratch/died.txt" &&
     grep -q '^run: rviz died with status -9' "$scratch/died.txt" && grep -q '^rviz died' "$scratch/died/log/rviz.log"
 }

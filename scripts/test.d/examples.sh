@@ -6,7 +6,6 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 examples=$root/examples
-devel=$root/devel${VIBE_VARIANT:-}
 
 # contributing FILE: every block of code of a page below a line `<!-- file: PATH -->` is that file, its recipe or
 # what `<!-- file: PATH from: TEXT to: TEXT -->` cuts out of it; see check_code_blocks.py.
@@ -31,11 +30,11 @@ noticesADifference() {
 }
 check 'a difference to the files is noticed' noticesADifference
 
-[ -f "$devel/setup.bash" ] || skip 'examples (not built; scripts/build builds what they need)'
+[ -f "$root/devel/setup.bash" ] || skip 'examples (not built; scripts/build builds what they need)'
 isOrdinary || skip 'examples with sanitizers (they are built as users build them)'
 set +u
 # shellcheck disable=SC1091
-source "$devel/setup.bash"
+source "$root/devel/setup.bash"
 set -u
 
 # build NAME: a catkin workspace that holds this example alone, on top of the built one.

@@ -1,5 +1,6 @@
 # What is around the nodes breaks: programs, master, peers, devices, clocks. Figures: the table that is printed.
-# kind: timed
+# kind: waiting
+# units: 4
 # cost: 200
 # timeout: 2400
 # alone-with: fake-camera

@@ -1,6 +1,6 @@
 # Debian's kernel in a virtual machine: enumeration, hidraw, gamepad, parameters, unplugging, the node with real hidraw.
 # kind: computing
-# units: 4
+# units: 5
 # cost: 120
 # alone-with: build-firmware
 # packages: vibe_system_tests

@@ -1,5 +1,6 @@
 # scripts/latency follows a jump of the hand through all stages, up to the pixel.
-# kind: timed
+# kind: waiting
+# units: 4
 # cost: 120
 # alone-with: fake-camera
 # packages: vibe_bringup vibe_latency

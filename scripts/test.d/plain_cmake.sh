@@ -176,7 +176,7 @@ cLibraryHasOtherBits() {
 check 'plain CMake configures the core in an empty environment' configures
 grep -v '^CMAKE_DISABLE_FIND_PACKAGE_catkin:' "$build/CMakeCache.txt" >"$scratch/cache"
 check 'plain CMake names no part of ROS when it compiles' namesNoRos "$build/compile_commands.json" "$scratch/cache"
-namesCatkin() { ! namesNoRos "$catkin_build/CMakeCache.txt"; }
+namesCatkin() { ! namesNoRos "$root/build/CMakeCache.txt"; }
 check 'control: the catkin build does name ROS' namesCatkin
 check 'plain CMake builds the core' builds
 check 'plain CMake installs the core' bare cmake --install "$build"

@@ -1,5 +1,5 @@
 # scripts/run as a user meets it: it ends well, says why when it does not, and leaves nothing behind.
-# kind: computing
+# kind: waiting
 # cost: 100
 # packages: vibe_bringup vibe_web
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
@@ -7,7 +7,9 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 isOrdinary || skip 'sessions (scripts/run uses the ordinary build, not this one)'
 unset DISPLAY
 run=$root/scripts/run
-python() { /usr/bin/env PYTHONPATH="$root/devel/lib/python3/dist-packages" /usr/bin/python3 "$@"; }
+
+# start NAME [OPTION...]: a session of an hour
+start() { startSession "$1" --headless --duration 3600 "${@:2}"; }
 
 isRecorded() {
   [ -s "$1/session.bag" ] && [ -z "$(find "$1" -name '*.active')" ] || { ls "$1"; return 1; }
@@ -15,7 +17,7 @@ isRecorded() {
 
 # The recording holds every step and, of every numbered topic of the simulator, every message.
 nothingIsLost() {
-  python - "$1/session.bag" "$2" <<'PYTHON'
+  withMessages - "$1/session.bag" "$2" <<'PYTHON'
 import collections, sys
 import rosbag
 numbers = collections.defaultdict(list)
@@ -48,7 +50,7 @@ check 'the same session ends in the same state' repeats
 isFilledIn() {
   "$root/scripts/replay" --fill "$scratch/filled.bag" "$scratch/second/session.bag" | tee "$scratch/replay.txt" || return 1
   grep -q '^the same: all 120 steps' "$scratch/replay.txt" || return 1
-  python - "$scratch/first session/session.bag" "$scratch/filled.bag" "$scratch/second/session.bag" <<'PYTHON'
+  withMessages - "$scratch/first session/session.bag" "$scratch/filled.bag" "$scratch/second/session.bag" <<'PYTHON'
 import collections, io, sys
 import rosbag
 UNREPEATABLE = ("/solver_statistics", "/step_timing", "/clock", "/session_info")  # times of the machine; pauses
@@ -87,16 +89,11 @@ failsOnBadScene() {
 }
 check 'a bad scene is one clear error' failsOnBadScene
 
-# startSession MARK [OPTION...]: a session of an hour, in the background; sets session_pid. Returns once it takes steps.
-startSession() {
-  begins "$1" "$scratch/$1.txt" 'x real time' "$run" --headless --duration 3600 --output "$scratch/$1" "${@:2}"
-}
-
-# doors MARK: ADDRESS:PORT of every TCP port that the programs of a session listen on, as in /proc/net/tcp: 0100007F is
+# doors NAME: ADDRESS:PORT of every TCP port that the programs of a session listen on, as in /proc/net/tcp: 0100007F is
 # 127.0.0.1, and ports are hexadecimal.
 doors() {
   local inode pid sockets=' ' address state rest
-  for pid in $(processesWith "VIBE_TEST_MARK=$1"); do
+  for pid in $(programsOf "$1"); do
     sockets+=$(find "/proc/$pid/fd" -lname 'socket:*' -printf '%l ' 2>/dev/null)
   done
   while read -r _ address _ state _ _ _ _ _ inode rest; do
@@ -104,7 +101,7 @@ doors() {
   done < <(cat /proc/net/tcp /proc/net/tcp6 2>/dev/null)
 }
 
-# listensOnlyTo MARK ADDRESS: at least six ports, all of them on this address
+# listensOnlyTo NAME ADDRESS: at least six ports, all of them on this address
 listensOnlyTo() {
   local found
   found=$(doors "$1")
@@ -114,19 +111,21 @@ listensOnlyTo() {
 
 # One session for both: control of the address, that another one is told apart.
 isClosedAndSurvivesInterrupt() {
-  local mark=interrupted-$$
-  startSession "$mark" || return 1
+  local mark=interrupted status=0
+  start "$mark" || return 1
   listensOnlyTo "$mark" 0100007F || { echo 'listens to the network'; return 1; }
   ! listensOnlyTo "$mark" 00000000 >/dev/null || { echo 'tells no address apart'; return 1; }
   kill -INT "$session_pid"
-  ends 0 "$scratch/$mark.txt" && grep -q '^state hash: ' "$scratch/$mark.txt" && isRecorded "$scratch/$mark" && nobodyLeft "$mark" 0
+  wait "$session_pid" || status=$?
+  cat "$scratch/$mark.txt"
+  [ "$status" -eq 0 ] && grep -q '^state hash: ' "$scratch/$mark.txt" && isRecorded "$scratch/$mark" && nobodyLeft "$mark-$$" 0
 }
 check 'a session listens on the loopback interface only; interrupted, it is summed up and leaves nothing' isClosedAndSurvivesInterrupt
 
-# signalProgram MARK SIGNAL PATTERN: sends the signal to the program of a session whose command line matches.
+# signalProgram NAME SIGNAL PATTERN: sends the signal to the program of a session whose command line matches.
 signalProgram() {
   local pid
-  for pid in $(processesWith "VIBE_TEST_MARK=$1"); do
+  for pid in $(programsOf "$1"); do
     if grep -qaz "$3" "/proc/$pid/cmdline"; then kill "-$2" "$pid" && return; fi
   done
   echo "no process $3"
@@ -134,18 +133,18 @@ signalProgram() {
 }
 
 cleansUpAfterKill() {
-  local mark=killed-$$
-  startSession "$mark" || return 1
+  local mark=killed
+  start "$mark" || return 1
   # a program that hangs does not hear that it should end
   signalProgram "$mark" STOP 'robot_state_publisher/robot_state_publisher$' || return 1
   kill -KILL "$session_pid"
-  nobodyLeft "$mark" 60 && isRecorded "$scratch/$mark"
+  nobodyLeft "$mark-$$" 60 && isRecorded "$scratch/$mark"
 }
 check 'a killed session leaves no process and a complete recording' cleansUpAfterKill
 
 keepsRecording() {
-  local mark=slow-$$
-  startSession "$mark" --record-all --fast --duration 15 || return 1
+  local mark=slow status=0
+  start "$mark" --record-all --fast --duration 15 || return 1
   signalProgram "$mark" STOP 'lib/vibe_sim/vibe_record$' && sleep 2 &&
     signalProgram "$mark" CONT 'lib/vibe_sim/vibe_record$' || return 1
   ends 0 "$scratch/$mark.txt" && nothingIsLost "$scratch/$mark" 900
@@ -153,10 +152,12 @@ keepsRecording() {
 check 'a recorder that stands still for two seconds loses nothing' keepsRecording
 
 namesTheDead() {
-  local mark=dead-$$
-  startSession "$mark" || return 1
+  local mark=dead status=0
+  start "$mark" || return 1
   signalProgram "$mark" KILL 'lib/vibe_sim/vibe_trainee$' || return 1
-  ends 1 "$scratch/$mark.txt" && grep -q '^run: vibe_trainee died' "$scratch/$mark.txt" && nobodyLeft "$mark" 0
+  wait "$session_pid" || status=$?
+  cat "$scratch/$mark.txt"
+  [ "$status" -eq 1 ] && grep -q '^run: vibe_trainee died' "$scratch/$mark.txt" && nobodyLeft "$mark-$$" 0
 }
 check 'a session names the program that died' namesTheDead
 
@@ -173,21 +174,23 @@ sys.exit(sys.argv[2] not in page.read().decode())' "$1://127.0.0.1:$port/" "$2"
 }
 
 showsItsEnd() {
-  local mark=shown-$$ deadline=$((SECONDS + 120))
-  startSession "$mark" --web --port "$port" --fast --duration 2 || return 1
+  local mark=shown status=0 deadline=$((SECONDS + 120))
+  start "$mark" --web --port "$port" --fast --duration 2 || return 1
   until grep -q '^The session has ended. It is still shown by the page, until Ctrl-C.' "$scratch/$mark.txt"; do
     [ "$SECONDS" -lt "$deadline" ] || return 1
     sleep 0.2
   done
   isRecorded "$scratch/$mark" && grep -q '^state hash: ' "$scratch/$mark.txt" && answers http '<canvas' || return 1
   kill -INT "$session_pid"
-  ends 0 "$scratch/$mark.txt" && nobodyLeft "$mark" 0
+  wait "$session_pid" || status=$?
+  cat "$scratch/$mark.txt"
+  [ "$status" -eq 0 ] && nobodyLeft "$mark-$$" 0
 }
 check 'a page shows how a session ended, until Ctrl-C' showsItsEnd
 
 opensThePageAlone() {
-  local mark=lan-$$ open
-  startSession "$mark" --drive web --lan --port "$port" || return 1
+  local mark=lan status=0 open
+  start "$mark" --drive web --lan --port "$port" || return 1
   grep -q "https://.*:$port/#token=" "$scratch/$mark.txt" && answers https '<canvas' || { cat "$scratch/$mark.txt"; return 1; }
   open=$(doors "$mark" | grep -Ev '^(0100007F|00000000000000000000000001000000):')
   printf '%s\n' "$open"
@@ -199,7 +202,7 @@ check 'with --lan the port of the page alone is open to the network' opensThePag
 namesTakenPort() {
   /usr/bin/python3 -m http.server --bind 127.0.0.1 "$port" >"$scratch/http.txt" 2>&1 &
   local server=$! status=0
-  until answers http Directory 2>/dev/null; do sleep 0.1; done
+  until answers http Directory 2>/dev/null; do kill -0 "$server" || return 1; sleep 0.1; done
   gives 1 "$scratch/taken.txt" "$run" --headless --web --port "$port" --duration 3600 --output "$scratch/taken" || status=1
   kill "$server"
   [ "$status" -eq 0 ] && grep -q "port $port of 127.0.0.1 cannot be had .*; choose another one with .*--port" "$scratch/taken.txt"

@@ -80,7 +80,7 @@ def fill_recording(arguments, scratch):
     """The states between those that a recording keeps come from repeating it. Returns how that ended, in words."""
     said = os.path.join(scratch, "said.txt")
     print("repeating " + arguments.bag, flush=True)
-    command = ["rosrun", "vibe_sim", "vibe_replay", "--fill", os.path.join(scratch, "whole.bag"), arguments.bag]
+    command = [places.program("vibe_sim", "vibe_replay"), "--fill", os.path.join(scratch, "whole.bag"), arguments.bag]
     with open(said, "w", encoding="utf-8") as file:  # not whole: scratch
         status = subprocess.run(command, stdout=file, stderr=subprocess.STDOUT, check=False).returncode
     if status == 3:
@@ -91,7 +91,7 @@ def fill_recording(arguments, scratch):
 
 
 def write_images(arguments, scratch):
-    command = ["rosrun", "vibe_endoscope", "vibe_dataset", os.path.join(scratch, "whole.bag")]
+    command = [places.program("vibe_endoscope", "vibe_dataset"), os.path.join(scratch, "whole.bag")]
     command += ["--name", os.path.basename(arguments.bag), "--output", arguments.output, *arguments.words]
     done = subprocess.run(command, stderr=subprocess.PIPE, text=True, errors="replace", check=False)
     # rospack says, as soon as graphics begin, that Debian has no package media_export; nothing needs it
@@ -118,7 +118,7 @@ def run(arguments):
     from .session import Interrupted, interruptible
 
     # a wrong option or file is said before there is a folder and before the recording is repeated
-    check = ["rosrun", "vibe_endoscope", "vibe_dataset", "--check", arguments.bag, "--output", arguments.output]
+    check = [places.program("vibe_endoscope", "vibe_dataset"), "--check", arguments.bag, "--output", arguments.output]
     status = subprocess.run(check + arguments.words, check=False).returncode
     if status != 0:
         return status

@@ -1,6 +1,7 @@
 """A ROS graph: a master of its own on a free port, or the user's, and nodes that end with this process. No ROS here."""
 
 import ctypes
+import http.client
 import os
 import re
 import signal
@@ -37,6 +38,14 @@ def free_port():
         except socket.gaierror as error:
             sys.exit("the name localhost has no address here ({}); add '127.0.0.1 localhost' to /etc/hosts".format(error))
         return probe.getsockname()[1]
+
+
+def answers(uri):
+    """Whether there is a ROS master."""
+    try:
+        return xmlrpc.client.ServerProxy(uri).getPid("/vibe_scripts")[0] == 1
+    except (OSError, http.client.HTTPException, xmlrpc.client.Error):
+        return False
 
 
 def write_all(descriptor, data):
@@ -165,14 +174,16 @@ class Graph:
     def start_master(self, seconds=30.0):
         if not self.own_master:
             return self.use_master()
-        core = self.start("roscore", ["roscore", "-p", str(self.port)], patience=seconds)
+        # what roscore starts, too, after seconds
+        master = self.start("rosmaster", ["rosmaster", "--core", "-p", str(self.port)], patience=seconds)
         deadline = time.monotonic() + seconds
-        while not self.has_node("/rosout"):
-            if core.status() is not None:
-                raise GraphError("roscore did not start:\n" + core.last_words())
+        while not answers(self.env["ROS_MASTER_URI"]):
+            if master.status() is not None:
+                raise GraphError("rosmaster did not start:\n" + master.last_words())
             if time.monotonic() > deadline:
-                raise GraphError("roscore gave no answer within {:.0f} s; see {}".format(seconds, core.log))
-            time.sleep(0.1)
+                raise GraphError("rosmaster gave no answer within {:.0f} s; see {}".format(seconds, master.log))
+            time.sleep(0.05)
+        self.start_node("rosout", "rosout")
 
     def start(self, name, command, visible=False, patience=10.0, essential=True):
         """Starts a program; its output goes to a log file and, when it is visible, also where ours goes."""
@@ -182,11 +193,11 @@ class Graph:
         return process
 
     def start_node(self, package, name, *options, **settings):
-        return self.start(name, ["rosrun", package, name, *options], **settings)
+        return self.start(name, [places.program(package, name), *options], **settings)
 
     def start_rviz(self, config):
         """As an X client on a Wayland desktop, too: into the window of a Wayland client OGRE cannot draw, and rviz aborts."""
-        command = ["rosrun", "rviz", "rviz", "-d", config]
+        command = [places.program("rviz", "rviz"), "-d", config]
         if self.env.get("QT_QPA_PLATFORM", "wayland" if self.env.get("WAYLAND_DISPLAY") else "").startswith("wayland"):
             print("On this Wayland desktop rviz runs through Xwayland (QT_QPA_PLATFORM=xcb).", flush=True)
             command = ["env", "QT_QPA_PLATFORM=xcb", *command]
@@ -194,7 +205,7 @@ class Graph:
 
     def start_page(self, port):
         """The page of the session. Its port alone is open to the network if web_node wants it to be."""
-        command = ["env", "VIBE_OPEN_PORT={}".format(port), "rosrun", "vibe_web", "web_node"]
+        command = ["env", "VIBE_OPEN_PORT={}".format(port), places.program("vibe_web", "web_node")]
         return self.start("web_node", command, visible=True)
 
     def start_robot(self):
@@ -203,7 +214,7 @@ class Graph:
             self.set_parameter("/robot_description", urdf.read())
         # else every second step of the simulator has no tf
         self.set_parameter("/robot_state_publisher/publish_frequency", 200.0)
-        self.start_node("robot_state_publisher", "robot_state_publisher")
+        self.start_node("robot_state_publisher", "robot_state_publisher", patience=2.0)  # it has nothing to save
 
     def check_alive(self):
         dead = self.dead()

@@ -140,7 +140,7 @@ class Measurement:
 
     def start_rviz(self):
         window = RvizWindow(self.graph, self.logs, self.rviz_config(), self.arguments.view)
-        window.start(["rosrun", "rviz", "rviz"])
+        window.start([places.program("rviz", "rviz")])
         self.start_probe({"DISPLAY": window.display})
         self.wait_for(self.probe, "latency_probe: ready", "rviz shows no lamp")
 
@@ -158,11 +158,11 @@ class Measurement:
 
     def start_probe(self, environment):
         settings = ["{}={}".format(name, value) for name, value in environment.items()]
-        self.probe = self.graph.start("latency_probe", ["env", *settings, "rosrun", "vibe_latency", "latency_probe"])
+        self.probe = self.graph.start("latency_probe", ["env", *settings, places.program("vibe_latency", "latency_probe")])
 
     def start_camera(self):
         # like a device, a camera has hardware of its own
-        command = self.with_priority() + ["rosrun", "vibe_vision", "vibe_fake_camera", "--config", self.path("rig.yaml")]
+        command = self.with_priority() + [places.program("vibe_vision", "vibe_fake_camera"), "--config", self.path("rig.yaml")]
         if self.arguments.mode == "sway":
             command += ["--scene", "sway", "--truth", self.path("truth.csv")]
         else:
@@ -180,7 +180,7 @@ class Measurement:
         arguments = self.arguments
         # a device has a processor of its own: in a measurement with priorities, the emulated one has the highest
         command = self.with_priority()
-        command += ["rosrun", "vibe_hardware", "vibe_emulator", "--folder", self.sockets]
+        command += [places.program("vibe_hardware", "vibe_emulator"), "--folder", self.sockets]
         command += ["--clock-error", str(DEVICE_CLOCK_ERROR)]
         blinks = arguments.mode == "blinks" and not arguments.camera
         command += ["--hand", "blink", HAND] + self.blink_options() if blinks else ["--hand", "script", HAND]
@@ -262,6 +262,6 @@ class Measurement:
 def measure(arguments):
     """Returns the exit status."""
     measurement = Measurement(arguments)
-    report = ["rosrun", "vibe_latency", "latency_report", arguments.output]
+    report = [places.program("vibe_latency", "latency_report"), arguments.output]
     status = carry_out("latency", [measurement.start, measurement.watch], measurement.stop)
     return status or subprocess.run(report, check=False).returncode

@@ -44,7 +44,7 @@ def parse(words):
         "configuration opens with)")  # fmt: skip
     add("--colours", metavar="N", type=cli.whole(), default=FEWEST_COLOURS, help="what has fewer is not yet a picture: "
         "rviz begins with an empty view (default: %(default)s)")  # fmt: skip
-    add("--program", metavar="TEXT", default="rosrun rviz rviz", help="this instead of rviz, with its options")
+    add("--program", metavar="TEXT", default="rviz", help="this instead of rviz, with its options")
     add("--output", metavar="DIR", default=places.output_folder("docs/pictures"), help="folder for the pictures "
         "(default: docs/pictures)")  # fmt: skip
     arguments = made.parse(words)

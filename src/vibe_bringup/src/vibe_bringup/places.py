@@ -1,5 +1,6 @@
 """Where things are: files of packages, and folders for what is made. Standard library and, where it is there, rospkg."""
 
+import errno
 import fcntl
 import os
 
@@ -31,6 +32,16 @@ def find(address):
         return address
     package, _, path = address[len("package://") :].partition("/")
     return os.path.join(package_folder(package), path)
+
+
+def program(package, name):
+    """The path of a program of a package. rosrun would look for it for half a second of processor time."""
+    from vibe_sessions.headless import find_in_package  # here: scripts read their options without it
+
+    path = find_in_package(package, name)
+    if path is None:
+        raise FileNotFoundError(errno.ENOENT, "no such program; build its package and source its workspace", package + "/" + name)
+    return path
 
 
 def output_folder(name):

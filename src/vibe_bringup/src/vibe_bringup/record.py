@@ -1,7 +1,6 @@
 """Records a running ROS graph."""
 
 import os
-import subprocess
 import sys
 
 from . import cli, places
@@ -27,11 +26,13 @@ def parse(words):
 
 
 def run(arguments):
-    if subprocess.run(["rosparam", "get", "/run_id"], capture_output=True, check=False).returncode != 0:
-        uri = os.environ.get("ROS_MASTER_URI", "http://localhost:11311")
+    from .graph import answers
+
+    uri = os.environ.get("ROS_MASTER_URI", "http://localhost:11311")
+    if not answers(uri):
         print("record: no ROS master answers at {}; start one, or set ROS_MASTER_URI to that of yours (http://HOST:PORT)".format(uri), file=sys.stderr)
         return 1
     os.makedirs(os.path.dirname(arguments.output) or ".", exist_ok=True)
-    command = ["rosrun", "vibe_sim", "vibe_record", *cli.words_of(arguments, "all", "free_name"), arguments.output]
+    command = [places.program("vibe_sim", "vibe_record"), *cli.words_of(arguments, "all", "free_name"), arguments.output]
     # timeout with 0 is no limit
     return cli.become(["timeout", "--signal=INT", "--preserve-status", str(arguments.duration), *command])

@@ -3,7 +3,7 @@
 import argparse
 import os
 
-from . import cli
+from . import cli, places
 
 DESCRIPTION = """\
 Feeds the inputs that a recorded session used, step by step, through the simulator, without a ROS master, compares every
@@ -51,4 +51,4 @@ def run(arguments):
         from .view_replay import view
 
         return view(arguments)
-    return cli.become(["rosrun", "vibe_sim", "vibe_replay", *arguments.words, *arguments.bags])
+    return cli.become([places.program("vibe_sim", "vibe_replay"), *arguments.words, *arguments.bags])

@@ -254,7 +254,7 @@ def run(arguments):
     if arguments.duration is None:
         arguments.duration = 0.0
         if arguments.drive == "trainee":  # a script has a length; goals take as long as they take
-            command = ["rosrun", "vibe_core", "vibe_headless", "--script", arguments.script, "--script-length"]
+            command = [places.program("vibe_core", "vibe_headless"), "--script", arguments.script, "--script-length"]
             asked = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
             if asked.returncode != 0:
                 return asked.returncode

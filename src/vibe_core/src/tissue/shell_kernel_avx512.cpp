@@ -47,11 +47,12 @@ struct ShellKernelOfPairs {
     for (int a = 0; a < 3; ++a) Single::Lanes::add(s.volume_gradient4, offset[a].lane, half);
   }
 
-  template <Law law, int kRows, bool volume>
+  template <Law law, int kRows>
   static double sweepAll(ShellSweep& s) {
     const WallTerms<Pack> terms(*s.constants, s.poisson_ratio);
     Single::Lanes::Sum energy, enclosed;
     const BatchReals* rows = s.rest;
+    const bool volume = s.volume_gradient4 != nullptr;
     int batch = s.first;
     for (; batch + 1 < s.last; batch += 2, rows += 2 * kRows) {
       const BatchOffsets* offset = s.node + batch * 6;
@@ -69,7 +70,7 @@ struct ShellKernelOfPairs {
       if constexpr (kRows == kShellGhostRows) returnGhosts(rest, f);
       scatter(s, offset, f, first);
       scatter(s, offset + 6, f, second);
-      if constexpr (volume) {
+      if (volume) {
         Pack share[3];
         const Pack cone = coneVolume(rest, u, u1, share);
         enclosed.add(first(cone)), enclosed.add(second(cone));
@@ -78,9 +79,8 @@ struct ShellKernelOfPairs {
       }
     }
     if (batch < s.last)
-      Single::sweepBatch<law, kRows, volume>(s, WallTerms<Half>(*s.constants, s.poisson_ratio), batch, rows, energy,
-                                             enclosed);
-    if constexpr (volume) s.volume += enclosed.total();
+      Single::sweepBatch<law, kRows>(s, WallTerms<Half>(*s.constants, s.poisson_ratio), batch, rows, energy, enclosed);
+    if (volume) s.volume += enclosed.total();
     return energy.total();
   }
 };

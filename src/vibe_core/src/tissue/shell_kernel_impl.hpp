@@ -43,10 +43,11 @@ struct ShellKernelOf {
   }
 
   /// @param terms  made from the sweep
-  template <Law law, int kRows, bool volume, class Sum>
+  template <Law law, int kRows, class Sum>
   [[gnu::always_inline]] static void sweepBatch(ShellSweep& s, const WallTerms<Pack>& terms, int batch,
                                                 const BatchReals* rows, Sum& energy, Sum& enclosed) {
     const BatchOffsets* offset = s.node + batch * 6;
+    const bool volume = s.volume_gradient4 != nullptr;  // no parameter of the template: a kernel compiles twice as fast
     Pack f[kParts][5][3], share[kParts][3];
     for (int part = 0; part < kParts; ++part) {
       const int lane = part * kWidth;
@@ -58,23 +59,23 @@ struct ShellKernelOf {
       if constexpr (kRows == kShellGhostRows) placeGhosts(rest, u);
       energy.add(shellEnergy<law, LawFormula<law>::kThicknessSteps, kRows>(terms, rest, shorter, u, f[part]), part);
       if constexpr (kRows == kShellGhostRows) returnGhosts(rest, f[part]);
-      if constexpr (volume) enclosed.add(coneVolume(rest, u, u1, share[part]), part);
+      if (volume) enclosed.add(coneVolume(rest, u, u1, share[part]), part);
     }
     scatter(s, offset, f);
-    if constexpr (volume)
+    if (volume)
       for (int a = 0; a < 3; ++a)
         for (int part = 0; part < kParts; ++part)
           Lanes::add(s.volume_gradient4, offset[a].lane + part * kWidth, share[part]);
   }
 
-  template <Law law, int kRows, bool volume>
+  template <Law law, int kRows>
   static double sweepAll(ShellSweep& s) {
     const WallTerms<Pack> terms(*s.constants, s.poisson_ratio);
     typename Lanes::Sum energy, enclosed;
     const BatchReals* rows = s.rest;
     for (int batch = s.first; batch < s.last; ++batch, rows += kRows)
-      sweepBatch<law, kRows, volume>(s, terms, batch, rows, energy, enclosed);
-    if constexpr (volume) s.volume += enclosed.total();
+      sweepBatch<law, kRows>(s, terms, batch, rows, energy, enclosed);
+    if (s.volume_gradient4 != nullptr) s.volume += enclosed.total();
     return energy.total();
   }
 
@@ -107,19 +108,14 @@ struct ShellKernelOf {
   }
 };
 
-/// Kernel::sweepAll() of the law and the rows of a sweep, with the volume if it is asked for.
+/// Kernel::sweepAll() of the law and the rows of a sweep.
 template <class Kernel>
 double sweepShell(ShellSweep& s) {
   return withLaw(s.law, [&](auto tag) {
     constexpr Law law = decltype(tag)::value;
-    const bool volume = s.volume_gradient4 != nullptr;
-    const auto sweep = [&](auto rows) {
-      constexpr int kRows = decltype(rows)::value;
-      return volume ? Kernel::template sweepAll<law, kRows, true>(s) : Kernel::template sweepAll<law, kRows, false>(s);
-    };
-    if (s.rows == kShellMuscleRows) return sweep(std::integral_constant<int, kShellMuscleRows>());
-    if (s.rows == kShellGhostRows) return sweep(std::integral_constant<int, kShellGhostRows>());
-    return sweep(std::integral_constant<int, kShellRows>());
+    if (s.rows == kShellMuscleRows) return Kernel::template sweepAll<law, kShellMuscleRows>(s);
+    if (s.rows == kShellGhostRows) return Kernel::template sweepAll<law, kShellGhostRows>(s);
+    return Kernel::template sweepAll<law, kShellRows>(s);
   });
 }
 

@@ -21,7 +21,7 @@ from scipy.spatial.transform import Rotation
 from scope_pose import Scope, pose
 from sensor_msgs.msg import Image, PointCloud2
 from vibe_msgs.msg import TissueTopology
-from vibe_testing.wait import PATIENCE, wait_until
+from vibe_testing.wait import wait_until
 
 TIP = numpy.array([-0.02, 0, 0])  # of the endoscope in the ball, which looks along x [m]
 LENS = TIP + (0, 0, 0.0025)  # scope_camera_mount
@@ -30,7 +30,6 @@ NEEDLE_WAY = 0.018  # of needle_driver [m]
 HELD = {"needle_slide": NEEDLE_WAY, "needle_draw": 0.0012, "needle_turn": 0.4189}  # the needle in the exchange
 PROBE_OUT = {"argon_probe": 0.010}
 FIRST_PART = 128  # label of the instrument
-TRIES = 3  # to show it
 
 
 def description():
@@ -59,14 +58,21 @@ class DeviceViewTest(unittest.TestCase):
     def picture(self, camera, way, joints):
         publishers = (self.topology, self.particles, self.tf)
         self.assertTrue(wait_until(lambda: min(p.get_num_connections() for p in publishers) > 0))
-        for _ in range(TRIES):  # particles that overtake the topology, on another connection, give no image
+        shown = set()
+
+        def drawn():
+            return [(image, labels) for image in camera.images[""] for labels in camera.labels
+                    if image.header.stamp == labels.header.stamp and image.header.stamp in shown]
+
+        def shows():
             self.show(way, joints)
-            if wait_until(lambda: any(m.header.stamp == self.clock for m in camera.images[""]), PATIENCE / TRIES):
-                break
-        image, _ = camera.last(self.clock)
-        of_stamp = lambda: [m for m in camera.labels if m.header.stamp == self.clock]
-        self.assertTrue(wait_until(of_stamp), "no labels in time")
-        labels = numpy.frombuffer(of_stamp()[0].data, numpy.uint8).reshape(image.height, image.width)
+            shown.add(self.clock)
+            return wait_until(drawn, 1)
+
+        # one state after the other, as a simulator sends them: one that overtakes the topology or the poses is not drawn
+        self.assertTrue(wait_until(shows), "no image in time; the program said: " + camera.last_words())
+        image, seen = drawn()[0]
+        labels = numpy.frombuffer(seen.data, numpy.uint8).reshape(image.height, image.width)
         return pixels_of(image), distance_from_middle(image), labels
 
     def show(self, way, joints):

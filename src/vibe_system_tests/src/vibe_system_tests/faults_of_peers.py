@@ -63,13 +63,14 @@ class Peers:
     def endure(self, name, attack):
         bench, lasting = self.bench, []
         self.victim.ping()  # its connection stays open
-        before, memory = bench.descriptors("sim_node"), bench.memory("sim_node")
-        reserved, mark, begin = bench.memory("sim_node", "VmSize"), bench.mark("sim_node"), time.monotonic()
+        memory, reserved = bench.memory("sim_node"), bench.memory("sim_node", "VmSize")
+        mark, begin = bench.mark("sim_node"), time.monotonic()
         try:
             held, told = attack(lasting)
             speed = pace(self.steps, WINDOW)
             ping = self.victim.ping()
-            open_now = bench.descriptors("sim_node") - before
+            # but for that of the ping; not since this attack began: what is left of the one before may close meanwhile
+            open_now = bench.descriptors("sim_node") - self.descriptors - 1
             grown, reserved = bench.memory("sim_node") - memory, bench.memory("sim_node", "VmSize") - reserved
         finally:
             for each in lasting:
