@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
-#include <string>
 
 #include "fuzz_input.hpp"
 #include "geometry/regions.hpp"

@@ -1,8 +1,8 @@
 // sources: src/trainee/trainee_script.cpp src/trainee/script_reader.cpp src/trainee/skill.cpp src/trainee/protocol.cpp
-// sources: src/trainee/protocol_reader.cpp src/trainee/suture_pattern.cpp src/input/step_input.cpp
+// sources: src/trainee/suture_pattern.cpp src/input/step_input.cpp
 // sources: src/geometry/organ.cpp src/suture/technique.cpp src/suture/technique_patterns.cpp
 // sources: src/suture/technique_templates.cpp src/scene/yaml_source.cpp src/scene/yaml_guard.cpp src/scene/unit.cpp
-// sources: src/scene/words.cpp src/scene/odd_characters.cpp src/files/foreign_content.cpp
+// sources: src/scene/words.cpp src/files/foreign_content.cpp
 // sources: src/arithmetic/elementary_*.cpp src/files/number_text.cpp src/arithmetic/symmetric_eigen.cpp
 // packages: yaml-cpp bullet
 #include <cmath>

@@ -37,8 +37,7 @@ void addOptions(OptionList& line, Options& o) {
       .typeName("RULE")
       .check(oneOf({"corrected", "printed"}).hidden());
   line.option("--table", o.table,
-              "instead of reading a file, measure both rules on N random patterns per technique and "
-              "number of bites")
+              "instead of reading a file, measure both rules on N random patterns per technique and number of bites")
       .typeName("[N]")
       .expected(0, 1)
       .withoutValue("500")

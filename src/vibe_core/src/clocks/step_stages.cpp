@@ -1,29 +1,12 @@
 #include "vibe_core/clocks/step_stages.hpp"
 
 #include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/program/word_of.hpp"
 
 namespace vibe {
 
 const char* toString(StepStage stage) {
-  switch (stage) {
-    case StepStage::Loads:
-      return "loads";
-    case StepStage::Factor:
-      return "factor";
-    case StepStage::Energy:
-      return "energy";
-    case StepStage::Inverse:
-      return "inverse";
-    case StepStage::Rows:
-      return "rows";
-    case StepStage::Paths:
-      return "paths";
-    case StepStage::Walls:
-      return "walls";
-    case StepStage::Other:
-      return "other";
-  }
-  return "";
+  return wordOf(stage, {"loads", "factor", "energy", "inverse", "rows", "paths", "walls", "other"}, "");
 }
 
 void StageClock::start() {

@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "geometry/triangle_distance.hpp"
+
 namespace vibe {
 
 namespace {
@@ -55,10 +57,8 @@ std::array<int, 2> EditableMesh::trianglesOf(int a, int b) const {
 }
 
 bool EditableMesh::isEdge(int a, int b) const {
-  return std::any_of(around_[a].begin(), around_[a].end(), [&](int number) {
-    const auto& t = triangles_[number];
-    return t[0] == b || t[1] == b || t[2] == b;
-  });
+  return std::any_of(around_[a].begin(), around_[a].end(),
+                     [&](int number) { return hasVertex(triangles_[number], b); });
 }
 
 std::array<int, 2> EditableMesh::wings(int a, int b) const {
@@ -114,7 +114,7 @@ int EditableMesh::split(int a, int b, const Eigen::Vector3d& position) {
 bool EditableMesh::staysUpright(int moved, int other, const Eigen::Vector3d& position, double longest) const {
   for (const int number : around_[moved]) {
     const auto& t = triangles_[number];
-    if (t[0] == other || t[1] == other || t[2] == other) continue;  // this triangle vanishes
+    if (hasVertex(t, other)) continue;  // this triangle vanishes
     std::array<Eigen::Vector3d, 3> corner;
     for (int k = 0; k < 3; ++k) {
       corner[k] = t[k] == moved ? position : positions_[t[k]];

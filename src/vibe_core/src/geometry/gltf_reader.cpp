@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <string>
 #include <string_view>
@@ -243,7 +241,8 @@ class GltfReader {
     const std::uint64_t view_index = wholeOf(place, "bufferView", where);
     const Json& view = item("bufferViews", view_index);
     const std::string name = nameOf("bufferViews", view_index);
-    const std::uint64_t size = gltfComponent(component, where).size;
+    const GltfComponent stored = gltfComponent(component, where);
+    const std::uint64_t size = stored.size;
     const std::uint64_t stride = wholeOf(view, "byteStride", name, static_cast<std::int64_t>(size * width));
     const std::uint64_t offset = wholeOf(place, "byteOffset", where, 0);
     const std::string_view bytes = bytesOf(view, name);
@@ -256,7 +255,7 @@ class GltfReader {
     values.reserve(count * width);
     for (std::uint64_t k = 0; k < count; ++k)
       for (std::uint64_t c = 0; c < width; ++c)
-        values.push_back(gltfNumber(bytes.data() + offset + k * stride + c * size, component));
+        values.push_back(stored.read(bytes.data() + offset + k * stride + c * size));
     return values;
   }
 

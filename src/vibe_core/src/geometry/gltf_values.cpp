@@ -4,18 +4,24 @@
 #include <cmath>
 #include <cstring>
 
+#include "geometry/text_lines.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe {
 
 namespace {
 
-template <class T>
-double littleEndian(const char* bytes) {
-  T value;
-  std::memcpy(&value, bytes, sizeof value);  // like the supported processors
-  return static_cast<double>(value);
-}
+struct ComponentRow {
+  std::uint64_t type;  // in the standard
+  GltfComponent component;
+};
+
+constexpr std::array<ComponentRow, 6> kComponents{{{5120, {1, 127, littleEndian<std::int8_t>}},
+                                                   {5121, {1, 255, littleEndian<std::uint8_t>}},
+                                                   {5122, {2, 32767, littleEndian<std::int16_t>}},
+                                                   {5123, {2, 65535, littleEndian<std::uint16_t>}},
+                                                   {5125, {4, 4294967295.0, littleEndian<std::uint32_t>}},
+                                                   {5126, {4, 1, littleEndian<float>}}}};
 
 std::uint32_t gltfWord(const std::string& content, std::size_t at) {
   std::uint32_t value = 0;
@@ -69,39 +75,9 @@ std::vector<double> numbersIn(const Json& object, const char* key, std::size_t c
 }
 
 GltfComponent gltfComponent(std::uint64_t type, const std::string& where) {
-  switch (type) {
-    case 5120:
-      return {1, 127};
-    case 5121:
-      return {1, 255};
-    case 5122:
-      return {2, 32767};
-    case 5123:
-      return {2, 65535};
-    case 5125:
-      return {4, 4294967295.0};
-    case 5126:
-      return {4, 1};
-    default:
-      failGltf(where + " has the componentType " + std::to_string(type) + ", which glTF 2.0 does not have");
-  }
-}
-
-double gltfNumber(const char* bytes, std::uint64_t type) {
-  switch (type) {
-    case 5120:
-      return littleEndian<std::int8_t>(bytes);
-    case 5121:
-      return littleEndian<std::uint8_t>(bytes);
-    case 5122:
-      return littleEndian<std::int16_t>(bytes);
-    case 5123:
-      return littleEndian<std::uint16_t>(bytes);
-    case 5125:
-      return littleEndian<std::uint32_t>(bytes);
-    default:
-      return littleEndian<float>(bytes);
-  }
+  for (const ComponentRow& row : kComponents)
+    if (row.type == type) return row.component;
+  failGltf(where + " has the componentType " + std::to_string(type) + ", which glTF 2.0 does not have");
 }
 
 std::string decodeBase64(std::string_view text, const std::string& where) {

@@ -30,12 +30,11 @@ std::vector<double> numbersIn(const Json& object, const char* key, std::size_t c
 struct GltfComponent {
   std::size_t size;  ///< [byte]
   double scale;      ///< of a normalised value: it stands for 1
+  double (*read)(const char* bytes);
 };
 
 /// By its number in the standard.
 GltfComponent gltfComponent(std::uint64_t type, const std::string& where);
-/// Of such a component in little-endian bytes.
-double gltfNumber(const char* bytes, std::uint64_t type);
 
 std::string decodeBase64(std::string_view text, const std::string& where);
 /// "my%20file.bin" -> "my file.bin"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -31,9 +30,7 @@ constexpr std::uintmax_t kLargestFile = 1U << 30;    // bytes
 constexpr std::size_t kLongestBeginning = 1U << 14;  // bytes in which comments are looked for
 
 std::string typeOf(const std::string& path) {
-  std::string type = fs::path(path).extension().string();
-  std::transform(type.begin(), type.end(), type.begin(), [](unsigned char c) { return std::tolower(c); });
-  return type;
+  return lowered(fs::path(path).extension().string());
 }
 
 /// The content of a file.

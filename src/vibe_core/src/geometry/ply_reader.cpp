@@ -19,17 +19,17 @@ namespace {
 struct PlyType {
   std::string_view name, other_name;
   std::size_t size;  // bytes
-  char kind;         // 'i' with sign, 'u' without, 'f'
+  double (*read)(const char* bytes);
 };
 
-constexpr std::array<PlyType, 8> kPlyTypes{{{"char", "int8", 1, 'i'},
-                                            {"uchar", "uint8", 1, 'u'},
-                                            {"short", "int16", 2, 'i'},
-                                            {"ushort", "uint16", 2, 'u'},
-                                            {"int", "int32", 4, 'i'},
-                                            {"uint", "uint32", 4, 'u'},
-                                            {"float", "float32", 4, 'f'},
-                                            {"double", "float64", 8, 'f'}}};
+constexpr std::array<PlyType, 8> kPlyTypes{{{"char", "int8", 1, littleEndian<std::int8_t>},
+                                            {"uchar", "uint8", 1, littleEndian<std::uint8_t>},
+                                            {"short", "int16", 2, littleEndian<std::int16_t>},
+                                            {"ushort", "uint16", 2, littleEndian<std::uint16_t>},
+                                            {"int", "int32", 4, littleEndian<std::int32_t>},
+                                            {"uint", "uint32", 4, littleEndian<std::uint32_t>},
+                                            {"float", "float32", 4, littleEndian<float>},
+                                            {"double", "float64", 8, littleEndian<double>}}};
 
 struct PlyProperty {
   std::string name;
@@ -77,7 +77,8 @@ void takePlyProperty(const std::vector<std::string_view>& words, int line, PlyHe
   if (words.size() == 5 && words[1] == "list") {
     property.count = plyType(words[2], line);
     property.type = plyType(words[3], line);
-    if (property.count->kind == 'f') failPly(line, "counts the items of a list with a " + std::string(words[2]));
+    if (property.count->name == "float" || property.count->name == "double")
+      failPly(line, "counts the items of a list with a " + std::string(words[2]));
   } else if (words.size() == 3) {
     property.type = plyType(words[1], line);
   } else {
@@ -212,23 +213,13 @@ class PlyValues {
     return *value;
   }
 
-  template <class T>
-  static double as(const char* bytes) {
-    T value;
-    std::memcpy(&value, bytes, sizeof value);
-    return static_cast<double>(value);
-  }
-
   double nextBytes(const PlyType& type) {
     if (data_.size() - at_ < type.size) failEnd();
     char bytes[8];
     std::memcpy(bytes, data_.data() + at_, type.size);
     at_ += type.size;
     if (format_ == PlyFormat::BigEndian) std::reverse(bytes, bytes + type.size);  // supported processors: little endian
-    if (type.kind == 'f') return type.size == 4 ? as<float>(bytes) : as<double>(bytes);
-    if (type.size == 1) return type.kind == 'i' ? as<std::int8_t>(bytes) : as<std::uint8_t>(bytes);
-    if (type.size == 2) return type.kind == 'i' ? as<std::int16_t>(bytes) : as<std::uint16_t>(bytes);
-    return type.kind == 'i' ? as<std::int32_t>(bytes) : as<std::uint32_t>(bytes);
+    return type.read(bytes);
   }
 
   std::string_view data_;

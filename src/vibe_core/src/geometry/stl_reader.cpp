@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -29,8 +27,7 @@ class StlWords {
       words_ = wordsOf(lines_.line());
       at_ = 0;
     }
-    std::string word(words_[at_++]);
-    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string word = lowered(words_[at_++]);
     return word == "end" && at_ < words_.size() ? word + next() : word;  // some programs write "end loop"
   }
 
@@ -128,9 +125,7 @@ bool isStlText(const std::string& content) {
   std::vector<std::string_view> words;
   while (words.empty() && lines.next()) words = wordsOf(lines.line());
   if (words.empty() || beginning.find('\0') != std::string_view::npos) return false;
-  std::string word(words[0]);
-  std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
-  return word == "solid";
+  return lowered(words[0]) == "solid";
 }
 
 }  // namespace

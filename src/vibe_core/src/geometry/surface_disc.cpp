@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "arithmetic/elementary.hpp"
+#include "geometry/triangle_distance.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe {
@@ -78,8 +79,7 @@ std::array<double, 3> hatIntegrals(const Corners& corner, const Eigen::Vector3d&
 }
 
 bool shareAnEdge(const std::array<int, 3>& a, const std::array<int, 3>& b) {
-  const auto isOfA = [&](int v) { return v == a[0] || v == a[1] || v == a[2]; };
-  return std::count_if(b.begin(), b.end(), isOfA) >= 2;
+  return std::count_if(b.begin(), b.end(), [&](int v) { return hasVertex(a, v); }) >= 2;
 }
 
 // Triangles with a point within the radius, each reached from the first over edges.

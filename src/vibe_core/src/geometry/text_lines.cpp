@@ -1,5 +1,6 @@
 #include "geometry/text_lines.hpp"
 
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +14,12 @@ constexpr std::string_view kBlanks = " \t\v\f";
 constexpr std::size_t kLongestShown = 30;
 
 }  // namespace
+
+std::string lowered(std::string_view word) {
+  std::string text(word);
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
 
 std::vector<std::string_view> wordsOf(std::string_view line) {
   std::vector<std::string_view> words;

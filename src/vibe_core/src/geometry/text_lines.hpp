@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <cstring>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,6 +33,17 @@ class TextLines {
   std::size_t place_ = 0;
   int number_ = 0;
 };
+
+/// In small letters of ASCII.
+std::string lowered(std::string_view word);
+
+/// A number of a binary file, from bytes in little-endian order like that of the supported processors.
+template <class Number>
+double littleEndian(const char* bytes) {
+  Number value;
+  std::memcpy(&value, bytes, sizeof value);
+  return static_cast<double>(value);
+}
 
 /// The words of a line between blanks and tabs.
 std::vector<std::string_view> wordsOf(std::string_view line);

@@ -9,6 +9,8 @@
 
 #include <Eigen/Geometry>
 
+#include "geometry/triangle_distance.hpp"
+
 namespace vibe {
 
 namespace {
@@ -202,10 +204,6 @@ double orientation(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eig
   return (b - a).cross(c - a).dot(d - a);
 }
 
-bool has(const Triangle& t, int v) {
-  return t[0] == v || t[1] == v || t[2] == v;
-}
-
 /// Whether the open segment p, q passes through the inside of the triangle.
 bool pierces(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
              const Eigen::Vector3d& c) {
@@ -219,7 +217,7 @@ bool pierces(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Ve
 bool edgesPierce(const SurfaceMesh& mesh, const Triangle& first, const Triangle& second) {
   for (int k = 0; k < 3; ++k) {
     const int p = first[k], q = first[(k + 1) % 3];
-    if (has(second, p) || has(second, q)) continue;
+    if (hasVertex(second, p) || hasVertex(second, q)) continue;
     if (pierces(mesh.vertices[p], mesh.vertices[q], mesh.vertices[second[0]], mesh.vertices[second[1]],
                 mesh.vertices[second[2]])) {
       return true;
@@ -235,7 +233,7 @@ std::pair<int, int> findSelfIntersection(const TriangleTree& tree) {
   std::pair<int, int> found(-1, -1);
   tree.overlappingPairs([&](int a, int b) {
     const Triangle &first = mesh.triangles[a], &second = mesh.triangles[b];
-    const auto shared = std::count_if(first.begin(), first.end(), [&](int v) { return has(second, v); });
+    const auto shared = std::count_if(first.begin(), first.end(), [&](int v) { return hasVertex(second, v); });
     if (shared >= 2) return true;  // neighbours at an edge meet only there, unless folded flat
     if (!edgesPierce(mesh, first, second) && !edgesPierce(mesh, second, first)) return true;
     found = {a, b};

@@ -45,24 +45,14 @@ double reachOfPath(const SurfaceView& wall, const Eigen::Vector3d& begin, const 
   return std::sqrt(min);
 }
 
-// A bit for each side of a box beyond which a point lies: a triangle all of whose corners share one is outside.
-std::vector<std::uint8_t> sidesBeyond(const SurfaceView& wall, const Eigen::AlignedBox3d& box) {
-  const Eigen::Vector3d &low = box.min(), &high = box.max();
-  std::vector<std::uint8_t> sides(wall.x.size());
-  for (std::size_t v = 0; v < sides.size(); ++v)
-    sides[v] = static_cast<std::uint8_t>((wall.x[v] < low.x()) | (wall.x[v] > high.x()) << 1 |
-                                         (wall.y[v] < low.y()) << 2 | (wall.y[v] > high.y()) << 3 |
-                                         (wall.z[v] < low.z()) << 4 | (wall.z[v] > high.z()) << 5);
-  return sides;
-}
-
 // Those that may be the nearest of a point of the path, or touch such a triangle where it is nearest.
 std::vector<Candidate> trianglesNear(const SurfaceView& wall, const Eigen::Vector3d& begin,
                                      const Eigen::Vector3d& end) {
   const double reach = reachOfPath(wall, begin, end) + kTouching;
   const Eigen::AlignedBox3d box(begin.cwiseMin(end).array() - reach - kTouching,
                                 begin.cwiseMax(end).array() + reach + kTouching);
-  const std::vector<std::uint8_t> sides = sidesBeyond(wall, box);
+  std::vector<std::uint8_t> sides(wall.x.size());
+  for (std::size_t v = 0; v < sides.size(); ++v) sides[v] = sidesBeyond(box, wall.position(static_cast<int>(v)));
   std::vector<Candidate> near;
   for (int t = 0; t < static_cast<int>(wall.triangles.size()); ++t) {
     const auto& v = wall.triangles[t];

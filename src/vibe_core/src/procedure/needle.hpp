@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -31,6 +32,13 @@ DeepestPoint deepestPoint(const SurfaceView& wall, const Eigen::Vector3d& begin,
 /// @return begin and end
 std::pair<Eigen::Vector3d, Eigen::Vector3d> needlePath(const Model& model,
                                                        const std::vector<Eigen::Isometry3d>& link_poses);
+
+/// A bit for each side of a box beyond which a point lies: a triangle all of whose corners share one is outside.
+inline std::uint8_t sidesBeyond(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d &low = box.min(), &high = box.max();
+  return static_cast<std::uint8_t>((p.x() < low.x()) | (p.x() > high.x()) << 1 | (p.y() < low.y()) << 2 |
+                                   (p.y() > high.y()) << 3 | (p.z() < low.z()) << 4 | (p.z() > high.z()) << 5);
+}
 
 /// How far the needle reaches into the deformed wall.
 struct NeedleReach {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "procedure/needle.hpp"
 #include "procedure/procedure.hpp"
@@ -27,12 +28,6 @@ void lengthenToTissue(const State& state, Suture& suture) {
     const double distance = (placeOf(suture.bites[k + 1], state) - placeOf(suture.bites[k], state)).norm();
     suture.length[k] = std::max(suture.length[k], distance);
   }
-}
-
-double sum(const std::vector<double>& values) {
-  double all = 0;
-  for (double value : values) all += value;
-  return all;
 }
 
 // The thread of the set no longer pulls. If the set was being cinched, the device takes a new thread.
@@ -167,7 +162,7 @@ void updateThreads(const Model& model, State& state, EventLog log) {
   if (Suture* active = activeSuture(procedure)) {
     const bool open = active->stage == Suture::Stage::Open;
     if (open || active->stage == Suture::Stage::Tagged) lengthenToTissue(state, *active);
-    if (open) procedure.thread_used = sum(active->length);
+    if (open) procedure.thread_used = std::accumulate(active->length.begin(), active->length.end(), 0.0);
   }
   for (int number = 0; number < static_cast<int>(procedure.sutures.size()); ++number) {
     if (!procedure.sutures[number].pulls()) continue;

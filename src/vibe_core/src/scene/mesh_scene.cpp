@@ -8,7 +8,6 @@
 
 #include <Eigen/Geometry>
 
-#include "arithmetic/elementary.hpp"
 #include "arithmetic/turn.hpp"
 #include "geometry/regions.hpp"
 #include "geometry/remesh.hpp"

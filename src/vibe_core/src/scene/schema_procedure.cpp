@@ -122,8 +122,7 @@ std::vector<SchemaRow> probeRows() {
        "half angle at which the footprint widens with distance", kChoice},
       {"marking.deformation", [](Scene& s) -> std::string& { return s.marking->deformation; }, "", 0, 0,
        "how the wall deforms while the pedal is down: `solver` keeps the tissue model; `gradient` makes the wall give "
-       "way "
-       "to the tool in the gradient domain, without forces, as in the ViBE prototype",
+       "way to the tool in the gradient domain, without forces, as in the ViBE prototype",
        "the shell is more accurate at the same rate"},
   };
 }

@@ -11,8 +11,7 @@ constexpr auto kMesh = GeometryScene::Kind::Mesh;
 constexpr auto kSphere = GeometryScene::Kind::Sphere;
 constexpr const char* kFlexural =
     "\"Flexural and torsional rigidity of colonoscopes at room and body temperatures\": 260 to 400 N cm^2 along an "
-    "Olympus "
-    "CF-140S at 24 degrees Celsius, 17 % less at 37; the middle";
+    "Olympus CF-140S at 24 degrees Celsius, 17 % less at 37; the middle";
 constexpr const char* kTorsional = "the same: 76 N cm^2 per degree at 24 degrees Celsius, 7 % less at 37";
 constexpr const char* kThickness =
     "mean of 50 specimens in \"Human tissue thickness measurements from excised sleeve gastrectomy specimens\"";
@@ -187,8 +186,7 @@ std::vector<SchemaRow> environmentRows() {
       {"breathing.amplitude", [](Scene& s) -> double& { return s.breathing->amplitude; }, "m", 0, 0.05,
        "from the end of an expiration to that of an inspiration",
        "the centre of mass of the default stomach then has a standard deviation of 5.8 mm; 2.7 to 8.8 mm in 18 "
-       "volunteers "
-       "(MRI, PMC10113698)"},
+       "volunteers (MRI, PMC10113698)"},
       {"breathing.deformation", [](Scene& s) -> double& { return s.breathing->deformation; }, "m", 0, 0.05,
        "by how much less the foundation at the pylorus moves than at the apex of the fundus", "a rigid foundation"},
       {"breathing.inspiration", [](Scene& s) -> double& { return s.breathing->inspiration; }, "1", 0.1, 0.9,
@@ -206,8 +204,7 @@ std::vector<SchemaRow> motionRows() {
       {"motion.wave_rate", [](Scene& s) -> double& { return s.motion->wave_rate; }, "1/s", 0.005, 0.2,
        "contraction waves from mid corpus to pylorus",
        "2.83 per minute, within one standard deviation of 3.0 +- 0.2 per minute (28 volunteers, MRI, same paper) and "
-       "of "
-       "a period of 23 +- 2 s (Kwiatek 2006, doi 10.1002/jmri.20738)"},
+       "of a period of 23 +- 2 s (Kwiatek 2006, doi 10.1002/jmri.20738)"},
       {"motion.wave_speed", [](Scene& s) -> double& { return s.motion->wave_speed; }, "m/s", 1e-4, 0.02,
        "of a wave in the distal antrum, the last 6 cm; it begins at mid corpus with 0.45 times that",
        "2.7 +- 0.1 mm/s in the distal antrum (Kwiatek 2006); in the proximal antrum it has then the 1.6 +- 0.2 mm/s of "

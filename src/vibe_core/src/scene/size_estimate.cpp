@@ -1,7 +1,6 @@
 #include "scene/size_estimate.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 

@@ -17,6 +17,14 @@ inline std::string printable(const std::string& text, std::size_t max_bytes) {
   return text.size() > max_bytes ? result + "..." : result;
 }
 
+/// Characters of a text outside its comments that look like others which YAML, keys, numbers and units are made of:
+/// blanks that do not break, letters of other alphabets, typographic quotes and signs; and tabs at the beginning of a
+/// line. Texts may well contain them, so they are named only where something else is wrong.
+/// @return per line, from 1, a clause about the first of them, e.g. "column 6 has a no-break space (U+00A0) in the
+/// place
+///         of ' '"
+std::map<int, std::string> oddCharacters(const std::string& text);
+
 /// Parses the text once without building anything. Rejects text that is too large, nested too deeply for a recursive
 /// parser, not YAML, or not exactly one document.
 /// @param odd_characters  of the text, see oddCharacters(); an error names that of its line or of the last line before

@@ -6,9 +6,7 @@
 #include <cstdio>
 #include <fstream>
 #include <set>
-#include <sstream>
 
-#include "scene/odd_characters.hpp"
 #include "scene/yaml_guard.hpp"
 #include "vibe_core/files/foreign_content.hpp"
 #include "vibe_core/program/error.hpp"

@@ -1,21 +1,11 @@
 #include "vibe_core/state/procedure_state.hpp"
 
+#include "vibe_core/program/word_of.hpp"
+
 namespace vibe {
 
 const char* toString(Suture::Stage stage) {
-  switch (stage) {
-    case Suture::Stage::Open:
-      return "open";
-    case Suture::Stage::Tagged:
-      return "tagged";
-    case Suture::Stage::Cinching:
-      return "cinching";
-    case Suture::Stage::Cinched:
-      return "cinched";
-    case Suture::Stage::Broken:
-      return "broken";
-  }
-  return "unknown";
+  return wordOf(stage, {"open", "tagged", "cinching", "cinched", "broken"});
 }
 
 Eigen::Vector3d restPosition(const Bite& bite, const std::vector<Eigen::Vector3d>& vertices) {
@@ -35,19 +25,7 @@ Eigen::Vector3d bitePosition(const Bite& bite, const std::vector<double>& x, con
 }
 
 const char* toString(Phase phase) {
-  switch (phase) {
-    case Phase::Inspect:
-      return "inspect";
-    case Phase::Mark:
-      return "mark";
-    case Phase::Suture:
-      return "suture";
-    case Phase::Pull:
-      return "pull";
-    case Phase::Done:
-      return "done";
-  }
-  return "unknown";
+  return wordOf(phase, {"inspect", "mark", "suture", "pull", "done"});
 }
 
 }  // namespace vibe

@@ -6,6 +6,7 @@
 
 #include "arithmetic/elementary.hpp"
 #include "suture/technique_templates.hpp"
+#include "vibe_core/program/word_of.hpp"
 
 namespace vibe {
 namespace {
@@ -158,9 +159,7 @@ TechniqueResult printedRule(const std::vector<Eigen::Vector3d>& bites) {
 }  // namespace
 
 const char* toString(Technique technique) {
-  static constexpr const char* kNames[kTechniqueCount] = {"other", "u", "z", "triangular", "square", "running", "c"};
-  const int index = static_cast<int>(technique);
-  return index < kTechniqueCount ? kNames[index] : "unknown";
+  return wordOf(technique, {"other", "u", "z", "triangular", "square", "running", "c"});
 }
 
 TechniqueResult recogniseTechnique(const std::vector<Eigen::Vector3d>& bites, TechniqueRule rule) {

@@ -1,6 +1,7 @@
 #include "vibe_core/suture/technique_patterns.hpp"
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -118,20 +119,8 @@ Flat drawRunning(Random& random, int vectors) {
 }
 
 Flat draw(Random& random, Technique technique, int vectors) {
-  switch (technique) {
-    case Technique::U:
-      return drawU(random, vectors);
-    case Technique::Z:
-      return drawZ(random, vectors);
-    case Technique::Triangular:
-      return drawTriangular(random, vectors);
-    case Technique::Square:
-      return drawSquare(random, vectors);
-    case Technique::Running:
-      return drawRunning(random, vectors);
-    default:
-      return drawC(random, vectors);
-  }
+  constexpr std::array kDrawings{drawU, drawZ, drawTriangular, drawSquare, drawRunning, drawC};
+  return kDrawings[static_cast<std::size_t>(technique) - 1](random, vectors);
 }
 
 /// Skews, stretches, rotates (except a running suture, which has a direction on the organ), reflects and centres.

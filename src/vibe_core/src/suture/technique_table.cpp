@@ -176,24 +176,14 @@ std::string confusion(const TechniqueTable& table, TechniqueRule rule, double no
 
 }  // namespace
 
-double TechniqueTable::right(bool three_way, int bite_count) const {
+double TechniqueTable::right(bool three_way, std::optional<int> bite_count) const {
   double right = 0, all = 0;
-  const auto& cell = count[bite_count - kTableMinBites];
-  for (int from = 0; from < kTechniqueCount; ++from)
-    for (int to = 0; to < kTechniqueCount; ++to) {
-      all += cell[from][to];
-      if (sameAnswer(from, to, three_way)) right += cell[from][to];
-    }
-  return all > 0 ? right / all : 0;
-}
-
-double TechniqueTable::right(bool three_way) const {
-  double right = 0, all = 0;
-  for (const auto& cell : count)
+  for (int n = bite_count.value_or(kTableMinBites); n <= bite_count.value_or(kTableMaxBites); ++n)
     for (int from = 0; from < kTechniqueCount; ++from)
       for (int to = 0; to < kTechniqueCount; ++to) {
-        all += cell[from][to];
-        if (sameAnswer(from, to, three_way)) right += cell[from][to];
+        const double answers = count[n - kTableMinBites][from][to];
+        all += answers;
+        if (sameAnswer(from, to, three_way)) right += answers;
       }
   return all > 0 ? right / all : 0;
 }

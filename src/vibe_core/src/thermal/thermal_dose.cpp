@@ -1,12 +1,12 @@
 #include "vibe_core/thermal/thermal_dose.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "arithmetic/elementary.hpp"
 #include "vibe_core/program/error.hpp"
+#include "vibe_core/program/word_of.hpp"
 
 namespace vibe {
 
@@ -30,17 +30,7 @@ double heldTime(double rate, double dt) {
 }  // namespace
 
 const char* toString(BurnGrade grade) {
-  switch (grade) {
-    case BurnGrade::None:
-      return "none";
-    case BurnGrade::Mark:
-      return "mark";
-    case BurnGrade::Burn:
-      return "burn";
-    case BurnGrade::Deep:
-      return "deep";
-  }
-  return "unknown";
+  return wordOf(grade, {"none", "mark", "burn", "deep"});
 }
 
 ThermalDose::ThermalDose(const ApcParameters& parameters) : parameters_(parameters) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "trainee/ik_solution.hpp"
 #include "trainee/operator.hpp"

@@ -8,7 +8,6 @@
 #include "arithmetic/turn.hpp"
 #include "trainee/ik_solution.hpp"
 #include "trainee/picture.hpp"
-#include "trainee/room.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe {

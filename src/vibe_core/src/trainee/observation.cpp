@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "procedure/suturing.hpp"
+#include "vibe_core/procedure/stitch.hpp"
 
 namespace vibe {
 

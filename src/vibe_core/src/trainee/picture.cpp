@@ -13,8 +13,10 @@
 
 #include "arithmetic/elementary.hpp"
 #include "procedure/needle.hpp"
+#include "tool_contact/surface_contacts.hpp"
+#include "tool_contact/tool_approach.hpp"
+#include "tool_contact/tool_collision.hpp"
 #include "trainee/ik_solution.hpp"
-#include "trainee/room.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe {
@@ -40,13 +42,6 @@ Path pathOfNeedle(const Model& model, const TraineeHand::Joints& joints, const E
   const auto [begin, end] = needlePath(model, poses);
   const Eigen::Isometry3d from_tip = poses[model.tip_link].inverse();
   return {tip + turn * (from_tip * begin), tip + turn * (from_tip * end)};
-}
-
-// A bit for each side of a box beyond which a point lies.
-std::uint8_t sidesBeyond(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& p) {
-  const Eigen::Vector3d &low = box.min(), &high = box.max();
-  return static_cast<std::uint8_t>((p.x() < low.x()) | (p.x() > high.x()) << 1 | (p.y() < low.y()) << 2 |
-                                   (p.y() > high.y()) << 3 | (p.z() < low.z()) << 4 | (p.z() > high.z()) << 5);
 }
 
 // All triangles but those with three corners beyond one side of a box.
@@ -245,6 +240,26 @@ TraineeHand::Joints bestView(const Eigen::Vector3d& place, const Eigen::Vector3d
   for (std::size_t k = 0; k < ways.size() && (k < kTilts || !choice.hasRoom()); ++k) choice.along(ways[k]);
   if (!choice.hasRoom()) choice.rolls();
   return choice.best();
+}
+
+// Each particle in the tool counts with its part of the wall and its depth.
+double overlapWithWall(const Model& model, const std::vector<Eigen::Vector3d>& wall, const TraineeHand::Joints& joints,
+                       const std::function<bool(int)>& may_touch) {
+  std::vector<Eigen::Isometry3d> poses;
+  model.tool->forwardKinematics(joints, poses);
+  for (Eigen::Isometry3d& pose : poses) pose = model.tool_base * pose;
+  std::vector<double> x, y, z;
+  for (const Eigen::Vector3d& p : wall) x.push_back(p.x()), y.push_back(p.y()), z.push_back(p.z());
+  ToolCollision collision(*model.tool);
+  collision.findCandidates(poses, x.data(), y.data(), z.data(), static_cast<int>(wall.size()), 0);
+  const std::vector<char> passable = passableVertices(model.organ), on_tip = shapesOnTip(*model.tool);
+  double sum = 0;
+  forEachDeepest(collision.findContacts(poses, x.data(), y.data(), z.data(), 0), [&](const Contact& contact) {
+    if (passable[contact.particle] != 0) return;
+    if (on_tip[contact.shape] != 0 && may_touch && may_touch(contact.particle)) return;
+    sum -= contact.distance * model.area[contact.particle];
+  });
+  return sum;
 }
 
 }  // namespace vibe

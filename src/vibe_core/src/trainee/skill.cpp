@@ -58,16 +58,10 @@ Skill between(const Skill& first, const Skill& second, double part) {
   const auto mix = [part](double a, double b) { return (1 - part) * a + part * b; };
   Skill skill = part < 0.5 ? first : second;
   skill.name = part <= 0 ? first.name : part >= 1 ? second.name : first.name + " to " + second.name;
-  skill.pace = mix(first.pace, second.pace);
-  skill.look_time = mix(first.look_time, second.look_time);
-  skill.foresight = mix(first.foresight, second.foresight);
-  skill.reaction_time = mix(first.reaction_time, second.reaction_time);
-  skill.aim_error = mix(first.aim_error, second.aim_error);
-  skill.force_limit = mix(first.force_limit, second.force_limit);
-  skill.turns = mix(first.turns, second.turns);
-  skill.drawn = mix(first.drawn, second.drawn);
+  for (double Skill::*value : {&Skill::pace, &Skill::look_time, &Skill::foresight, &Skill::reaction_time,
+                               &Skill::aim_error, &Skill::force_limit, &Skill::turns, &Skill::drawn, &Skill::tightness})
+    skill.*value = mix(first.*value, second.*value);
   skill.attempts = static_cast<int>(std::lround(mix(first.attempts, second.attempts)));
-  skill.tightness = mix(first.tightness, second.tightness);
   skill.tremor.scale = mix(first.tremor.scale, second.tremor.scale);
   return skill;
 }

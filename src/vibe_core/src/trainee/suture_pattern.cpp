@@ -1,6 +1,5 @@
 #include "vibe_core/trainee/suture_pattern.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 

@@ -1,6 +1,5 @@
 // Where the bites of a set lie, and how it is sewn.
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "trainee/operator.hpp"

@@ -4,8 +4,6 @@
 #include <limits>
 
 #include "trainee/operator.hpp"
-#include "trainee/script_reader.hpp"
-#include "vibe_core/scene/yaml_source.hpp"
 
 namespace vibe {
 
@@ -67,23 +65,6 @@ const std::string& Timeline::phase(double time) const {
   const auto next = std::upper_bound(phases_.begin(), phases_.end(), time,
                                      [](double t, const Phase& phase) { return t < phase.time; });
   return next == phases_.begin() ? none : (next - 1)->name;
-}
-
-namespace {
-
-/// Room for the maximum number of actions that the reader accepts.
-constexpr YamlLimits kScriptLimits{16u << 20, 32};
-
-}  // namespace
-
-TraineeScript TraineeScript::load(const std::string& file) {
-  const YamlSource source = YamlSource::load(file, kScriptLimits);
-  return ScriptReader(source).read();
-}
-
-TraineeScript TraineeScript::parse(const std::string& yaml, const std::string& place) {
-  const YamlSource source = YamlSource::parse(yaml, place, kScriptLimits);
-  return ScriptReader(source).read();
 }
 
 StepInput TraineeScript::at(double time) const {

@@ -1,11 +1,8 @@
 // Whether the scope has room, and how it comes another way where it has none.
-#include "trainee/room.hpp"
-
 #include <gtest/gtest.h>
 
 #include "onlooker.hpp"
 #include "trainee/bite_plan.hpp"
-#include "trainee/ik_solution.hpp"
 #include "trainee/picture.hpp"
 
 namespace vibe::room_test {

@@ -1,4 +1,4 @@
-#include "trainee/script_reader.hpp"
+#include "vibe_core/trainee/trainee_script.hpp"
 
 #include <gtest/gtest.h>
 

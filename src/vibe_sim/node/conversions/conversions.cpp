@@ -3,19 +3,6 @@
 #include <algorithm>
 
 namespace vibe::sim {
-namespace {
-
-geometry_msgs::Quaternion toQuaternion(const Eigen::Quaterniond& q) {
-  geometry_msgs::Quaternion message;
-  message.x = q.x();
-  message.y = q.y();
-  message.z = q.z();
-  message.w = q.w();
-  return message;
-}
-
-}  // namespace
-
 ros::Time toRosTime(std::int64_t nanoseconds) {
   ros::Time time;
   time.fromNSec(static_cast<std::uint64_t>(std::max<std::int64_t>(nanoseconds, 0)));
@@ -26,10 +13,17 @@ std::int64_t fromRosTime(const ros::Time& time) {
   return static_cast<std::int64_t>(time.toNSec());
 }
 
+geometry_msgs::Quaternion toQuaternion(const Eigen::Quaterniond& q) {
+  geometry_msgs::Quaternion message;
+  message.x = q.x();
+  message.y = q.y();
+  message.z = q.z();
+  message.w = q.w();
+  return message;
+}
+
 geometry_msgs::PoseStamped makePose(const Eigen::Isometry3d& pose, const std::string& frame, std::int64_t stamp) {
-  geometry_msgs::PoseStamped message;
-  message.header.stamp = toRosTime(stamp);
-  message.header.frame_id = frame;
+  auto message = stamped<geometry_msgs::PoseStamped>(stamp, frame);
   message.pose.position = toMessage<geometry_msgs::Point>(pose.translation());
   message.pose.orientation = toQuaternion(Eigen::Quaterniond(pose.linear()));
   return message;
@@ -37,9 +31,7 @@ geometry_msgs::PoseStamped makePose(const Eigen::Isometry3d& pose, const std::st
 
 geometry_msgs::TransformStamped makeTransform(const Eigen::Isometry3d& pose, const std::string& parent,
                                               const std::string& child, std::int64_t stamp) {
-  geometry_msgs::TransformStamped message;
-  message.header.stamp = toRosTime(stamp);
-  message.header.frame_id = parent;
+  auto message = stamped<geometry_msgs::TransformStamped>(stamp, parent);
   message.child_frame_id = child;
   message.transform.translation = toMessage<geometry_msgs::Vector3>(pose.translation());
   message.transform.rotation = toQuaternion(Eigen::Quaterniond(pose.linear()));

@@ -43,6 +43,16 @@ Message toMessage(const Eigen::Vector3d& v) {
 ros::Time toRosTime(std::int64_t nanoseconds);
 std::int64_t fromRosTime(const ros::Time& time);
 
+/// An empty message with a header.
+template <typename Message>
+Message stamped(std::int64_t stamp, const std::string& frame = "") {
+  Message message;
+  message.header.stamp = toRosTime(stamp);
+  message.header.frame_id = frame;
+  return message;
+}
+
+geometry_msgs::Quaternion toQuaternion(const Eigen::Quaterniond& q);
 geometry_msgs::PoseStamped makePose(const Eigen::Isometry3d& pose, const std::string& frame, std::int64_t stamp);
 geometry_msgs::TransformStamped makeTransform(const Eigen::Isometry3d& pose, const std::string& parent,
                                               const std::string& child, std::int64_t stamp);

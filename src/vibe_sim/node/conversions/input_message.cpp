@@ -45,9 +45,7 @@ JointRange jointsOf(InputChannel channel) {
 }
 
 sensor_msgs::JointState makeJoints(const JointArray& joints, JointRange range, std::int64_t stamp) {
-  sensor_msgs::JointState message;
-  message.header.stamp = toRosTime(stamp);
-  message.header.frame_id = kScopeBaseFrame;
+  auto message = stamped<sensor_msgs::JointState>(stamp, kScopeBaseFrame);
   for (int i = range.first; i < range.first + range.count; ++i) {
     message.name.emplace_back(kJointNames[i]);
     message.position.push_back(joints[i]);
@@ -172,24 +170,14 @@ InputSample readPull(const vibe_msgs::TissuePull& message) {
   return sample;
 }
 
-sensor_msgs::JointState makeScopeJoints(const StepInput& input, std::int64_t stamp) {
-  return makeJoints(input.joints, jointsOf(InputChannel::Scope), stamp);
-}
-
-sensor_msgs::JointState makeSuturingDeviceJoints(const StepInput& input, std::int64_t stamp) {
-  return makeJoints(input.joints, jointsOf(InputChannel::SuturingDevice), stamp);
-}
-
 sensor_msgs::Joy makeButtons(const StepInput& input, std::int64_t stamp) {
-  sensor_msgs::Joy message;
-  message.header.stamp = toRosTime(stamp);
+  auto message = stamped<sensor_msgs::Joy>(stamp);
   message.buttons.assign(input.buttons.begin(), input.buttons.end());
   return message;
 }
 
 vibe_msgs::StepInput makeStepInput(const StepInput& input, std::int64_t step, std::int64_t stamp) {
-  vibe_msgs::StepInput message;
-  message.header.stamp = toRosTime(stamp);
+  auto message = stamped<vibe_msgs::StepInput>(stamp);
   message.step = static_cast<std::uint64_t>(step);
   message.version = kStepInputVersion;
   std::copy(input.joints.begin(), input.joints.end(), message.joints.begin());
@@ -200,20 +188,8 @@ vibe_msgs::StepInput makeStepInput(const StepInput& input, std::int64_t step, st
   return message;
 }
 
-StepInput readStepInput(const vibe_msgs::StepInput& message) {
-  StepInput input;
-  std::copy(message.joints.begin(), message.joints.end(), input.joints.begin());
-  std::copy(message.buttons.begin(), message.buttons.end(), input.buttons.begin());
-  input.pull_particle = message.pull_particle;
-  input.pull_target = {message.pull_target.x, message.pull_target.y, message.pull_target.z};
-  input.breath = message.breath == 0 ? Breath::Free : Breath::Held;
-  return input;
-}
-
 vibe_msgs::TissuePullState makePullState(const State& state, std::int64_t stamp) {
-  vibe_msgs::TissuePullState message;
-  message.header.stamp = toRosTime(stamp);
-  message.header.frame_id = kWorldFrame;
+  auto message = stamped<vibe_msgs::TissuePullState>(stamp, kWorldFrame);
   message.particle = state.pull.particle;
   message.position = toMessage<geometry_msgs::Point>(heldPosition(state));
   message.target = toMessage<geometry_msgs::Point>(state.pull.target);

@@ -54,14 +54,10 @@ InputSample readTipVelocity(const geometry_msgs::TwistStamped& message);
 /// @throws Error with one sentence if the message cannot be used
 InputSample readPull(const vibe_msgs::TissuePull& message);
 
-sensor_msgs::JointState makeScopeJoints(const StepInput& input, std::int64_t stamp);
-sensor_msgs::JointState makeSuturingDeviceJoints(const StepInput& input, std::int64_t stamp);
 sensor_msgs::Joy makeButtons(const StepInput& input, std::int64_t stamp);
 
 /// Without run and hashes.
 vibe_msgs::StepInput makeStepInput(const StepInput& input, std::int64_t step, std::int64_t stamp);
-/// What a recorded step used, bit for bit.
-StepInput readStepInput(const vibe_msgs::StepInput& message);
 
 /// The pull spring after a step. Without a pull the particle is -1 and everything else is 0.
 vibe_msgs::TissuePullState makePullState(const State& state, std::int64_t stamp);

@@ -173,8 +173,7 @@ void addSkill(const SkillMetrics& skill, vibe_msgs::SkillMetrics& message) {
 }  // namespace
 
 vibe_msgs::ProcedureEvent makeEvent(const Event& event, std::int64_t stamp) {
-  vibe_msgs::ProcedureEvent message;
-  message.header.stamp = toRosTime(stamp);
+  auto message = stamped<vibe_msgs::ProcedureEvent>(stamp);
   message.kind = static_cast<std::uint8_t>(event.kind);
   message.particle = event.particle;
   message.value = event.value;
@@ -197,8 +196,7 @@ const char* toolStateOf(const State& state, const StepInput& input) {
 }
 
 vibe_msgs::ProcedureState makeProcedureState(const TimedSimulation& simulation, const RunStatus& status) {
-  vibe_msgs::ProcedureState message;
-  message.header.stamp = toRosTime(simulation.now());
+  auto message = stamped<vibe_msgs::ProcedureState>(simulation.now());
   message.scene = simulation.model().scene.name;
   message.seed = simulation.state().seed;
   message.step = static_cast<std::uint64_t>(simulation.state().step);
@@ -216,8 +214,7 @@ vibe_msgs::ProcedureState makeProcedureState(const TimedSimulation& simulation, 
 
 vibe_msgs::SkillMetrics makeSkillMetrics(const TimedSimulation& simulation) {
   const SessionMetrics& metrics = simulation.metrics();
-  vibe_msgs::SkillMetrics message;
-  message.header.stamp = toRosTime(simulation.now());
+  auto message = stamped<vibe_msgs::SkillMetrics>(simulation.now());
   message.time = metrics.time;
   message.contact_time = metrics.contact_time;
   message.grip_time = metrics.grip_time;

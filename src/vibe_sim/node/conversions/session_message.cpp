@@ -18,18 +18,11 @@
 namespace vibe::sim {
 namespace {
 
-geometry_msgs::Pose toPose(const Eigen::Vector3d& position, const Eigen::Quaterniond& turn) {
-  geometry_msgs::Pose pose;
-  pose.position.x = position.x(), pose.position.y = position.y(), pose.position.z = position.z();
-  pose.orientation.x = turn.x(), pose.orientation.y = turn.y(), pose.orientation.z = turn.z();
-  pose.orientation.w = turn.w();
-  return pose;
-}
-
 void addTool(const Observation& seen, const TimedSimulation& simulation, vibe_msgs::StepResult& message) {
   std::copy(seen.joints.begin(), seen.joints.end(), message.joints.begin());
-  message.tip = toPose(seen.tip, seen.tip_turn);
-  message.helix = toPose(seen.helix, seen.tip_turn);
+  message.tip.position = toMessage<geometry_msgs::Point>(seen.tip);
+  message.helix.position = toMessage<geometry_msgs::Point>(seen.helix);
+  message.tip.orientation = message.helix.orientation = toQuaternion(seen.tip_turn);
   message.wrench = makeWrench(simulation.state(), 0).wrench;
 }
 
@@ -74,11 +67,30 @@ vibe_msgs::StageTime makeStageTime(const std::string& name, const DurationHistog
   return message;
 }
 
+void setWork(const StepReport& report, vibe_msgs::StepTiming& message) {
+  const auto seconds = [&report](StepStage stage) {
+    return static_cast<float>(report.stage_times[static_cast<std::size_t>(stage)]);
+  };
+  message.stage_loads = seconds(StepStage::Loads);
+  message.stage_factor = seconds(StepStage::Factor);
+  message.stage_energy = seconds(StepStage::Energy);
+  message.stage_inverse = seconds(StepStage::Inverse);
+  message.stage_rows = seconds(StepStage::Rows);
+  message.stage_paths = seconds(StepStage::Paths);
+  message.stage_walls = seconds(StepStage::Walls);
+  message.stage_other = seconds(StepStage::Other);
+  message.iterations = report.iterations;
+  message.evaluations = report.evaluations;
+  message.rows = report.rows;
+  message.wall_pairs = report.wall_pairs;
+  message.arrived = report.arrived ? 1 : 0;
+  message.fallback = report.fallback ? 1 : 0;
+}
+
 vibe_msgs::SessionInfo makeSessionInfo(const TimedSimulation& simulation) {
   const Model& model = simulation.model();
   const MachineInfo machine = machineInfo();
-  vibe_msgs::SessionInfo message;
-  message.header.stamp = toRosTime(simulation.now());
+  auto message = stamped<vibe_msgs::SessionInfo>(simulation.now());
   message.run = simulation.run();
   message.revision = simulation.revision();
   message.version = machine.version;
@@ -100,8 +112,7 @@ vibe_msgs::SessionInfo makeSessionInfo(const TimedSimulation& simulation) {
 }
 
 vibe_msgs::StateSnapshot makeStateSnapshot(const TimedSimulation& simulation) {
-  vibe_msgs::StateSnapshot message;
-  message.header.stamp = toRosTime(simulation.now());
+  auto message = stamped<vibe_msgs::StateSnapshot>(simulation.now());
   message.run = simulation.run();
   message.step = static_cast<std::uint64_t>(simulation.state().step);
   const std::string bytes = encodeSnapshot(simulation.model(), simulation.state());
@@ -112,9 +123,7 @@ vibe_msgs::StateSnapshot makeStateSnapshot(const TimedSimulation& simulation) {
 
 vibe_msgs::StepResult makeStepResult(const TimedSimulation& simulation, bool whole) {
   const Observation seen = observe(simulation.simulation(), false);  // the wall is in tissue/particles
-  vibe_msgs::StepResult message;
-  message.header.stamp = toRosTime(simulation.now());
-  message.header.frame_id = kWorldFrame;
+  auto message = stamped<vibe_msgs::StepResult>(simulation.now(), kWorldFrame);
   message.step = static_cast<std::uint64_t>(seen.step);
   message.time = seen.time;
   message.revision = simulation.revision();

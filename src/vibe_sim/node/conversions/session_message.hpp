@@ -9,8 +9,10 @@
 #include <vibe_msgs/StageTime.h>
 #include <vibe_msgs/StateSnapshot.h>
 #include <vibe_msgs/StepResult.h>
+#include <vibe_msgs/StepTiming.h>
 
 #include "simulation/timed_simulation.hpp"
+#include "vibe_core/model/tissue_solver.hpp"
 #include "vibe_core/trainee/observation.hpp"
 
 namespace vibe::sim {
@@ -20,6 +22,9 @@ std_msgs::String makeSceneText(const Scene& scene, std::uint64_t seed);
 
 /// Durations in ms.
 vibe_msgs::StageTime makeStageTime(const std::string& name, const DurationHistogram& durations);
+
+/// Stages and counts of a step, into the fields of the message that have them.
+void setWork(const StepReport& report, vibe_msgs::StepTiming& message);
 
 /// What a session was made with.
 vibe_msgs::SessionInfo makeSessionInfo(const TimedSimulation& simulation);

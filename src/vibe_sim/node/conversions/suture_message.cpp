@@ -128,9 +128,7 @@ vibe_msgs::Bleeding makeBleeding(const Bleeding& bleeding, const State& state) {
 }  // namespace
 
 vibe_msgs::SutureArray makeSutures(const Model& model, const State& state, std::int64_t stamp) {
-  vibe_msgs::SutureArray message;
-  message.header.stamp = toRosTime(stamp);
-  message.header.frame_id = kWorldFrame;
+  auto message = stamped<vibe_msgs::SutureArray>(stamp, kWorldFrame);
   for (const Suture& suture : state.procedure.sutures)
     message.sutures.push_back(makeSuture(suture, model.scene, state));
   for (const Bleeding& bleeding : state.procedure.bleedings) message.bleedings.push_back(makeBleeding(bleeding, state));

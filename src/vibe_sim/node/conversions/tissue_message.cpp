@@ -117,9 +117,7 @@ void ParticleCloud::updateMarks(const ProcedureState& procedure) {
 }
 
 vibe_msgs::TissueTopology makeTopology(const Model& model, std::uint32_t revision, std::int64_t stamp) {
-  vibe_msgs::TissueTopology message;
-  message.header.stamp = toRosTime(stamp);
-  message.header.frame_id = kTissueFrame;
+  auto message = stamped<vibe_msgs::TissueTopology>(stamp, kTissueFrame);
   message.revision = revision;
   message.name = model.scene.name;
   message.triangles = flatten(model.organ.surface.triangles);
@@ -138,8 +136,7 @@ vibe_msgs::TissueTopology makeTopology(const Model& model, std::uint32_t revisio
 }
 
 vibe_msgs::OrganMotion makeOrganMotion(const Model& model, const State& state, std::int64_t stamp) {
-  vibe_msgs::OrganMotion message;
-  message.header.stamp = toRosTime(stamp);
+  auto message = stamped<vibe_msgs::OrganMotion>(stamp);
   message.breath_held = state.motion.held;
   message.breath_held_time = state.motion.held_time;
   const OrganPhases phases = organPhases(model.scene, state);

@@ -18,6 +18,30 @@ sensor_msgs::JointState makeMeasured(const State& state, const JointArray& veloc
   return message;
 }
 
+// The numbers on the wire are those of the library.
+static_assert(same(ToolContact::Kind::Contact, vibe_msgs::ToolContact::CONTACT) &&
+              same(ToolContact::Kind::Grip, vibe_msgs::ToolContact::GRIP));
+
+vibe_msgs::ToolContact makeToolContact(const ToolModel& tool, const ToolContact& contact) {
+  vibe_msgs::ToolContact message;
+  message.kind = static_cast<std::uint8_t>(contact.kind);
+  message.position = toMessage<geometry_msgs::Point>(contact.point);
+  message.normal = toMessage<geometry_msgs::Vector3>(contact.normal);
+  message.gap = contact.gap;
+  message.force = toMessage<geometry_msgs::Vector3>(contact.force);
+  message.normal_force = contact.normalForce();
+  message.tangential_force = toMessage<geometry_msgs::Vector3>(contact.tangentialForce());
+  message.link = tool.linkName(contact.link);
+  message.shape = contact.shape;
+  message.triangle = contact.triangle;
+  const SurfacePoint& point = contact.surface;
+  message.nodes.assign(point.node.begin(), point.node.begin() + point.count);
+  message.weights.assign(point.weight.begin(), point.weight.begin() + point.count);
+  message.region = static_cast<std::uint8_t>(contact.region);
+  message.wall = static_cast<std::uint8_t>(contact.wall);
+  return message;
+}
+
 std_msgs::MultiArrayDimension makeDimension(const char* label, std::uint32_t size, std::uint32_t stride) {
   std_msgs::MultiArrayDimension dimension;
   dimension.label = label;
@@ -47,9 +71,7 @@ sensor_msgs::JointState makeMeasuredSuturingDevice(const State& state, const Joi
 geometry_msgs::TwistStamped makeTipTwist(const Eigen::Isometry3d& before, const Eigen::Isometry3d& now, double seconds,
                                          std::int64_t stamp) {
   const Eigen::AngleAxisd turn(Eigen::Quaterniond(now.linear() * before.linear().transpose()).normalized());
-  geometry_msgs::TwistStamped message;
-  message.header.stamp = toRosTime(stamp);
-  message.header.frame_id = kWorldFrame;
+  auto message = stamped<geometry_msgs::TwistStamped>(stamp, kWorldFrame);
   message.twist.linear =
       toMessage<geometry_msgs::Vector3>(Eigen::Vector3d((now.translation() - before.translation()) / seconds));
   message.twist.angular = toMessage<geometry_msgs::Vector3>(Eigen::Vector3d(turn.axis() * (turn.angle() / seconds)));
@@ -57,8 +79,7 @@ geometry_msgs::TwistStamped makeTipTwist(const Eigen::Isometry3d& before, const 
 }
 
 vibe_msgs::OperatingState makeOperatingState(bool present, bool paused, bool busy, std::int64_t stamp) {
-  vibe_msgs::OperatingState message;
-  message.header.stamp = toRosTime(stamp);
+  auto message = stamped<vibe_msgs::OperatingState>(stamp);
   message.state = !present ? "DISABLED" : paused ? "PAUSED" : "ENABLED";
   message.is_homed = present;
   message.is_busy = present && busy;
@@ -102,18 +123,14 @@ sensor_msgs::JointState makeHandJoints(const State& state, std::int64_t stamp) {
 }
 
 geometry_msgs::WrenchStamped makeWrench(const State& state, std::int64_t stamp) {
-  geometry_msgs::WrenchStamped message;
-  message.header.stamp = toRosTime(stamp);
-  message.header.frame_id = kScopeTipFrame;
+  auto message = stamped<geometry_msgs::WrenchStamped>(stamp, kScopeTipFrame);
   message.wrench.force = toMessage<geometry_msgs::Vector3>(state.tool_force);
   message.wrench.torque = toMessage<geometry_msgs::Vector3>(state.tool_torque);
   return message;
 }
 
 vibe_msgs::HapticParameters makeHapticRelease(std::int64_t stamp) {
-  vibe_msgs::HapticParameters message;
-  message.header.stamp = toRosTime(stamp);
-  message.header.frame_id = kWorldFrame;
+  auto message = stamped<vibe_msgs::HapticParameters>(stamp, kWorldFrame);
   message.joint_name.assign(kJointNames.begin(), kJointNames.begin() + kScopeJointCount);
   return message;
 }
@@ -141,6 +158,13 @@ vibe_msgs::HapticParameters makeHapticParameters(const ToolImpedance& response, 
     message.joint_damping[j] = joint.damping;
     message.joint_equilibrium[j] = joint.equilibrium;
   }
+  return message;
+}
+
+vibe_msgs::ToolContacts makeToolContacts(const TimedSimulation& simulation) {
+  auto message = stamped<vibe_msgs::ToolContacts>(simulation.now(), kWorldFrame);
+  for (const ToolContact& contact : simulation.simulation().contacts())
+    message.contacts.push_back(makeToolContact(*simulation.model().tool, contact));
   return message;
 }
 

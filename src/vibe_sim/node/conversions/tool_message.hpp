@@ -9,9 +9,11 @@
 #include <std_msgs/Float64MultiArray.h>
 #include <vibe_msgs/HapticParameters.h>
 #include <vibe_msgs/OperatingState.h>
+#include <vibe_msgs/ToolContacts.h>
 #include <Eigen/Geometry>
 
 #include "input/input_sample.hpp"
+#include "simulation/timed_simulation.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/simulation/tool_queries.hpp"
@@ -55,5 +57,8 @@ geometry_msgs::WrenchStamped makeWrench(const State& state, std::int64_t stamp);
 vibe_msgs::HapticParameters makeHapticParameters(const ToolImpedance& response, double force_limit, std::int64_t stamp);
 /// Nothing is touched any longer.
 vibe_msgs::HapticParameters makeHapticRelease(std::int64_t stamp);
+
+/// Where the tool touches and holds the wall in the last step. @param simulation  of a scene with a tool
+vibe_msgs::ToolContacts makeToolContacts(const TimedSimulation& simulation);
 
 }  // namespace vibe::sim

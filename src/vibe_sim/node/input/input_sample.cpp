@@ -2,20 +2,13 @@
 
 #include <cstdio>
 
+#include "vibe_core/program/word_of.hpp"
+
 namespace vibe::sim {
 
 const char* toString(InputChannel channel) {
-  switch (channel) {
-    case InputChannel::Scope:
-      return "scope/input/joint_states";
-    case InputChannel::SuturingDevice:
-      return "suturing_device/input/joint_states";
-    case InputChannel::Buttons:
-      return "scope/buttons";
-    case InputChannel::Pull:
-      return "tissue/pull";
-  }
-  return "";
+  return wordOf(channel,
+                {"scope/input/joint_states", "suturing_device/input/joint_states", "scope/buttons", "tissue/pull"}, "");
 }
 
 bool isOfOneNode(const SampleSender* a, const SampleSender* b) {

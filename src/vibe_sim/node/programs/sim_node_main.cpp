@@ -31,8 +31,7 @@ constexpr char kHelp[] =
     "Parameters: scene, mesh, seed, time_source, fast, follow, lockstep, lockstep_timeout, input_look_ahead, "
     "input_staleness,\n"
     "velocity_life, start_paused, await_recorder, threads, realtime_priority, duration, summary_file, master_timeout; "
-    "see "
-    "docs/interfaces.md.\n";
+    "see docs/interfaces.md.\n";
 
 void waitForEnd(const sim::SimulationThread& thread, const sim::MasterWatch& watch) {
   while (ros::ok() && vibe::ros_utils::stopSignal() == 0 && thread.isRunning() && !watch.isHopeless())

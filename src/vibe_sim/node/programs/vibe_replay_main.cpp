@@ -1,7 +1,5 @@
 #include <cmath>
-#include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +9,7 @@
 #include "replay/replay.hpp"
 #include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/metrics/session_report.hpp"
+#include "vibe_core/program/command_line.hpp"
 #include "vibe_core/program/error.hpp"
 
 // Steps the simulator through the inputs of a recording, without a roscore, and compares every step with it.
@@ -20,77 +19,53 @@ namespace {
 using namespace vibe;
 using namespace vibe::sim;
 
-constexpr int kSame = 0, kDiffers = 1, kUsage = 2, kNotChecked = 3;
+constexpr int kSame = 0, kDiffers = 1, kNotChecked = 3;
 constexpr int kProgressSteps = 120;
 
-const char kHelp[] =
-    "usage: vibe_replay [--from S] [--to S] [--fill FILE | --record FILE] [--session S] [--namespace NS] BAG...\n"
-    "       vibe_replay --list BAG...\n"
+const char kAbout[] =
     "Repeats a recorded session from its scene and inputs, without a roscore, compares every step with the recorded\n"
-    "hashes, and prints its summary. Several bags are the parts of a split recording.\n"
-    "  --from S        begin at the last snapshot before S seconds\n"
-    "  --to S          end after S seconds\n"
-    "  --fill FILE     also write a bag with every message of every topic that the simulator sent\n"
-    "  --record FILE   also record it as a new session: of inputs and a scene alone, or of another release's "
-    "recording\n"
-    "  --session S     which session: its number in the list, or the beginning of its identity (default: the first)\n"
-    "  --namespace NS  the first session in this namespace\n"
-    "  --list          list the sessions and end\n"
+    "hashes, and prints its summary. Several bags are the parts of a split recording.";
+const char kStatus[] =
     "Ends with 0 if all steps are the same, 1 if one differs, 2 if the recording cannot be repeated, 3 if it could "
     "not\n"
-    "be checked, or not all of it, because hashes are missing or are of another version.\n";
+    "be checked, or not all of it, because hashes are missing or are of another version.";
 
 struct Options {
   std::vector<std::string> bags;
-  std::string fill;
-  Filling filling = Filling::Whole;
+  std::string fill, record;
   SessionChoice choice;
   bool list = false;
   double from = 0, to = INFINITY;
 };
 
-double readSeconds(const std::string& option, const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(value) || value < 0)
-    throw Error(option + " needs seconds, 0 or more, not '" + text + "'; see --help.");
-  return value;
+void addOptions(OptionList& line, Options& o) {
+  line.option("BAG", o.bags, "recording").typeName("").required();
+  line.option("--from", o.from, "begin at the last snapshot before S seconds").typeName("S").check(finiteFrom(0));
+  line.option("--to", o.to, "end after S seconds").typeName("S").check(finiteFrom(0));
+  line.option("--fill", o.fill, "also write a bag with every message of every topic that the simulator sent")
+      .typeName("FILE");
+  line.option("--record", o.record,
+              "also record it as a new session: of inputs and a scene alone, or of another release's recording")
+      .typeName("FILE");
+  line.option("--session", o.choice.session,
+              "which session: its number in the list, or the beginning of its identity (default: the first)")
+      .typeName("S");
+  line.option("--namespace", o.choice.name_space, "the first session in this namespace").typeName("NS");
+  line.flag("--list", o.list, "list the sessions and end");
+  line.footer(kStatus);
+}
+
+void check(const Options& o) {
+  if (o.to <= o.from) throw Error("--to must be later than --from; exchange their values.");
+  if (!o.fill.empty() && !o.record.empty()) throw Error("--fill and --record write one bag each; give one of them.");
+  if (!(o.fill + o.record).empty() && (o.from > 0 || std::isfinite(o.to)))
+    throw Error("--fill and --record write the whole recording; leave --from and --to out.");
 }
 
 std::string seconds(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2f s", value);
   return text;
-}
-
-Options readOptions(const std::vector<std::string>& words) {
-  Options options;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const bool has_value = i + 1 < words.size();
-    if (words[i] == "--from" && has_value) {
-      options.from = readSeconds("--from", words[++i]);
-    } else if (words[i] == "--to" && has_value) {
-      options.to = readSeconds("--to", words[++i]);
-    } else if ((words[i] == "--fill" || words[i] == "--record") && has_value) {
-      options.filling = words[i] == "--fill" ? Filling::Whole : Filling::NewSession;
-      options.fill = words[++i];
-    } else if (words[i] == "--session" && has_value) {
-      options.choice.session = words[++i];
-    } else if (words[i] == "--namespace" && has_value) {
-      options.choice.name_space = words[++i];
-    } else if (words[i] == "--list") {
-      options.list = true;
-    } else if (words[i].rfind('-', 0) == 0) {
-      throw Error("argument '" + words[i] + "' is not understood; see --help.");
-    } else {
-      options.bags.push_back(words[i]);
-    }
-  }
-  if (options.bags.empty()) throw Error("takes a recording; see --help.");
-  if (options.to <= options.from) throw Error("--to must be later than --from; exchange their values.");
-  if (!options.fill.empty() && (options.from > 0 || std::isfinite(options.to)))
-    throw Error("--fill and --record write the whole recording; leave --from and --to out.");
-  return options;
 }
 
 int reportDifference(const ReplayDifference& d, std::uint64_t same) {
@@ -149,12 +124,15 @@ int list(const std::vector<std::string>& bags) {
 }
 
 int run(const Options& options) {
+  check(options);
   if (options.list) return list(options.bags);
   const Recording recording(options.bags, options.choice);
   if (!recording.remarkOnChoice().empty()) std::printf("%s\n", recording.remarkOnChoice().c_str());
+  const Filling filling = options.record.empty() ? Filling::Whole : Filling::NewSession;
+  const std::string file = options.fill + options.record;
   Replay::Listener nobody;
   std::unique_ptr<BagFiller> filler;
-  if (!options.fill.empty()) filler = std::make_unique<BagFiller>(recording, options.fill, options.filling);
+  if (!file.empty()) filler = std::make_unique<BagFiller>(recording, file, filling);
   Replay replay(recording, filler ? *filler : nobody);
   if (options.from > replay.duration())
     throw Error("--from " + seconds(options.from) + " is after the end of the session, at " +
@@ -175,29 +153,25 @@ int run(const Options& options) {
              stdout);
   if (filler) {
     filler->finish(replay.simulation());
-    std::printf("%s: %s, %llu messages\n", options.filling == Filling::Whole ? "filled" : "recorded",
-                options.fill.c_str(), static_cast<unsigned long long>(filler->messageCount()));
+    std::printf("%s: %s, %llu messages\n", filling == Filling::Whole ? "filled" : "recorded", file.c_str(),
+                static_cast<unsigned long long>(filler->messageCount()));
   }
   const int status = report(recording, replay.result());
-  return status == kNotChecked && options.filling == Filling::NewSession ? kSame : status;
+  return status == kNotChecked && filling == Filling::NewSession ? kSame : status;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is then an error like a full disk
-  const std::vector<std::string> words(argv + 1, argv + argc);
-  if (words.size() == 1 && words[0] == "--help") {
-    std::fputs(kHelp, stdout);
-    return 0;
-  }
-  try {
-    return run(readOptions(words));
-  } catch (const ReplayEnd& end) {
-    std::fprintf(stderr, "vibe_replay: it ends here: %s\n", end.what());
-    return reportDifference(end.difference, end.same);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "vibe_replay: %s\n", error.what());
-    return kUsage;
-  }
+  Options options;
+  CommandLine line(kAbout, "vibe_replay");
+  addOptions(line, options);
+  return runProgram(line, argc, argv, [&] {
+    try {
+      return run(options);
+    } catch (const ReplayEnd& end) {
+      std::fprintf(stderr, "vibe_replay: it ends here: %s\n", end.what());
+      return reportDifference(end.difference, end.same);
+    }
+  });
 }

@@ -1,6 +1,5 @@
 #include "publishing/publishers.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -13,7 +12,6 @@
 #include <vibe_msgs/SkillMetrics.h>
 #include <vibe_msgs/StepResult.h>
 
-#include "conversions/contact_message.hpp"
 #include "conversions/conversions.hpp"
 #include "conversions/input_message.hpp"
 #include "conversions/procedure_message.hpp"

@@ -169,8 +169,7 @@ void BagFiller::copyRest() {
 
 // The hash after the last step, which no later input carries.
 void BagFiller::sendEnd(const TimedSimulation& simulation) {
-  vibe_msgs::SolverStatistics end;
-  end.header.stamp = toRosTime(simulation.now());
+  auto end = stamped<vibe_msgs::SolverStatistics>(simulation.now());
   end.session = simulation.session();
   end.steps = static_cast<std::uint64_t>(simulation.state().step);
   end.particle_count = static_cast<std::uint32_t>(simulation.model().particle_count);

@@ -62,8 +62,7 @@ void RunStatistics::startWindow(TimedSimulation& simulation) {
 
 vibe_msgs::SolverStatistics RunStatistics::message(const TimedSimulation& simulation,
                                                    DurationHistogram DurationRecord::*which) const {
-  vibe_msgs::SolverStatistics message;
-  message.header.stamp = toRosTime(simulation.now());
+  auto message = stamped<vibe_msgs::SolverStatistics>(simulation.now());
   const StepTimer& solver = simulation.timer();
   message.stages = {makeStageTime("solver", solver.cpu.*which), makeStageTime("solver_wall", solver.wall.*which),
                     makeStageTime("publish", publish.wall.*which), makeStageTime("total", total.wall.*which)};

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <random>
 
 #include <ros/console.h>
 
 #include "conversions/conversions.hpp"
-#include "conversions/timing_message.hpp"
+#include "conversions/session_message.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_ros_utils/startup.hpp"
 #include "vibe_ros_utils/wall_clock.hpp"

@@ -24,8 +24,8 @@ bool InputSender::hasListeners() const {
 }
 
 void InputSender::send(const StepInput& input, std::int64_t stamp, bool with_buttons) {
-  scope_.publish(makeScopeJoints(input, stamp));
-  suturing_device_.publish(makeSuturingDeviceJoints(input, stamp));
+  scope_.publish(makeJoints(input.joints, jointsOf(InputChannel::Scope), stamp));
+  suturing_device_.publish(makeJoints(input.joints, jointsOf(InputChannel::SuturingDevice), stamp));
   if (with_buttons) sendButtons(input, stamp);
 }
 

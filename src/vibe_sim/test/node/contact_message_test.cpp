@@ -1,8 +1,6 @@
-#include "conversions/contact_message.hpp"
+#include "conversions/tool_message.hpp"
 
 #include <gtest/gtest.h>
-
-#include "conversions/tool_message.hpp"
 
 namespace vibe::sim::contact_message_test {
 namespace {

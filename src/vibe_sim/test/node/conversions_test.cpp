@@ -22,7 +22,18 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 sensor_msgs::JointState scopeMessage() {
   StepInput input;
   input.joints = {0.05, 0.1, -0.2, 0.3, 0.01, 1.5, 0.002};
-  return makeScopeJoints(input, 123456789012);
+  return makeJoints(input.joints, jointsOf(InputChannel::Scope), 123456789012);
+}
+
+/// What a recorded step used, bit for bit.
+StepInput readStepInput(const vibe_msgs::StepInput& message) {
+  StepInput input;
+  std::copy(message.joints.begin(), message.joints.end(), input.joints.begin());
+  std::copy(message.buttons.begin(), message.buttons.end(), input.buttons.begin());
+  input.pull_particle = message.pull_particle;
+  input.pull_target = {message.pull_target.x, message.pull_target.y, message.pull_target.z};
+  input.breath = message.breath == 0 ? Breath::Free : Breath::Held;
+  return input;
 }
 
 std::string jointError(const sensor_msgs::JointState& message, JointSource source = JointSource::Measured) {
@@ -32,9 +43,10 @@ std::string jointError(const sensor_msgs::JointState& message, JointSource sourc
 TEST(Conversions, jointsSurviveTheRoundTripBitForBit) {
   StepInput input;
   input.joints = {0.1 / 3, 1e-300, -0.0, 3.0, 0.01, 1.5, 0.002};
-  const InputSample scope = readJoints(makeScopeJoints(input, 42), InputChannel::Scope, JointSource::Measured);
-  const InputSample suturing_device =
-      readJoints(makeSuturingDeviceJoints(input, 42), InputChannel::SuturingDevice, JointSource::Measured);
+  const InputSample scope = readJoints(makeJoints(input.joints, jointsOf(InputChannel::Scope), 42), InputChannel::Scope,
+                                       JointSource::Measured);
+  const InputSample suturing_device = readJoints(makeJoints(input.joints, jointsOf(InputChannel::SuturingDevice), 42),
+                                                 InputChannel::SuturingDevice, JointSource::Measured);
   EXPECT_EQ(scope.stamp, 42);
   for (int i = 0; i < kJointCount; ++i) {
     EXPECT_EQ(i < kScopeJointCount ? scope.joints[i] : suturing_device.joints[i], input.joints[i]) << kJointNames[i];

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <istream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,11 +30,10 @@ struct TechniqueTable {
   std::array<std::array<std::array<int, kTechniqueCount>, kTechniqueCount>, kTableMaxBites - kTableMinBites + 1>
       count{};
 
-  /// Share of correct answers. three_way: Triangular, Square, Running, C and Other count as one answer, as in the
-  /// paper.
-  double right(bool three_way) const;
-  /// The same among the sets of that many bites, kTableMinBites to kTableMaxBites; 0: there are none.
-  double right(bool three_way, int bite_count) const;
+  /// Share of correct answers; 0: there are none. three_way: Triangular, Square, Running, C and Other count as one
+  /// answer, as in the paper.
+  /// @param bite_count  among the sets of that many bites, kTableMinBites to kTableMaxBites; empty: among all
+  double right(bool three_way, std::optional<int> bite_count = std::nullopt) const;
   int drawn(Technique technique) const;  ///< number of patterns of that technique in the table
 };
 
