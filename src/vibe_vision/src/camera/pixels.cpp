@@ -123,7 +123,7 @@ void toMono8(PixelFormat format, const std::uint8_t* data, int width, int height
   }
 }
 
-std::shared_ptr<std::uint8_t> PixelPool::acquire(std::size_t size) {
+std::uint8_t* PixelPool::give(Frame& frame, int width, int height) {
   auto pixels = std::make_shared<std::vector<std::uint8_t>>();
   {
     const std::lock_guard<std::mutex> lock(store_->mutex);
@@ -132,14 +132,16 @@ std::shared_ptr<std::uint8_t> PixelPool::acquire(std::size_t size) {
       store_->spare.pop_back();
     }
   }
-  pixels->resize(size);
+  pixels->resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  frame.image = {pixels->data(), width, height, width};
   const std::weak_ptr<Store> weak = store_;
-  return {pixels->data(), [pixels, weak](std::uint8_t*) {
-            const std::shared_ptr<Store> store = weak.lock();
-            if (!store) return;
-            const std::lock_guard<std::mutex> lock(store->mutex);
-            if (store->spare.size() < kSpare) store->spare.push_back(std::move(*pixels));
-          }};
+  frame.owner = std::shared_ptr<const void>(pixels->data(), [pixels, weak](const void*) {
+    const std::shared_ptr<Store> store = weak.lock();
+    if (!store) return;
+    const std::lock_guard<std::mutex> lock(store->mutex);
+    if (store->spare.size() < kSpare) store->spare.push_back(std::move(*pixels));
+  });
+  return pixels->data();
 }
 
 }  // namespace vibe::vision

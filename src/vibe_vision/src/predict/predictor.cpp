@@ -29,6 +29,16 @@ double expRest(int n, double x) {
   return sum;
 }
 
+void checkPositive(double value, const std::string& name) {
+  if (std::isfinite(value) && value > 0) return;
+  throw Error("The prior of a predictor has " + name + " = " + std::to_string(value) +
+              "; set it to a finite number above 0.");
+}
+
+double squared(double x) {
+  return x * x;
+}
+
 }  // namespace
 
 Eigen::Vector4d jerkResponse(double dt, double correlation_time) {
@@ -59,20 +69,6 @@ Eigen::Matrix4d jerkNoise(double dt, const JerkModel& jerk) {
   }
   return 2 * jerk.deviation * jerk.deviation / jerk.time * q;
 }
-
-namespace {
-
-void checkPositive(double value, const std::string& name) {
-  if (std::isfinite(value) && value > 0) return;
-  throw Error("The prior of a predictor has " + name + " = " + std::to_string(value) +
-              "; set it to a finite number above 0.");
-}
-
-double squared(double x) {
-  return x * x;
-}
-
-}  // namespace
 
 MotionEstimate extrapolate(const MotionEstimate& estimate, double dt, const JerkModel& jerk) {
   if (dt <= 0) return estimate;
