@@ -36,7 +36,7 @@ inline Frame readGrey(const std::string& file) {
   return frame;
 }
 
-/// There whole or not at all. @param parameters  of cv::imwrite(). @throws Error if it cannot be written
+/// Whole or not at all. @param parameters  of the format, as OpenCV takes them. @throws Error if it cannot be written
 inline void writePicture(const std::string& file, const cv::Mat& picture, const std::string& what = "The picture",
                          const std::vector<int>& parameters = {}) {
   writeWhole(

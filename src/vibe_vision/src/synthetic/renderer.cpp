@@ -64,10 +64,10 @@ std::vector<cv::Rect> Renderer::Impl::piecesOf(const Exposure& exposure) const {
   for (std::size_t i = 0; i < tiles.objectCount(); ++i)
     pieces.push_back(image & grown(tiles.boundsOf(i, exposure), reach));
   const Occluder& bar = tiles.occluder();
-  for (int y = 0; bar.present() && y < image.height; y += kStripHeight) {
+  for (int y = 0; bar.present && y < image.height; y += kStripHeight) {
     const double middle = bar.middle(exposure.middle(), y + kStripHeight / 2.0);
-    const double half = bar.halfWidth() + bar.speed() * (exposure.end - exposure.begin) +
-                        std::abs(bar.slope()) * kStripHeight / 2 + reach + 1;
+    const double half = bar.half_width + bar.speed * (exposure.end - exposure.begin) +
+                        std::abs(bar.slope) * kStripHeight / 2 + reach + 1;
     const int left = static_cast<int>(middle - half), right = static_cast<int>(middle + half) + 1;
     pieces.push_back(image & cv::Rect(left, y, right - left, kStripHeight));
   }

@@ -106,7 +106,7 @@ double TileRenderer::pathLength(std::size_t object, const Exposure& exposure) co
 std::vector<TileRenderer::Moment> TileRenderer::moments(const cv::Rect& rect, const Exposure& exposure,
                                                         const Grid& grid) const {
   std::vector<std::size_t> seen;
-  double longest = occluder_.present() ? occluder_.speed() * (exposure.end - exposure.begin) : 0;
+  double longest = occluder_.present ? occluder_.speed * (exposure.end - exposure.begin) : 0;
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     if ((rect & boundsOf(i, exposure)).empty()) continue;
     seen.push_back(i);
@@ -207,12 +207,12 @@ void TileRenderer::layerRow(const Layer& layer, const Grid& grid, int sample_row
 
 void TileRenderer::occluderRow(double time, const Grid& grid, double y, float* values) const {
   const double middle = occluder_.middle(time, y);
-  const auto half = static_cast<float>(occluder_.halfWidth());
+  const auto half = static_cast<float>(occluder_.half_width);
   const auto start = static_cast<float>(sampleCentre(grid.rect.x, 0, grid.side) - middle);
   for (int i = 0; i < grid.columns; ++i) {
     const float share =
         edgeShare(half - std::abs(start + static_cast<float>(i) * grid.side), static_cast<float>(grid.samples));
-    values[i] += share * (occluder_.value() - values[i]);
+    values[i] += share * (occluder_.value - values[i]);
   }
 }
 
@@ -239,7 +239,7 @@ void TileRenderer::render(const cv::Rect& rect, const Exposure& exposure, float*
     for (const Moment& moment : all) {
       values = behind;
       for (const Layer& layer : moment.layers) layerRow(layer, grid, r, values.data(), scratch.data());
-      if (occluder_.present()) occluderRow(moment.time, grid, sampleCentre(wide.y, r, grid.side), values.data());
+      if (occluder_.present) occluderRow(moment.time, grid, sampleCentre(wide.y, r, grid.side), values.data());
       for (std::size_t i = 0; i < columns; ++i) sum[i] += moment.light * values[i];
     }
     kernel.alongRow(sum.data(), rect.width, blurred.data() + static_cast<std::size_t>(r) * width);
