@@ -5,11 +5,6 @@
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
-namespace {
-
-constexpr double kWarningPeriod = 1;  // [s]
-
-}  // namespace
 
 TopicInput::TopicInput(ros::NodeHandle handle, const VisionParameters& parameters)
     : exposure_(parameters.options.exposure),
@@ -82,22 +77,15 @@ void TopicInput::count(std::uint64_t sequence) {
 }
 
 void TopicInput::refuse(const std::string& complaint) {
+  constexpr double kWarningPeriod = 1;  // [s]
   ROS_WARN_STREAM_THROTTLE(kWarningPeriod, "A message on " << topic_ << " is ignored: " << complaint);
   ++statistics_.unreadable;
   complaint_ = complaint;
 }
 
-ReadResult TopicInput::take(Frame& frame, double timeout) {
-  return latest_.take(frame, timeout);
-}
-
 SourceStatistics TopicInput::statistics() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return statistics_;
-}
-
-std::uint64_t TopicInput::dropped() const {
-  return latest_.dropped();
 }
 
 std::string TopicInput::status() const {

@@ -18,25 +18,22 @@ namespace encodings = sensor_msgs::image_encodings;
   throw Error("An image " + problem + "; " + remedy + ".");
 }
 
-std::string showSize(std::size_t width, std::size_t height) {
-  return std::to_string(width) + " x " + std::to_string(height);
-}
-
 /// Refuses what would be read beyond its end or in the wrong place.
 void checkImage(const sensor_msgs::Image& image, const sensor_msgs::CameraInfo& info) {
   if (image.header.stamp.isZero()) fail("has stamp 0", "the camera must stamp its images with the time of exposure");
   if (image.width == 0 || image.height == 0) fail("is empty", "check the camera");
   const std::size_t needed = static_cast<std::size_t>(image.step) * image.height;
   if (image.data.size() < needed || image.step < image.width) {
-    fail("of " + showSize(image.width, image.height) + " px has only " + std::to_string(image.data.size()) +
-             " bytes, in rows of " + std::to_string(image.step),
+    fail("of " + sizeText(static_cast<int>(image.width), static_cast<int>(image.height)) + " px has only " +
+             std::to_string(image.data.size()) + " bytes, in rows of " + std::to_string(image.step),
          "check the program that publishes it");
   }
   if (info.binning_x > 1 || info.binning_y > 1) fail("is binned", "switch binning off in the camera");
   const sensor_msgs::RegionOfInterest& roi = info.roi;
   if (roi.width != 0 && (roi.width != image.width || roi.height != image.height)) {
-    fail("has " + showSize(image.width, image.height) + " px, but its camera_info has a region of interest of " +
-             showSize(roi.width, roi.height) + " px",
+    fail("has " + sizeText(static_cast<int>(image.width), static_cast<int>(image.height)) +
+             " px, but its camera_info has a region of interest of " +
+             sizeText(static_cast<int>(roi.width), static_cast<int>(roi.height)) + " px",
          "both must come from the same program");
   }
 }

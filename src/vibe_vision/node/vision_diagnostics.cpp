@@ -39,7 +39,7 @@ void addCamera(const CameraDiagnostics& camera, double rate, DiagnosticStatusWra
   addTimes("publish", camera.publish, status);
 }
 
-void compare(const CameraDiagnostics& camera, const CameraMemory& memory, DiagnosticStatusWrapper& status) {
+void compare(const CameraDiagnostics& camera, const CameraDiagnostics& memory, DiagnosticStatusWrapper& status) {
   warnIf(camera.source.lost > memory.source.lost, "frames were lost", status);
   warnIf(camera.source.incomplete > memory.source.incomplete, "frames were incomplete", status);
   warnIf(camera.source.unreadable > memory.source.unreadable, camera.status, status);
@@ -50,21 +50,22 @@ void compare(const CameraDiagnostics& camera, const CameraMemory& memory, Diagno
 
 }  // namespace
 
-void fillCameraDiagnostics(const CameraDiagnostics& camera, double now, CameraMemory& memory,
+void fillCameraDiagnostics(const CameraDiagnostics& camera, double now, CameraDiagnostics& memory,
                            DiagnosticStatusWrapper& status) {
-  const double span = now - memory.time;
-  const double rate = memory.time >= 0 && span > 0 ? static_cast<double>(camera.frames - memory.frames) / span : 0;
+  const double span = now - memory.reported;
+  const double rate = memory.reported >= 0 && span > 0 ? static_cast<double>(camera.frames - memory.frames) / span : 0;
   if (camera.last == ReadResult::End) {
     status.summary(DiagnosticStatus::WARN, "the recording has ended");
   } else if (camera.last == ReadResult::Gone || now - camera.last_frame > kSilence) {
     status.summary(DiagnosticStatus::ERROR, "no images: " + camera.status);
   } else {
     status.summary(DiagnosticStatus::OK, "running");
-    warnIf(memory.time >= 0 && rate < kLowRate * camera.expected_rate, "the rate is low", status);
+    warnIf(memory.reported >= 0 && rate < kLowRate * camera.expected_rate, "the rate is low", status);
   }
   compare(camera, memory, status);
   addCamera(camera, rate, status);
-  memory = {now, camera.frames, camera.disordered, camera.dropped, camera.failed, camera.source};
+  memory = camera;
+  memory.reported = now;
 }
 
 void InstrumentDiagnostics::add(const Measurement& measurement, const JointSample& sample) {

@@ -25,18 +25,13 @@ struct CameraDiagnostics {
   SourceStatistics source;
   std::uint64_t dropped = 0, sent = 0, failed = 0;
   std::string status;
-};
-
-struct CameraMemory {
-  double time = -1;  ///< of the last entry, steady clock [s]
-  std::uint64_t frames = 0, disordered = 0, dropped = 0, failed = 0;
-  SourceStatistics source;
+  double reported = -1;  ///< when there was an entry [s], steady clock; -1: never
 };
 
 /// ERROR if no frames come; WARN if since the last entry frames were lost, incomplete, unreadable, dropped or in
 /// disorder, datagrams failed, the rate is below 90 % of the expected one, or a recording has ended.
-/// @param now  steady clock [s]
-void fillCameraDiagnostics(const CameraDiagnostics& camera, double now, CameraMemory& memory,
+/// @param now  steady clock [s]. @param memory  as it was then
+void fillCameraDiagnostics(const CameraDiagnostics& camera, double now, CameraDiagnostics& memory,
                            diagnostic_updater::DiagnosticStatusWrapper& status);
 
 constexpr std::size_t kLostReasons = 10;

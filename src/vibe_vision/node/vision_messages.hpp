@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "../include/vibe_vision/predict/frame_pipeline.hpp"
+#include "vibe_vision/predict/frame_pipeline.hpp"
 
 namespace vibe::vision {
 

@@ -19,7 +19,7 @@ double hostTime() {
 }
 
 FramePipeline::Options pipelineOptions(const VisionParameters& parameters, double silence) {
-  return {parameters.udp, parameters.recorded(), silence, hostTime};
+  return {parameters.udp, isRecording(parameters.source), silence, hostTime};
 }
 
 }  // namespace
@@ -31,15 +31,14 @@ VisionNode::VisionNode(ros::NodeHandle handle, ros::NodeHandle private_handle, c
       pipeline_(VisionConfig::load(parameters.config), pipelineOptions(parameters, silence_)),
       publisher_(handle, pipeline_.config(), parameters),
       updater_(handle, private_handle, name) {
-  if (parameters.fromTopic()) {
+  if (parameters.fromTopic())
     input_ = std::make_unique<TopicInput>(handle, parameters);
-  } else {
-    input_ = std::make_unique<CameraInput>(parameters.source, parameters.options);
-  }
+  else
+    input_ = std::make_unique<Capture>(openSource(parameters.source, parameters.options));
   instruments_.resize(pipeline_.config().instruments.size());
   instrument_memory_.resize(instruments_.size());
   camera_.expected_rate = parameters.options.rate;
-  camera_.recorded = parameters.recorded();
+  camera_.recorded = isRecording(parameters.source);
   addDiagnostics();
   reset_service_ = private_handle.advertiseService("reset", &VisionNode::onReset, this);
   next_silence_ = steadyTime() + silence_;

@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "../include/vibe_vision/predict/frame_pipeline.hpp"
 #include "frame_input.hpp"
+#include "vibe_vision/predict/frame_pipeline.hpp"
 #include "vision_diagnostics.hpp"
 #include "vision_parameters.hpp"
 #include "vision_publisher.hpp"
@@ -37,11 +37,9 @@ class VisionNode {
   std::unique_ptr<FrameInput> input_;
 
   std::mutex mutex_;  // of what the thread notes for the diagnostics
-  CameraDiagnostics camera_;
-  std::vector<InstrumentDiagnostics> instruments_;
+  CameraDiagnostics camera_, camera_memory_;
+  std::vector<InstrumentDiagnostics> instruments_, instrument_memory_;
 
-  CameraMemory camera_memory_;
-  std::vector<InstrumentDiagnostics> instrument_memory_;
   diagnostic_updater::Updater updater_;
   ros::ServiceServer reset_service_;
   ros::WallTimer timer_;

@@ -56,10 +56,6 @@ void checkTime(const VisionParameters& parameters) {
 
 }  // namespace
 
-bool VisionParameters::recorded() const {
-  return source.rfind("video:", 0) == 0 || source.rfind("images:", 0) == 0;
-}
-
 VisionParameters readVisionParameters(const ros::NodeHandle& private_handle) {
   ros_utils::ParameterReader reader(private_handle);
   VisionParameters parameters;

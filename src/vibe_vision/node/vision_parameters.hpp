@@ -22,7 +22,6 @@ struct VisionParameters {
   bool publish_images = true;
 
   bool fromTopic() const { return source == "topic"; }
-  bool recorded() const;  ///< stamps of the source are not of today
 };
 
 /// @throws Error for a parameter that is unknown or wrong

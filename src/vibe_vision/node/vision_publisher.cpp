@@ -14,6 +14,8 @@ namespace vibe::vision {
 
 namespace {
 
+constexpr std::uint32_t kQueue = 10;
+
 std::string describe(const InstrumentConfig& instrument, const Measurement& measurement, const JointSample& sample) {
   if (!sample.tracked()) return instrument.name + ": lost, " + toText(sample.reason);
   char text[160];
@@ -27,20 +29,6 @@ std::string describe(const InstrumentConfig& instrument, const Measurement& meas
   std::snprintf(text, sizeof text, ", score %.2f", measurement.score);
   return line + text;
 }
-
-}  // namespace
-
-cv::Mat drawDebugImage(const VisionConfig& config, const Frame& frame, const Measurements& measurements,
-                       const std::vector<JointSample>& samples) {
-  std::vector<std::string> texts;
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    texts.push_back(describe(config.instruments[i], measurements[i], samples[i]));
-  return annotate(config, frame, measurements, texts);
-}
-
-namespace {
-
-constexpr std::uint32_t kQueue = 10;
 
 }  // namespace
 
@@ -102,7 +90,10 @@ void VisionPublisher::publishDebug(const FrameResult& result) {
   picture.header.stamp = toStamp(result.frame.stamp);
   picture.header.frame_id = parameters_.frame_id;
   picture.encoding = sensor_msgs::image_encodings::BGR8;
-  picture.image = drawDebugImage(config_, result.frame, result.measurements, result.samples);
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < result.samples.size(); ++i)
+    texts.push_back(describe(config_.instruments[i], result.measurements[i], result.samples[i]));
+  picture.image = annotate(config_, result.frame, result.measurements, texts);
   debug_.publish(picture.toImageMsg());
 }
 

@@ -4,21 +4,11 @@
 
 #include <image_transport/image_transport.h>
 #include <ros/ros.h>
-#include <opencv2/core.hpp>
 
-#include "../include/vibe_vision/predict/frame_pipeline.hpp"
-#include "vibe_vision/config/vision_config.hpp"
-#include "vibe_vision/image/frame.hpp"
 #include "vibe_vision/predict/frame_pipeline.hpp"
-#include "vibe_vision/track/tracker.hpp"
 #include "vision_parameters.hpp"
 
 namespace vibe::vision {
-
-/// The frame in colour with, for each instrument, its axis, where it was looked for, where its marker is, and its
-/// joints; red and with the reason if it is lost.
-cv::Mat drawDebugImage(const VisionConfig& config, const Frame& frame, const Measurements& measurements,
-                       const std::vector<JointSample>& samples);
 
 /// Publishes what is known about a frame: docs/interfaces.md, "Topics of the camera". Images only if somebody listens.
 class VisionPublisher {

@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,11 +25,8 @@ inline void watchMotion(FrameSource& source, const VisionConfig& config, double 
       continue;
     }
     silent = 0;
-    if (frame.sensor_width != config.camera.width || frame.sensor_height != config.camera.height)
-      throw Error("the images have " + std::to_string(frame.sensor_width) + " x " +
-                  std::to_string(frame.sensor_height) + " px, the configuration is for " +
-                  std::to_string(config.camera.width) + " x " + std::to_string(config.camera.height) +
-                  "; use the configuration of the camera that took them");
+    requireSize(config.camera, frame.sensor_width, frame.sensor_height, "the images have",
+                "use the configuration of the camera that took them");
     if (first < 0) first = told = frame.stamp;
     if (frame.stamp - first > seconds) return;
     check.add(frame);

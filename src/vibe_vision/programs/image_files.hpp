@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "vibe_core/files/files.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_vision/image/frame.hpp"
 
@@ -33,6 +34,13 @@ inline Frame readGrey(const std::string& file) {
   frame.sensor_height = image->rows;
   frame.owner = image;
   return frame;
+}
+
+/// Whole or not at all. @param parameters  of the format, as OpenCV takes them. @throws Error if it cannot be written
+inline void writePicture(const std::string& file, const cv::Mat& picture, const std::string& what = "The picture",
+                         const std::vector<int>& parameters = {}) {
+  writeWhole(
+      file, [&](const std::string& part) { return cv::imwrite(part, picture, parameters); }, what);
 }
 
 }  // namespace vibe::vision

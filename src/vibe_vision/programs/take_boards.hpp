@@ -5,9 +5,7 @@
 #include <optional>
 #include <string>
 
-#include <opencv2/imgcodecs.hpp>
-
-#include "vibe_core/files/files.hpp"
+#include "image_files.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_vision/calibrate/board_guide.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
@@ -66,10 +64,7 @@ class BoardTaker {
   }
   static void save(const ImageView& image, const std::string& file) {
     if (std::filesystem::exists(file)) throw Error(file + ": is there already; give another folder");
-    const cv::Mat grey(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.data),
-                       static_cast<std::size_t>(image.stride));
-    writeWhole(
-        file, [&](const std::string& part) { return cv::imwrite(part, grey); }, "The picture");
+    writePicture(file, image.mat());
   }
 };
 

@@ -119,9 +119,9 @@ void saveLens(vision::VisionConfig config, const vision::CameraModel& camera, co
 
 void requireOneSize(const std::string& name, const vision::Frame& frame, const vision::Frame& first) {
   if (frame.image.width == first.image.width && frame.image.height == first.image.height) return;
-  throw vibe::Error(name + ": has " + std::to_string(frame.image.width) + " x " + std::to_string(frame.image.height) +
-                    " px, the first image has " + std::to_string(first.image.width) + " x " +
-                    std::to_string(first.image.height) + "; take all with the same camera and region");
+  throw vibe::Error(name + ": has " + vision::sizeText(frame.image.width, frame.image.height) +
+                    " px, the first image has " + vision::sizeText(first.image.width, first.image.height) +
+                    " px; take all with the same camera and region");
 }
 
 /// Says of each picture what it is good for, and at the end what is missing.
@@ -339,9 +339,8 @@ int takeBoards(const Options& options) {
   const vision::VisionConfig config = vision::VisionConfig::load(options.config, vision::AxisRule::Optional);
   vision::BoardTaker taker(vision::boardOption(options.board, options.square), config.camera.fx, options.folder);
   auto source = vision::openSource(options.address, options.source);
-  const bool recorded = options.address.rfind("video:", 0) == 0 || options.address.rfind("images:", 0) == 0;
   std::optional<vision::Capture> capture;
-  if (!recorded) capture.emplace(std::move(source));
+  if (!vision::isRecording(options.address)) capture.emplace(std::move(source));
   const auto next = [&](vision::Frame& frame) {
     return capture ? capture->take(frame, kWait) : source->read(frame, kWait);
   };

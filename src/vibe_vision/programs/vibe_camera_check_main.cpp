@@ -85,8 +85,7 @@ bool check(const Options& options) {
     status = capture.status();
     std::cout << status << std::endl;
   }
-  const bool recorded = options.source.rfind("video:", 0) == 0 || options.source.rfind("images:", 0) == 0;
-  printReport(times, capture, clockTime(CLOCK_PROCESS_CPUTIME_ID) - cpu, recorded);
+  printReport(times, capture, clockTime(CLOCK_PROCESS_CPUTIME_ID) - cpu, vision::isRecording(options.source));
   if (!options.csv.empty()) writeTable(options.csv, times);
   return !times.empty();
 }

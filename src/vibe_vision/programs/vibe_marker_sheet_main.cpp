@@ -3,11 +3,9 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <map>
-#include <opencv2/imgcodecs.hpp>
 
+#include "image_files.hpp"
 #include "program_options.hpp"
-#include "vibe_core/files/files.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_vision/sheet/marker_sheet.hpp"
 
@@ -64,8 +62,7 @@ void writePng(const vision::MarkerSheet& sheet, const std::string& file) {
     vision::SheetRaster raster = sheet.raster(i, kPreview);
     const cv::Mat image(raster.height, raster.width, CV_8U, raster.value.data());
     const std::string name = stem + "-" + std::to_string(i + 1) + ".png";
-    vibe::writeWhole(
-        name, [&](const std::string& part) { return cv::imwrite(part, image); }, "The sheet");
+    vision::writePicture(name, image, "The sheet");
     std::printf("%s\n", name.c_str());
   }
 }

@@ -1,10 +1,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <iomanip>
-#include <iostream>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "image_files.hpp"
 #include "program_options.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/program/error.hpp"
@@ -34,17 +33,10 @@ class Recording {
   }
 
   void add(const vision::Frame& frame) {
-    const vision::ImageView& view = frame.image;
-    const cv::Mat image(view.height, view.width, CV_8U, const_cast<std::uint8_t*>(view.data),
-                        static_cast<std::size_t>(view.stride));
-    if (video_.isOpened()) return video_.write(image);
+    if (video_.isOpened()) return video_.write(frame.image.mat());
     char name[32];
     std::snprintf(name, sizeof name, "frame_%06llu.png", static_cast<unsigned long long>(frame.sequence));
-    const std::string file = folder_ / name;
-    const auto write = [&](const std::string& part) {
-      return cv::imwrite(part, image, {cv::IMWRITE_PNG_COMPRESSION, 1});
-    };
-    vibe::writeWhole(file, write, "The picture");
+    vision::writePicture(folder_ / name, frame.image.mat(), "The picture", {cv::IMWRITE_PNG_COMPRESSION, 1});
   }
 
  private:

@@ -6,12 +6,11 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "image_files.hpp"
 #include "program_options.hpp"
 #include "vibe_core/clocks/step_timer.hpp"
-#include "vibe_core/files/files.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 #include "vibe_vision/record/annotation.hpp"
@@ -67,8 +66,7 @@ class Annotator {
     if (is_video_) return addToVideo(picture);
     char name[40];
     std::snprintf(name, sizeof name, "/frame_%06llu.png", static_cast<unsigned long long>(count_++));
-    vibe::writeWhole(
-        target_ + name, [&](const std::string& part) { return cv::imwrite(part, picture); }, "The picture");
+    vision::writePicture(target_ + name, picture);
   }
 
  private:
@@ -93,14 +91,6 @@ void completeSize(const vision::VisionConfig& config, const Options& options, vi
   if (options.source.roi_x == 0 && options.source.roi_y == 0) return;
   if (frame.sensor_width <= config.camera.width) frame.sensor_width = config.camera.width;
   if (frame.sensor_height <= config.camera.height) frame.sensor_height = config.camera.height;
-}
-
-void requireSize(const vision::VisionConfig& config, const vision::Frame& frame) {
-  if (frame.sensor_width == config.camera.width && frame.sensor_height == config.camera.height) return;
-  throw vibe::Error("the recording has " + std::to_string(frame.sensor_width) + " x " +
-                    std::to_string(frame.sensor_height) + " px, the configuration is for " +
-                    std::to_string(config.camera.width) + " x " + std::to_string(config.camera.height) +
-                    "; use the configuration of the camera that took it, or give --roi-x and --roi-y");
 }
 
 /// One line that is overwritten, on a terminal only.
@@ -149,7 +139,9 @@ int run(Options options) {
     vision::ReadResult result = vision::ReadResult::Frame;
     while ((result = source->read(frame, kTimeout)) == vision::ReadResult::Frame) {
       completeSize(config, options, frame);
-      if (summary.frames() == 0) requireSize(config, frame);
+      if (summary.frames() == 0)
+        vision::requireSize(config.camera, frame.sensor_width, frame.sensor_height, "the recording has",
+                            "use the configuration of the camera that took it, or give --roi-x and --roi-y");
       const double begin = vibe::threadCpuTime();
       const vision::Measurements& measurements = tracker.track(frame);
       summary.add(measurements, vibe::threadCpuTime() - begin);

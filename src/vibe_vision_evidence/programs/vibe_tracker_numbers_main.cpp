@@ -4,7 +4,6 @@
 #include "numbers/number_study.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/program/command_line.hpp"
-#include "vibe_core/program/error.hpp"
 
 namespace vibe::vision::evidence {
 namespace {

@@ -35,10 +35,7 @@ void addOptions(OptionList& line, Options& options) {
 std::vector<Cell> cellsOf(const Options& options) {
   std::vector<Cell> cells;
   if (options.scenes.empty() && !options.quick) cells = furtherCells();
-  for (const std::string& scene : options.scenes.empty() ? sceneNames() : options.scenes) {
-    cells.emplace_back();
-    cells.back().scene = scene;
-  }
+  for (const std::string& scene : options.scenes.empty() ? sceneNames() : options.scenes) cells.push_back({scene});
   return cells;
 }
 

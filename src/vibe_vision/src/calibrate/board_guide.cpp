@@ -18,11 +18,6 @@ constexpr double kNewTilt = 0.12;       // of the slope
 constexpr double kEnoughOfAPart = 0.6;  // as of the whole image
 const double kSlope = std::tan(kEnoughTilt);
 
-cv::Mat greyOf(const ImageView& image) {  // OpenCV does not write to it
-  return {image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.data),
-          static_cast<std::size_t>(image.stride)};
-}
-
 std::vector<cv::Point2f> pointsOf(const std::vector<Eigen::Vector2d>& corners) {
   std::vector<cv::Point2f> points;
   for (const Eigen::Vector2d& p : corners) points.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
@@ -53,7 +48,7 @@ BoardGuide::BoardGuide(const BoardSpec& board, double focal_length, int width, i
 
 BoardPicture BoardGuide::look(const ImageView& image) const {
   BoardPicture picture;
-  const cv::Mat grey = greyOf(image);
+  const cv::Mat grey = image.mat();
   picture.corners = findBoard(image, board_);
   if (!picture.corners) {
     picture.problem = whyNone(grey);

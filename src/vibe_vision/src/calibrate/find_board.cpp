@@ -91,9 +91,7 @@ void refine(const cv::Mat& image, const BoardSpec& board, Corners& corners) {
 }  // namespace
 
 std::optional<std::vector<Eigen::Vector2d>> findBoard(const ImageView& image, const BoardSpec& board) {
-  // OpenCV does not write to it
-  const cv::Mat grey(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.data),
-                     static_cast<std::size_t>(image.stride));
+  const cv::Mat grey = image.mat();
   Corners found;
   const int flags = cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE;
   if (!cv::findChessboardCornersSB(grey, cv::Size(board.columns, board.rows), found, flags)) return std::nullopt;

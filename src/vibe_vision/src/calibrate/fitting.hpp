@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
 #include <Eigen/Dense>
 
 namespace vibe::vision {

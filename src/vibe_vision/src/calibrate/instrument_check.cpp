@@ -160,10 +160,9 @@ std::optional<InstrumentCheck::Courses> InstrumentCheck::courses() const {
 void InstrumentCheck::predictFocal(const Path& seen, Places& sizes, Places& paths) const {
   CameraModel other = camera_;
   other.fx *= 1 + kFocalTrial, other.fy *= 1 + kFocalTrial;
-  const Eigen::Vector2d direction = config_.axis.direction, across(-direction.y(), direction.x());
+  const Eigen::Vector2d across = acrossOf(config_.axis);
   const auto seenAs = [&](double along) {
-    return Eigen::Vector2d(undistort(other, distort(camera_, config_.axis.origin + along * direction)) -
-                           config_.axis.origin);
+    return Eigen::Vector2d(undistort(other, distort(camera_, pixelAt(config_.axis, along))) - config_.axis.origin);
   };
   for (int i = 0; i < kBins; ++i) {
     const double place = 2.0 * i / (kBins - 1) - 1, along = seen.middle + place * seen.half;

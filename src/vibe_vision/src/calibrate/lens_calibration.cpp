@@ -98,10 +98,8 @@ void warnAboutViews(const LensCalibration& result, std::vector<std::string>& war
     warnings.push_back("the board is tilted by " + withDecimals(largest * 180 / M_PI, 0) +
                        " deg at most, so the focal length is hardly determined; tilt it by 20 to 40 deg, to all sides");
   }
-  std::nth_element(rms.begin(), rms.begin() + static_cast<std::ptrdiff_t>(rms.size() / 2), rms.end());
-  const double median = rms[rms.size() / 2];
   for (const BoardFit& view : result.views) {
-    if (view.rms <= kBadView * median) continue;
+    if (view.rms <= kBadView * median(rms)) continue;
     warnings.push_back(view.name + " fits badly, " + withDecimals(view.rms, 2) +
                        " px; look whether the board is blurred or bent in it and leave it out");
   }

@@ -241,9 +241,7 @@ MarkerFinder::MarkerFinder(const MarkerDesign& design, const MarkerSearch& searc
 MarkerFinder::~MarkerFinder() = default;
 
 std::optional<MarkerSighting> MarkerFinder::find(const ImageView& image, const Confirm& confirm) {
-  // OpenCV does not write to it
-  const cv::Mat grey(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.data),
-                     static_cast<std::size_t>(image.stride));
+  const cv::Mat grey = image.mat();
   bool confirmed = false;
   std::optional<MarkerSighting> best = impl_->search(grey, confirm, confirmed);
   if (!best && impl_->last_scale) {  // perhaps it turned or came nearer

@@ -1,7 +1,6 @@
 #include "vibe_vision/calibrate/marker_finder.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "calibrate/fitting.hpp"
 #include "vibe_core/program/error.hpp"
@@ -18,16 +17,6 @@ constexpr double kRoughScaleError = 0.3;
 constexpr int kRepeats = 8;           // of each image
 constexpr double kRepeatTime = 0.01;  // [s]
 constexpr int kPasses = 3;            // each with the axis of the one before
-
-void checkSizes(const VisionConfig& config, const std::vector<Frame>& images) {
-  for (const Frame& image : images) {
-    if (image.image.width == config.camera.width && image.image.height == config.camera.height) continue;
-    throw Error("an image has " + std::to_string(image.image.width) + " x " + std::to_string(image.image.height) +
-                " px, the configuration is for " + std::to_string(config.camera.width) + " x " +
-                std::to_string(config.camera.height) +
-                "; take the images with the calibrated camera and the same region");
-  }
-}
 
 /// A configuration with this instrument alone, whose axis is a piece around a place.
 VisionConfig pieceOf(const VisionConfig& config, std::size_t instrument, const Eigen::Vector2d& place,
@@ -109,8 +98,7 @@ LocatedMarker toLocated(const Measurement& m, const SlideAxis& axis) {
     marker.problem = toText(m.reason);
     return marker;
   }
-  const Eigen::Vector2d d = axis.direction;
-  marker.pixel = axis.origin + m.along * d + m.lateral * Eigen::Vector2d(-d.y(), d.x());
+  marker.pixel = pixelAt(axis, m.along, m.lateral);
   marker.pixels_per_metre = m.scale * pixelsPerMetre(axis, m.slide);
   marker.rotation = m.rotation;
   marker.ink = m.ink;
@@ -134,13 +122,13 @@ LocatedMarker settle(Tracker& tracker, Frame image, const SlideAxis& axis) {
 /// Tracks one image on a piece of the axis around the rough place.
 LocatedMarker measure(VisionConfig config, const Frame& image, const Eigen::Vector2d& rough) {
   InstrumentConfig& object = config.instruments.front();
-  const Eigen::Vector2d d = object.axis.direction, n(-d.y(), d.x()), origin = object.axis.origin;
-  const double slide = slideOf(object.axis, (rough - origin).dot(d));
+  const Eigen::Vector2d across = acrossOf(object.axis), origin = object.axis.origin;
+  const double slide = slideOf(object.axis, (rough - origin).dot(object.axis.direction));
   object.lower = slide - kMargin;
   object.upper = slide + kMargin;
   LocatedMarker marker;
   for (const double shift : kShifts) {
-    object.axis.origin = origin + shift * n;
+    object.axis.origin = origin + shift * across;
     Tracker tracker(config);
     marker = settle(tracker, image, object.axis);
     if (marker.found) break;
@@ -189,7 +177,9 @@ LocatedMarkers readTags(const VisionConfig& config, const InstrumentConfig& obje
 
 LocatedMarkers locateMarkers(const VisionConfig& config, std::size_t instrument, const std::vector<Frame>& images,
                              const MarkerSearch& search) {
-  checkSizes(config, images);
+  for (const Frame& image : images)
+    requireSize(config.camera, image.image.width, image.image.height, "an image has",
+                "take the images with the calibrated camera and the same region");
   const InstrumentConfig& object = config.instruments.at(instrument);
   if (const auto* tag = std::get_if<TagDesign>(&object.marker)) return readTags(config, object, *tag, images, search);
   const RoughResult rough = searchImages(config, instrument, images, search);

@@ -1,10 +1,8 @@
 #include "camera/aravis_camera.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 
-#include "camera/host_time.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {

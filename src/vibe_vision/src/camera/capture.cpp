@@ -1,17 +1,9 @@
 #include "vibe_vision/camera/capture.hpp"
 
-#include <atomic>
 #include <chrono>
-#include <mutex>
-#include <thread>
 #include <utility>
 
 namespace vibe::vision {
-namespace {
-
-constexpr double kReadPatience = 0.1;  // of one read: after this the thread sees whether it shall stop [s]
-
-}  // namespace
 
 void LatestFrame::put(Frame frame) {
   {
@@ -45,64 +37,39 @@ std::uint64_t LatestFrame::dropped() const {
   return dropped_;
 }
 
-struct Capture::Impl {
-  std::unique_ptr<FrameSource> source;
-  std::atomic<bool> shall_stop{false};
-  std::atomic<bool> is_gone{false};  // at the last read
-  LatestFrame latest;
-  mutable std::mutex mutex;
-  std::string failure;
-  std::thread thread;
-
-  explicit Impl(std::unique_ptr<FrameSource> s) : source(std::move(s)), thread([this] { run(); }) {}
-
-  void run() {
-    try {
-      while (!shall_stop && step()) {
-      }
-    } catch (const std::exception& error) {
-      const std::lock_guard<std::mutex> lock(mutex);
-      failure = error.what();
-      latest.close();
-    }
-  }
-
-  bool step() {
-    Frame frame;
-    const ReadResult result = source->read(frame, kReadPatience);
-    is_gone = result == ReadResult::Gone;
-    if (result == ReadResult::Frame) latest.put(std::move(frame));
-    if (result == ReadResult::End) latest.close();
-    return result != ReadResult::End;
-  }
-};
-
-Capture::Capture(std::unique_ptr<FrameSource> source) : impl_(std::make_unique<Impl>(std::move(source))) {}
+Capture::Capture(std::unique_ptr<FrameSource> source) : source_(std::move(source)), thread_([this] { run(); }) {}
 
 Capture::~Capture() {
-  impl_->shall_stop = true;
-  impl_->thread.join();
+  shall_stop_ = true;
+  thread_.join();
+}
+
+void Capture::run() {
+  constexpr double kReadPatience = 0.1;  // of one read: after this it sees whether it shall stop [s]
+  try {
+    ReadResult result = ReadResult::Timeout;
+    while (!shall_stop_ && result != ReadResult::End) {
+      Frame frame;
+      result = source_->read(frame, kReadPatience);
+      is_gone_ = result == ReadResult::Gone;
+      if (result == ReadResult::Frame) latest_.put(std::move(frame));
+    }
+    if (result == ReadResult::End) latest_.close();
+  } catch (const std::exception& error) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    failure_ = error.what();
+    latest_.close();
+  }
 }
 
 ReadResult Capture::take(Frame& frame, double timeout) {
-  const ReadResult result = impl_->latest.take(frame, timeout);
-  return result == ReadResult::Timeout && impl_->is_gone ? ReadResult::Gone : result;
-}
-
-std::uint64_t Capture::dropped() const {
-  return impl_->latest.dropped();
-}
-
-SourceStatistics Capture::statistics() const {
-  return impl_->source->statistics();
+  const ReadResult result = latest_.take(frame, timeout);
+  return result == ReadResult::Timeout && is_gone_ ? ReadResult::Gone : result;
 }
 
 std::string Capture::status() const {
-  {
-    const std::lock_guard<std::mutex> lock(impl_->mutex);
-    if (!impl_->failure.empty()) return impl_->failure;
-  }
-  return impl_->source->status();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return failure_.empty() ? source_->status() : failure_;
 }
 
 }  // namespace vibe::vision

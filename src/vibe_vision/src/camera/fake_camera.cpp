@@ -56,6 +56,31 @@ std::pair<int, int> calmEnds(const SyntheticScene& scene, int frames) {
   return best;
 }
 
+constexpr std::uint16_t kControlPort = 3956;  // GVCP
+constexpr guint32 kFirstFrame = 65401;        // of Aravis' simulated camera
+
+/// Aravis' simulated camera runs without a control port if it cannot have it, and nobody would notice.
+void requireFree(const std::string& address) {
+  sockaddr_in where{};
+  where.sin_family = AF_INET;
+  where.sin_port = htons(kControlPort);
+  const bool is_address = ::inet_pton(AF_INET, address.c_str(), &where.sin_addr) == 1;
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const bool is_free =
+      is_address && socket >= 0 && ::bind(socket, reinterpret_cast<const sockaddr*>(&where), sizeof where) == 0;
+  const int error = errno;
+  if (socket >= 0) ::close(socket);
+  if (is_free) return;
+  if (is_address && error == EADDRINUSE) {
+    throw Error("fake camera: the control port of " + address +
+                " is in use, perhaps by another fake camera; stop that, or choose another address.");
+  }
+  const std::string why = is_address && error != EADDRNOTAVAIL
+                              ? std::string(" cannot be used (") + std::strerror(error) + ")"
+                              : " is no IPv4 address of this computer";
+  throw Error("fake camera: " + address + why + "; choose one of ip address, such as 127.0.0.1.");
+}
+
 }  // namespace
 
 FrameRing::Turn FrameRing::turnOf(std::uint64_t k) const {
@@ -87,35 +112,6 @@ std::shared_ptr<const FrameRing> renderRing(const SyntheticScene& scene, int fra
   }
   return ring;
 }
-
-namespace {
-
-constexpr std::uint16_t kControlPort = 3956;  // GVCP
-constexpr guint32 kFirstFrame = 65401;        // of Aravis' simulated camera
-
-/// Aravis' simulated camera runs without a control port if it cannot have it, and nobody would notice.
-void requireFree(const std::string& address) {
-  sockaddr_in where{};
-  where.sin_family = AF_INET;
-  where.sin_port = htons(kControlPort);
-  const bool is_address = ::inet_pton(AF_INET, address.c_str(), &where.sin_addr) == 1;
-  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const bool is_free =
-      is_address && socket >= 0 && ::bind(socket, reinterpret_cast<const sockaddr*>(&where), sizeof where) == 0;
-  const int error = errno;
-  if (socket >= 0) ::close(socket);
-  if (is_free) return;
-  if (is_address && error == EADDRINUSE) {
-    throw Error("fake camera: the control port of " + address +
-                " is in use, perhaps by another fake camera; stop that, or choose another address.");
-  }
-  const std::string why = is_address && error != EADDRNOTAVAIL
-                              ? std::string(" cannot be used (") + std::strerror(error) + ")"
-                              : " is no IPv4 address of this computer";
-  throw Error("fake camera: " + address + why + "; choose one of ip address, such as 127.0.0.1.");
-}
-
-}  // namespace
 
 struct FakeCamera::Impl {
   std::shared_ptr<const FrameRing> ring;

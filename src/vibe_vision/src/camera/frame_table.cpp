@@ -1,5 +1,6 @@
 #include "camera/frame_table.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -20,87 +21,59 @@ std::vector<std::string> cells(const std::string& line) {
   return all;
 }
 
-class Reader {
- public:
-  Reader(const std::string& file, double exposure) : file_(file), exposure_(exposure), stream_(file) {
-    if (!stream_) throw Error(file + ": cannot be read; check that it exists and its permissions.");
-  }
+/// A line below the first one, which names the columns.
+struct Line {
+  const std::vector<std::string>& names;
+  std::string place;  ///< "file:7: "
+  std::vector<std::string> values;
 
-  FrameTable read() {
-    FrameTable table;
-    table.file = file_;
-    header();
-    std::string line;
-    while (std::getline(stream_, line)) {
-      ++line_;
-      if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-      table.rows.push_back(row(cells(line), table.rows.size()));
-      if (table.rows.size() > 1) checkOrder(table.rows[table.rows.size() - 2], table.rows.back());
-    }
-    return table;
-  }
-
- private:
-  std::string file_;
-  double exposure_;
-  std::ifstream stream_;
-  int line_ = 1;
-  int stamp_ = -1, sequence_ = -1, exposure_column_ = -1;
-  std::size_t columns_ = 0;
-
-  std::string place() const { return file_ + ":" + std::to_string(line_) + ": "; }
-
-  void header() {
-    std::string line;
-    std::getline(stream_, line);
-    const std::vector<std::string> names = cells(line);
-    columns_ = names.size();
-    for (int i = 0; i < static_cast<int>(names.size()); ++i) {
-      if (names[i] == "stamp") stamp_ = i;
-      if (names[i] == "sequence") sequence_ = i;
-      if (names[i] == "exposure") exposure_column_ = i;
-    }
-    if (stamp_ < 0) {
-      throw Error(place() + "no column is called stamp; the first line must name the columns, such as " +
-                  "\"sequence,stamp,exposure\".");
-    }
-  }
-
-  FrameTable::Row row(const std::vector<std::string>& values, std::size_t index) const {
-    if (values.size() != columns_) {
-      throw Error(place() + std::to_string(values.size()) + " values, but the first line names " +
-                  std::to_string(columns_) + " columns; complete or remove this line.");
-    }
-    FrameTable::Row row;
-    row.stamp = number(values[stamp_], "stamp");
-    row.exposure = exposure_column_ < 0 ? exposure_ : number(values[exposure_column_], "exposure");
-    row.sequence = sequence_ < 0 ? index : sequence(values[sequence_]);
-    return row;
-  }
-
-  double number(const std::string& text, const char* name) const {
+  double number(const std::string& name, double otherwise) const {
+    const auto column = std::find(names.begin(), names.end(), name);
+    if (column == names.end()) return otherwise;
+    const std::string& text = values[static_cast<std::size_t>(column - names.begin())];
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
-    if (!text.empty() && *end == '\0' && std::isfinite(value) && value >= 0) return value;
-    throw Error(place() + name + " is \"" + text + "\"; it must be a number of seconds, 0 or more.");
+    if (text.empty() || *end != '\0' || !std::isfinite(value) || value < 0)
+      throw Error(place + name + " is \"" + text + "\"; it must be a number of seconds, 0 or more.");
+    if (name == "sequence" && (value != std::floor(value) || value >= kMaxSequence))
+      throw Error(place + name + " is \"" + text + "\"; it must be a whole number.");
+    return value;
   }
 
-  std::uint64_t sequence(const std::string& text) const {
-    const double value = number(text, "sequence");
-    if (value == std::floor(value) && value < kMaxSequence) return static_cast<std::uint64_t>(value);
-    throw Error(place() + "sequence is \"" + text + "\"; it must be a whole number.");
-  }
-
-  void checkOrder(const FrameTable::Row& before, const FrameTable::Row& after) const {
-    if (after.stamp <= before.stamp) throw Error(place() + "stamp does not increase; sort the lines by time.");
-    if (after.sequence <= before.sequence) throw Error(place() + "sequence does not increase; sort the lines by time.");
+  /// @param exposure  of all frames if the file does not say
+  FrameTable::Row row(std::size_t index, double exposure) const {
+    if (values.size() != names.size())
+      throw Error(place + std::to_string(values.size()) + " values, but the first line names " +
+                  std::to_string(names.size()) + " columns; complete or remove this line.");
+    const double stamp = number("stamp", 0), time = number("exposure", exposure);
+    return {static_cast<std::uint64_t>(number("sequence", static_cast<double>(index))), stamp, time};
   }
 };
 
 }  // namespace
 
 FrameTable FrameTable::load(const std::string& file, double exposure) {
-  return Reader(file, exposure).read();
+  std::ifstream stream(file);
+  if (!stream) throw Error(file + ": cannot be read; check that it exists and its permissions.");
+  std::string line;
+  std::getline(stream, line);
+  const std::vector<std::string> names = cells(line);
+  if (std::find(names.begin(), names.end(), "stamp") == names.end())
+    throw Error(file +
+                ":1: no column is called stamp; the first line must name the columns, such as "
+                "\"sequence,stamp,exposure\".");
+  FrameTable table{{}, file};
+  for (int number = 2; std::getline(stream, line); ++number) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const std::string place = file + ":" + std::to_string(number) + ": ";
+    const Row row = Line{names, place, cells(line)}.row(table.rows.size(), exposure);
+    if (!table.rows.empty() && row.stamp <= table.rows.back().stamp)
+      throw Error(place + "stamp does not increase; sort the lines by time.");
+    if (!table.rows.empty() && row.sequence <= table.rows.back().sequence)
+      throw Error(place + "sequence does not increase; sort the lines by time.");
+    table.rows.push_back(row);
+  }
+  return table;
 }
 
 }  // namespace vibe::vision

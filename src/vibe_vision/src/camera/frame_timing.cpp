@@ -9,6 +9,14 @@ namespace {
 
 constexpr std::uint64_t kShortIds = 65535;  // 0 is no frame number
 
+constexpr double kTaiAhead = 37;    // TAI - UTC since 2017 (IERS bulletin C) [s]
+constexpr double kAgrees = 0.5;     // by which a camera that follows PTP may seem late when the host is busy [s]
+constexpr double kTooEarly = 1e-3;  // a packet that comes before its exposure ends: the clocks do not agree [s]
+constexpr double kJump = 0.05;      // by which a packet cannot be early unless a clock has been set [s]
+
+constexpr int kWindow = 30;
+constexpr double kMost = 1e6;  // frames of one gap; more is no gap but a clock that was set
+
 }  // namespace
 
 SequenceCounter::Step SequenceCounter::advance(std::uint64_t id) {
@@ -32,13 +40,6 @@ std::uint64_t SequenceCounter::distance(std::uint64_t id) const {
   return has_wrapped ? id + kShortIds - last_id_ : 1;  // 1: the camera has begun to count anew
 }
 
-namespace {
-
-constexpr int kWindow = 30;
-constexpr double kMost = 1e6;  // frames of one gap; more is no gap but a clock that was set
-
-}  // namespace
-
 std::uint64_t IntervalGaps::advance(double stamp) {
   const double interval = stamp - last_;
   const bool is_first = last_ == 0;
@@ -55,15 +56,6 @@ void IntervalGaps::learn(double interval) {
   period_ = shortest_;
   intervals_ = 0;
 }
-
-namespace {
-
-constexpr double kTaiAhead = 37;    // TAI - UTC since 2017 (IERS bulletin C) [s]
-constexpr double kAgrees = 0.5;     // by which a camera that follows PTP may seem late when the host is busy [s]
-constexpr double kTooEarly = 1e-3;  // a packet that comes before its exposure ends: the clocks do not agree [s]
-constexpr double kJump = 0.05;      // by which a packet cannot be early unless a clock has been set [s]
-
-}  // namespace
 
 StampClock::StampClock(CameraClock kind, bool follows_ptp) : kind_(kind), follows_ptp_(follows_ptp) {}
 

@@ -1,10 +1,4 @@
-#include <filesystem>
-#include <optional>
-
-#include "camera/aravis_source.hpp"
-#include "camera/picture_reader.hpp"
-#include "camera/recording_source.hpp"
-#include "camera/v4l2_source.hpp"
+#include "camera/sources.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
@@ -27,23 +21,6 @@ void check(const SourceOptions& options) {
   require(options.realtime_priority >= 0 && options.realtime_priority <= 99, "real-time priority must be 0 to 99");
 }
 
-std::optional<FrameTable> tableAt(const std::string& file, double exposure) {
-  if (!std::filesystem::exists(file)) return std::nullopt;
-  return FrameTable::load(file, exposure);
-}
-
-std::unique_ptr<FrameSource> openVideo(const std::string& file, const SourceOptions& options) {
-  auto reader = std::make_unique<VideoReader>(file);
-  std::optional<FrameTable> table = tableAt(file + ".csv", options.exposure);
-  return std::make_unique<RecordingSource>("video:" + file, std::move(reader), std::move(table), options);
-}
-
-std::unique_ptr<FrameSource> openImages(const std::string& pattern, const SourceOptions& options) {
-  auto reader = std::make_unique<ImageListReader>(pattern);
-  std::optional<FrameTable> table = tableAt(reader->folder() + "/frames.csv", options.exposure);
-  return std::make_unique<RecordingSource>("images:" + pattern, std::move(reader), std::move(table), options);
-}
-
 }  // namespace
 
 std::unique_ptr<FrameSource> openSource(const std::string& address, const SourceOptions& options) {
@@ -51,9 +28,9 @@ std::unique_ptr<FrameSource> openSource(const std::string& address, const Source
   const std::size_t colon = address.find(':');
   const std::string kind = address.substr(0, colon);
   const std::string rest = colon == std::string::npos ? "" : address.substr(colon + 1);
-  if (kind == "gige" && colon != std::string::npos) return std::make_unique<AravisSource>(rest, options);
+  if (kind == "gige" && colon != std::string::npos) return openAravis(rest, options);
   if (!rest.empty()) {
-    if (kind == "v4l2") return std::make_unique<V4l2Source>(rest, options);
+    if (kind == "v4l2") return openV4l2(rest, options);
     if (kind == "video") return openVideo(rest, options);
     if (kind == "images") return openImages(rest, options);
   }

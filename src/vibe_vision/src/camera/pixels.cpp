@@ -1,8 +1,8 @@
 #include "camera/pixels.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstring>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
@@ -11,33 +11,62 @@ namespace vibe::vision {
 
 namespace {
 
-enum class Layout { Bytes, Words, Packed, Stream, Bayer, Colour };
-
 struct Format {
   PixelFormat code;
   const char* name;
   int bits;  // per pixel
-  Layout layout;
+  void (*convert)(const Format& format, const std::uint8_t* data, const cv::Size& size, std::uint8_t* grey);
   int detail;  // significant bits, or OpenCV's conversion
 };
 
+void bytes(const Format&, const std::uint8_t* data, const cv::Size& size, std::uint8_t* grey) {
+  std::copy_n(data, size.area(), grey);
+}
+
+void words(const Format& format, const std::uint8_t* data, const cv::Size& size, std::uint8_t* grey) {
+  for (int i = 0; i < size.area(); ++i) {
+    const unsigned value = data[2 * i] | static_cast<unsigned>(data[2 * i + 1]) << 8;
+    grey[i] = static_cast<std::uint8_t>(value >> (format.detail - 8));
+  }
+}
+
+void packed(const Format&, const std::uint8_t* data, const cv::Size& size, std::uint8_t* grey) {
+  for (int i = 0; i < size.area(); ++i) grey[i] = data[3 * (i / 2) + (i % 2 == 0 ? 0 : 2)];
+}
+
+void stream(const Format& format, const std::uint8_t* data, const cv::Size& size, std::uint8_t* grey) {
+  for (int i = 0; i < size.area(); ++i) {
+    const std::size_t bit = static_cast<std::size_t>(i) * static_cast<std::size_t>(format.detail) +
+                            static_cast<std::size_t>(format.detail - 8);
+    const unsigned low = data[bit / 8], shift = static_cast<unsigned>(bit % 8);
+    const unsigned high = shift == 0 ? 0 : data[bit / 8 + 1];  // a pixel ends with its byte if shift is 0
+    grey[i] = static_cast<std::uint8_t>((low | high << 8) >> shift);
+  }
+}
+
+void colour(const Format& format, const std::uint8_t* data, const cv::Size& size, std::uint8_t* grey) {
+  const cv::Mat from(size, CV_MAKETYPE(CV_8U, format.bits / 8), const_cast<std::uint8_t*>(data));
+  cv::Mat to(size, CV_8U, grey);
+  cv::cvtColor(from, to, format.detail);
+}
+
 constexpr std::array<Format, 16> kFormats{{
-    {PixelFormat::Mono8, "Mono8", 8, Layout::Bytes, 8},
-    {PixelFormat::Mono10, "Mono10", 16, Layout::Words, 10},
-    {PixelFormat::Mono12, "Mono12", 16, Layout::Words, 12},
-    {PixelFormat::Mono16, "Mono16", 16, Layout::Words, 16},
-    {PixelFormat::Mono10Packed, "Mono10Packed", 12, Layout::Packed, 10},
-    {PixelFormat::Mono12Packed, "Mono12Packed", 12, Layout::Packed, 12},
-    {PixelFormat::Mono10p, "Mono10p", 10, Layout::Stream, 10},
-    {PixelFormat::Mono12p, "Mono12p", 12, Layout::Stream, 12},
-    {PixelFormat::BayerGR8, "BayerGR8", 8, Layout::Bayer, cv::COLOR_BayerGRBG2GRAY},
-    {PixelFormat::BayerRG8, "BayerRG8", 8, Layout::Bayer, cv::COLOR_BayerRGGB2GRAY},
-    {PixelFormat::BayerGB8, "BayerGB8", 8, Layout::Bayer, cv::COLOR_BayerGBRG2GRAY},
-    {PixelFormat::BayerBG8, "BayerBG8", 8, Layout::Bayer, cv::COLOR_BayerBGGR2GRAY},
-    {PixelFormat::RGB8, "RGB8", 24, Layout::Colour, cv::COLOR_RGB2GRAY},
-    {PixelFormat::BGR8, "BGR8", 24, Layout::Colour, cv::COLOR_BGR2GRAY},
-    {PixelFormat::YUYV, "YUV422_8", 16, Layout::Colour, cv::COLOR_YUV2GRAY_YUYV},
-    {PixelFormat::UYVY, "YUV422_8_UYVY", 16, Layout::Colour, cv::COLOR_YUV2GRAY_UYVY},
+    {PixelFormat::Mono8, "Mono8", 8, bytes, 8},
+    {PixelFormat::Mono10, "Mono10", 16, words, 10},
+    {PixelFormat::Mono12, "Mono12", 16, words, 12},
+    {PixelFormat::Mono16, "Mono16", 16, words, 16},
+    {PixelFormat::Mono10Packed, "Mono10Packed", 12, packed, 10},
+    {PixelFormat::Mono12Packed, "Mono12Packed", 12, packed, 12},
+    {PixelFormat::Mono10p, "Mono10p", 10, stream, 10},
+    {PixelFormat::Mono12p, "Mono12p", 12, stream, 12},
+    {PixelFormat::BayerGR8, "BayerGR8", 8, colour, cv::COLOR_BayerGRBG2GRAY},
+    {PixelFormat::BayerRG8, "BayerRG8", 8, colour, cv::COLOR_BayerRGGB2GRAY},
+    {PixelFormat::BayerGB8, "BayerGB8", 8, colour, cv::COLOR_BayerGBRG2GRAY},
+    {PixelFormat::BayerBG8, "BayerBG8", 8, colour, cv::COLOR_BayerBGGR2GRAY},
+    {PixelFormat::RGB8, "RGB8", 24, colour, cv::COLOR_RGB2GRAY},
+    {PixelFormat::BGR8, "BGR8", 24, colour, cv::COLOR_BGR2GRAY},
+    {PixelFormat::YUYV, "YUV422_8", 16, colour, cv::COLOR_YUV2GRAY_YUYV},
+    {PixelFormat::UYVY, "YUV422_8_UYVY", 16, colour, cv::COLOR_YUV2GRAY_UYVY},
 }};
 
 const Format* find(PixelFormat code) {
@@ -45,32 +74,6 @@ const Format* find(PixelFormat code) {
     if (format.code == code) return &format;
   }
   return nullptr;
-}
-
-void wordsToMono8(const std::uint8_t* data, std::size_t count, int bits, std::uint8_t* grey) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const unsigned value = data[2 * i] | static_cast<unsigned>(data[2 * i + 1]) << 8;
-    grey[i] = static_cast<std::uint8_t>(value >> (bits - 8));
-  }
-}
-
-void packedToMono8(const std::uint8_t* data, std::size_t count, std::uint8_t* grey) {
-  for (std::size_t i = 0; i < count; ++i) grey[i] = data[3 * (i / 2) + (i % 2 == 0 ? 0 : 2)];
-}
-
-void streamToMono8(const std::uint8_t* data, std::size_t count, int bits, std::uint8_t* grey) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t bit = i * static_cast<std::size_t>(bits) + static_cast<std::size_t>(bits - 8);
-    const unsigned low = data[bit / 8], shift = static_cast<unsigned>(bit % 8);
-    const unsigned high = shift == 0 ? 0 : data[bit / 8 + 1];  // a pixel ends with its byte if shift is 0
-    grey[i] = static_cast<std::uint8_t>((low | high << 8) >> shift);
-  }
-}
-
-void colourToMono8(const Format& format, const std::uint8_t* data, int width, int height, std::uint8_t* grey) {
-  const cv::Mat from(height, width, CV_MAKETYPE(CV_8U, format.bits / 8), const_cast<std::uint8_t*>(data));
-  cv::Mat to(height, width, CV_8U, grey);
-  cv::cvtColor(from, to, format.detail);
 }
 
 }  // namespace
@@ -102,28 +105,10 @@ std::size_t sizeOf(PixelFormat format, int width, int height) {
 void toMono8(PixelFormat format, const std::uint8_t* data, int width, int height, std::uint8_t* grey) {
   const Format* known = find(format);
   if (!known || sizeOf(format, width, height) == 0) return;
-  const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  switch (known->layout) {
-    case Layout::Bytes:
-      std::memcpy(grey, data, count);
-      return;
-    case Layout::Words:
-      wordsToMono8(data, count, known->detail, grey);
-      return;
-    case Layout::Packed:
-      packedToMono8(data, count, grey);
-      return;
-    case Layout::Stream:
-      streamToMono8(data, count, known->detail, grey);
-      return;
-    case Layout::Bayer:
-    case Layout::Colour:
-      colourToMono8(*known, data, width, height, grey);
-      return;
-  }
+  known->convert(*known, data, {width, height}, grey);
 }
 
-std::shared_ptr<std::uint8_t> PixelPool::acquire(std::size_t size) {
+std::uint8_t* PixelPool::give(Frame& frame, int width, int height) {
   auto pixels = std::make_shared<std::vector<std::uint8_t>>();
   {
     const std::lock_guard<std::mutex> lock(store_->mutex);
@@ -132,14 +117,16 @@ std::shared_ptr<std::uint8_t> PixelPool::acquire(std::size_t size) {
       store_->spare.pop_back();
     }
   }
-  pixels->resize(size);
+  pixels->resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  frame.image = {pixels->data(), width, height, width};
   const std::weak_ptr<Store> weak = store_;
-  return {pixels->data(), [pixels, weak](std::uint8_t*) {
-            const std::shared_ptr<Store> store = weak.lock();
-            if (!store) return;
-            const std::lock_guard<std::mutex> lock(store->mutex);
-            if (store->spare.size() < kSpare) store->spare.push_back(std::move(*pixels));
-          }};
+  frame.owner = std::shared_ptr<const void>(pixels->data(), [pixels, weak](const void*) {
+    const std::shared_ptr<Store> store = weak.lock();
+    if (!store) return;
+    const std::lock_guard<std::mutex> lock(store->mutex);
+    if (store->spare.size() < kSpare) store->spare.push_back(std::move(*pixels));
+  });
+  return pixels->data();
 }
 
 }  // namespace vibe::vision

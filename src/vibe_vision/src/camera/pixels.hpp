@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "vibe_vision/image/frame.hpp"
+
 namespace vibe::vision {
 
 /// Layouts of pixels that can be turned into 8-bit grey. Values: EMVA Pixel Format Naming Convention 2.3.
@@ -45,8 +47,9 @@ void toMono8(PixelFormat format, const std::uint8_t* data, int width, int height
 /// Memory of pixels that is used again as soon as nobody holds it: frames of constant size allocate nothing.
 class PixelPool {
  public:
-  /// @return memory that returns to the pool with its last owner, who may outlive the pool
-  std::shared_ptr<std::uint8_t> acquire(std::size_t size);
+  /// Gives a frame pixels of its own, whose memory returns to the pool with their last owner, who may outlive the pool.
+  /// @return where they are to be written
+  std::uint8_t* give(Frame& frame, int width, int height);
 
  private:
   static constexpr std::size_t kSpare = 8;

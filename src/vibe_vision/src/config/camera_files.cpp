@@ -16,31 +16,23 @@ constexpr double kLargestNumber = 1e6;  // of any number: errors of units are be
 const char* const kOtherModel =
     "calibrate the lens with the pinhole model of this one, or with vibe_calibrate intrinsics";
 
-using Fields = std::vector<YamlField>;
-
 class CameraFile {
  public:
   explicit CameraFile(const std::string& file) : source_(YamlSource::load(file, {})) {}
 
   CameraModel read(const std::string& camera) {
-    const Fields fields = source_.map(source_.root());
-    if (find(fields, "camera_matrix") != nullptr) return readRos(fields);
-    return readKalibr(chooseCamera(fields, camera));
+    const std::vector<YamlField> fields = source_.map(source_.root());
+    const auto ros = [](const YamlField& field) { return field.key == "camera_matrix"; };
+    return std::any_of(fields.begin(), fields.end(), ros) ? readRos() : readKalibr(chooseCamera(fields, camera));
   }
 
  private:
   YamlSource source_;
 
-  static const YamlField* find(const Fields& fields, const std::string& key) {
-    const auto at = std::find_if(fields.begin(), fields.end(), [&key](const YamlField& f) { return f.key == key; });
-    return at == fields.end() ? nullptr : &*at;
-  }
-
-  const YamlField& get(const YamlField& parent, const Fields& fields, const std::string& key) const {
-    const YamlField* field = find(fields, key);
-    if (field == nullptr)
-      source_.fail(parent, "lacks the key '" + key + "'; give the file as its calibration wrote it");
-    return *field;
+  YamlField get(const YamlField& parent, const std::string& key) const {
+    for (const YamlField& field : source_.map(parent))
+      if (field.key == key) return field;
+    source_.fail(parent, "lacks the key '" + key + "'; give the file as its calibration wrote it");
   }
 
   std::vector<double> numbers(const YamlField& field, std::size_t count) const {
@@ -54,21 +46,17 @@ class CameraFile {
     if (found != model) source_.fail(field, "is '" + found + "', only '" + model + "' is known here; " + kOtherModel);
   }
 
-  CameraModel readRos(const Fields& fields) const {
+  CameraModel readRos() const {
     const YamlField root = source_.root();
-    const auto data = [&](const char* key) {
-      const YamlField& matrix = get(root, fields, key);
-      return get(matrix, source_.map(matrix), "data");
-    };
     CameraModel camera;
-    camera.width = pixels(get(root, fields, "image_width"));
-    camera.height = pixels(get(root, fields, "image_height"));
-    requireModel(get(root, fields, "distortion_model"), "plumb_bob");
-    const YamlField matrix = data("camera_matrix");
+    camera.width = pixels(get(root, "image_width"));
+    camera.height = pixels(get(root, "image_height"));
+    requireModel(get(root, "distortion_model"), "plumb_bob");
+    const YamlField matrix = get(get(root, "camera_matrix"), "data");
     const std::vector<double> k = numbers(matrix, 9);
     if (k[1] != 0) source_.fail(matrix, std::string("has pixels that are not rectangular; ") + kOtherModel);
     setMatrix(matrix, {k[0], k[4], k[2], k[5]}, camera);
-    const std::vector<double> d = numbers(data("distortion_coefficients"), 5);
+    const std::vector<double> d = numbers(get(get(root, "distortion_coefficients"), "data"), 5);
     std::copy(d.begin(), d.end(), camera.distortion.begin());
     return camera;
   }
@@ -80,7 +68,7 @@ class CameraFile {
     camera.fx = values[0], camera.fy = values[1], camera.cx = values[2], camera.cy = values[3];
   }
 
-  YamlField chooseCamera(const Fields& fields, const std::string& camera) const {
+  YamlField chooseCamera(const std::vector<YamlField>& fields, const std::string& camera) const {
     std::vector<std::string> names;
     for (const YamlField& field : fields)
       if (field.value.IsMap() && field.value["camera_model"]) names.push_back(field.key);
@@ -94,20 +82,20 @@ class CameraFile {
                   names[0] + "'");
     if (!camera.empty() && std::find(names.begin(), names.end(), camera) == names.end())
       throw Error(source_.place() + ": '" + camera + "' is not a camera in it; " + suggestKey(camera, names));
-    return *find(fields, camera.empty() ? names[0] : camera);
+    return get(source_.root(), camera.empty() ? names[0] : camera);
   }
 
   CameraModel readKalibr(const YamlField& field) const {
-    const Fields fields = source_.map(field);
     CameraModel camera;
-    requireModel(get(field, fields, "camera_model"), "pinhole");
-    requireModel(get(field, fields, "distortion_model"), "radtan");
-    const Fields size = source_.list(get(field, fields, "resolution"));
-    if (size.size() != 2) source_.fail(get(field, fields, "resolution"), "does not have two values; write [728, 544]");
+    requireModel(get(field, "camera_model"), "pinhole");
+    requireModel(get(field, "distortion_model"), "radtan");
+    const YamlField resolution = get(field, "resolution");
+    const std::vector<YamlField> size = source_.list(resolution);
+    if (size.size() != 2) source_.fail(resolution, "does not have two values; write [728, 544]");
     camera.width = pixels(size[0]), camera.height = pixels(size[1]);
-    const YamlField& intrinsics = get(field, fields, "intrinsics");
+    const YamlField intrinsics = get(field, "intrinsics");
     setMatrix(intrinsics, numbers(intrinsics, 4), camera);
-    const std::vector<double> d = numbers(get(field, fields, "distortion_coeffs"), 4);
+    const std::vector<double> d = numbers(get(field, "distortion_coeffs"), 4);
     std::copy(d.begin(), d.end(), camera.distortion.begin());
     return camera;
   }

@@ -103,6 +103,29 @@ void passInstrument(Way& way, Instrument& sample) {
   passCoordinate(way, sample.rotation);
 }
 
+constexpr int kLargestPort = 65535;
+
+[[noreturn]] void fail(const std::string& target, const std::string& problem) {
+  throw Error("The address '" + target + "' for datagrams " + problem +
+              "; write host:port, for example 127.0.0.1:9870.");
+}
+
+/// Host and port of "host:port" or "[address]:port".
+std::pair<std::string, std::string> split(const std::string& target) {
+  const std::size_t colon = target.rfind(':');
+  if (colon == std::string::npos || colon == 0) fail(target, "has no host and port");
+  std::string host = target.substr(0, colon);
+  const std::string port = target.substr(colon + 1);
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
+    host = host.substr(1, host.size() - 2);
+  } else if (host.find(':') != std::string::npos) {
+    fail(target, "has more than one ':' (put an IPv6 address in brackets)");
+  }
+  const bool digits = !port.empty() && port.find_first_not_of("0123456789") == std::string::npos && port.size() <= 5;
+  if (!digits || std::stoi(port) < 1 || std::stoi(port) > kLargestPort) fail(target, "has no port from 1 to 65535");
+  return {host, port};
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> encode(const TrackDatagram& datagram) {
@@ -128,33 +151,6 @@ std::optional<TrackDatagram> decode(const std::uint8_t* bytes, std::size_t size)
   if (!reader.isWhole()) return std::nullopt;
   return datagram;
 }
-
-namespace {
-
-constexpr int kLargestPort = 65535;
-
-[[noreturn]] void fail(const std::string& target, const std::string& problem) {
-  throw Error("The address '" + target + "' for datagrams " + problem +
-              "; write host:port, for example 127.0.0.1:9870.");
-}
-
-/// Host and port of "host:port" or "[address]:port".
-std::pair<std::string, std::string> split(const std::string& target) {
-  const std::size_t colon = target.rfind(':');
-  if (colon == std::string::npos || colon == 0) fail(target, "has no host and port");
-  std::string host = target.substr(0, colon);
-  const std::string port = target.substr(colon + 1);
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
-    host = host.substr(1, host.size() - 2);
-  } else if (host.find(':') != std::string::npos) {
-    fail(target, "has more than one ':' (put an IPv6 address in brackets)");
-  }
-  const bool digits = !port.empty() && port.find_first_not_of("0123456789") == std::string::npos && port.size() <= 5;
-  if (!digits || std::stoi(port) < 1 || std::stoi(port) > kLargestPort) fail(target, "has no port from 1 to 65535");
-  return {host, port};
-}
-
-}  // namespace
 
 UdpSender::UdpSender(const std::string& target) {
   const auto [host, port] = split(target);

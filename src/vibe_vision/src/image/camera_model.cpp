@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "vibe_core/program/error.hpp"
+
 namespace vibe::vision {
 namespace {
 
@@ -48,6 +50,13 @@ bool isReachable(const std::array<double, 5>& k, const Eigen::Vector2d& p) {
 
 bool CameraModel::isDistorted() const {
   return std::any_of(distortion.begin(), distortion.end(), [](double k) { return k != 0; });
+}
+
+void requireSize(const CameraModel& camera, int width, int height, const std::string& whose,
+                 const std::string& remedy) {
+  if (width == camera.width && height == camera.height) return;
+  throw Error(whose + " " + sizeText(width, height) + " px, the configuration is for " +
+              sizeText(camera.width, camera.height) + " px; " + remedy);
 }
 
 Eigen::Vector2d undistort(const CameraModel& camera, const Eigen::Vector2d& pixel) {

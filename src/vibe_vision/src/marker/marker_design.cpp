@@ -80,14 +80,6 @@ TagDesign widened(const TagDesign& tag, double) {
   return tag;
 }
 
-}  // namespace
-
-MarkerDesign printed(const MarkerDesign& design, double ink) {
-  return std::visit([ink](const auto& marker) { return MarkerDesign(widened(marker, ink)); }, design);
-}
-
-namespace {
-
 /// White that must be around a ring, and at both ends of a sleeve: as wide as the blur of a fast marker.
 constexpr double kRingMargin = 0.15;    // of the outer diameter
 constexpr double kSleeveMargin = 0.05;  // of the length
@@ -202,6 +194,10 @@ void check(const SleeveDesign& sleeve, const std::string& place) {
 }
 
 }  // namespace
+
+MarkerDesign printed(const MarkerDesign& design, double ink) {
+  return std::visit([ink](const auto& marker) { return MarkerDesign(widened(marker, ink)); }, design);
+}
 
 void checkMarker(const MarkerDesign& design, const std::string& place) {
   std::visit([&](const auto& marker) { check(marker, place); }, design);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "vibe_core/program/error.hpp"
 
@@ -27,6 +28,10 @@ double expRest(int n, double x) {
     term *= -x / k;
   }
   return sum;
+}
+
+double squared(double x) {
+  return x * x;
 }
 
 }  // namespace
@@ -60,20 +65,6 @@ Eigen::Matrix4d jerkNoise(double dt, const JerkModel& jerk) {
   return 2 * jerk.deviation * jerk.deviation / jerk.time * q;
 }
 
-namespace {
-
-void checkPositive(double value, const std::string& name) {
-  if (std::isfinite(value) && value > 0) return;
-  throw Error("The prior of a predictor has " + name + " = " + std::to_string(value) +
-              "; set it to a finite number above 0.");
-}
-
-double squared(double x) {
-  return x * x;
-}
-
-}  // namespace
-
 MotionEstimate extrapolate(const MotionEstimate& estimate, double dt, const JerkModel& jerk) {
   if (dt <= 0) return estimate;
   const Eigen::Matrix4d f = motionTransition(dt, jerk.time);
@@ -85,11 +76,15 @@ MotionEstimate extrapolate(const MotionEstimate& estimate, double dt, const Jerk
 }
 
 Predictor::Predictor(const MotionPrior& prior) : prior_(prior) {
-  checkPositive(prior.jerk.deviation, "jerk.deviation");
-  checkPositive(prior.jerk.time, "jerk.time");
-  checkPositive(prior.speed, "speed");
-  checkPositive(prior.acceleration, "acceleration");
-  checkPositive(prior.max_gap, "max_gap");
+  const std::pair<const char*, double> numbers[] = {{"jerk.deviation", prior.jerk.deviation},
+                                                    {"jerk.time", prior.jerk.time},
+                                                    {"speed", prior.speed},
+                                                    {"acceleration", prior.acceleration},
+                                                    {"max_gap", prior.max_gap}};
+  for (const auto& [name, value] : numbers)
+    if (!std::isfinite(value) || value <= 0)
+      throw Error("The prior of a predictor has " + std::string(name) + " = " + std::to_string(value) +
+                  "; set it to a finite number above 0.");
 }
 
 void Predictor::start(double time, double value, double variance) {

@@ -18,11 +18,7 @@ constexpr int kLineStep = 20;  // of the text [px]
 class Canvas {
  public:
   explicit Canvas(const Frame& frame) : offset_(frame.offset_x, frame.offset_y) {
-    const ImageView& view = frame.image;
-    // OpenCV only reads it
-    const cv::Mat grey(view.height, view.width, CV_8UC1, const_cast<std::uint8_t*>(view.data),
-                       static_cast<std::size_t>(view.stride));
-    cv::cvtColor(grey, picture_, cv::COLOR_GRAY2BGR);
+    cv::cvtColor(frame.image.mat(), picture_, cv::COLOR_GRAY2BGR);
   }
   void line(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const cv::Scalar& colour) {
     if (a.allFinite() && b.allFinite()) cv::line(picture_, at(a), at(b), colour, 1, cv::LINE_AA, kSubpixelBits);
@@ -51,7 +47,7 @@ class Canvas {
 void drawAxis(const VisionConfig& config, const InstrumentConfig& instrument, Canvas& canvas) {
   const auto at = [&](int i) {
     const double slide = instrument.lower + (instrument.upper - instrument.lower) * i / kAxisPieces;
-    return distort(config.camera, instrument.axis.origin + alongOf(instrument.axis, slide) * instrument.axis.direction);
+    return distort(config.camera, pixelAt(instrument.axis, alongOf(instrument.axis, slide)));
   };
   for (int i = 0; i < kAxisPieces; ++i) canvas.line(at(i), at(i + 1), kAxisColour);
 }

@@ -50,8 +50,7 @@ class GuidePainter {
     pictures();
     const std::vector<GuideStep> steps = guideSteps(options, instruments);
     for (std::size_t i = 0; i < steps.size(); ++i) step(i + 1, steps[i]);
-    colour(kAccent);
-    face(Face::Plain, 0.92 * kBody);
+    style(kAccent, Face::Plain, 0.92 * kBody);
     y_ = flow(left_, y_ + 2e-3, right_ - left_, 0.92 * kBody, kFurther).y;
     if (room_ > 0) return 0;
     const double room = (bottom_ - y_) / static_cast<double>(steps.size());
@@ -66,7 +65,9 @@ class GuidePainter {
   double room_, left_, right_, bottom_, y_ = kMargin;
 
   void colour(const Colour& c) { cairo_set_source_rgb(context_, c.red, c.green, c.blue); }
-  void face(Face which, double size) {
+  /// Of the words that follow.
+  void style(const Colour& c, Face which, double size) {
+    colour(c);
     cairo_select_font_face(context_, which == Face::Code ? "monospace" : "sans-serif", CAIRO_FONT_SLANT_NORMAL,
                            which == Face::Bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(context_, size);
@@ -119,19 +120,14 @@ class GuidePainter {
   }
 
   void head(const std::string& instruments) {
-    colour(kAccent);
-    face(Face::Bold, 5.6e-3);
+    style(kAccent, Face::Bold, 5.6e-3);
     at(left_, y_ + 5e-3, "Calibrate the camera");
-    colour(kInk);
-    face(Face::Plain, kBody);
-    y_ =
-        flow(
-            left_, y_ + 11e-3, right_ - left_, kBody,
-            "From the print to tracked instruments (" + instruments +
-                "). Keep the order, and go on when the answer is the one with the tick. In each terminal first: source "
-                "devel/setup.bash")
-            .y +
-        3.5e-3;
+    style(kInk, Face::Plain, kBody);
+    const std::string words =
+        "From the print to tracked instruments (" + instruments +
+        "). Keep the order, and go on when the answer is the one with the tick. In each terminal first: source "
+        "devel/setup.bash";
+    y_ = flow(left_, y_ + 11e-3, right_ - left_, kBody, words).y + 3.5e-3;
   }
 
   void pictures() {
@@ -139,11 +135,8 @@ class GuidePainter {
     const std::array<const char*, 3> names = {"the rig", "steps 3 and 4: chessboard", "step 5: known slides"};
     for (int i = 0; i < 3; ++i) {
       const double x = left_ + i * (width + kPanelGap);
-      colour(kPale);
-      roundedBox(x, y_, width, kPanelHeight, 2e-3);
-      cairo_fill(context_);
-      colour(kAccent);
-      face(Face::Bold, 0.9 * kBody);
+      roundedBox(x, y_, width, kPanelHeight, 2e-3, kPale);
+      style(kAccent, Face::Bold, 0.9 * kBody);
       at(x + 2.5e-3, y_ + 4.5e-3, names[static_cast<std::size_t>(i)]);
       cairo_save(context_);
       cairo_translate(context_, x + width / 2, y_ + 26e-3);
@@ -155,18 +148,29 @@ class GuidePainter {
     y_ += kPanelHeight + 6e-3;
   }
 
-  void roundedBox(double x, double y, double width, double height, double radius) {
+  void roundedBox(double x, double y, double width, double height, double radius, const Colour& fill) {
+    colour(fill);
     cairo_new_sub_path(context_);
     cairo_arc(context_, x + width - radius, y + radius, radius, -M_PI / 2, 0);
     cairo_arc(context_, x + width - radius, y + height - radius, radius, 0, M_PI / 2);
     cairo_arc(context_, x + radius, y + height - radius, radius, M_PI / 2, M_PI);
     cairo_arc(context_, x + radius, y + radius, radius, M_PI, 1.5 * M_PI);
     cairo_close_path(context_);
+    cairo_fill(context_);
   }
   void box(double x, double y, double width, double height, const Colour& fill) {
     colour(fill);
     cairo_new_path(context_);
     cairo_rectangle(context_, x, y, width, height);
+    cairo_fill(context_);
+  }
+  struct Point {
+    double x, y;
+  };
+  void polygon(const std::vector<Point>& corners) {
+    cairo_new_path(context_);
+    for (const Point& corner : corners) cairo_line_to(context_, corner.x, corner.y);
+    cairo_close_path(context_);
     cairo_fill(context_);
   }
   void stroke(double x0, double y0, double x1, double y1, double width, const Colour& c) {
@@ -179,15 +183,13 @@ class GuidePainter {
   void arrow(double x0, double y0, double x1, double y1) {
     stroke(x0, y0, x1, y1, 3e-4, kAccent);
     const double angle = std::atan2(y1 - y0, x1 - x0);
-    cairo_move_to(context_, x1 + 6e-4 * std::cos(angle), y1 + 6e-4 * std::sin(angle));
+    std::vector<Point> head{{x1 + 6e-4 * std::cos(angle), y1 + 6e-4 * std::sin(angle)}};
     for (const double side : {-1.0, 1.0})
-      cairo_line_to(context_, x1 - 1.4e-3 * std::cos(angle + 0.45 * side), y1 - 1.4e-3 * std::sin(angle + 0.45 * side));
-    cairo_close_path(context_);
-    cairo_fill(context_);
+      head.push_back({x1 - 1.4e-3 * std::cos(angle + 0.45 * side), y1 - 1.4e-3 * std::sin(angle + 0.45 * side)});
+    polygon(head);
   }
   void label(double x, double y, const std::string& words) {
-    colour(kInk);
-    face(Face::Plain, 2.2e-3);
+    style(kInk, Face::Plain, 2.2e-3);
     centred(x, y, words);
   }
 
@@ -211,14 +213,13 @@ class GuidePainter {
   void stripe(const SleeveDesign& design, double u) {
     const double half = design.helix_pitch * design.helix_duty / 2, radius = design.diameter / 2;
     constexpr int kPieces = 16;
+    std::vector<Point> outline;
     for (int i = 0; i <= 2 * kPieces + 1; ++i) {
       const bool back = i > kPieces;
       const double phi = M_PI * ((back ? 2 * kPieces + 1 - i : i) / static_cast<double>(kPieces) - 0.5);
-      cairo_line_to(context_, u + design.helix_pitch * phi / (2 * M_PI) + (back ? half : -half),
-                    radius * std::sin(phi));
+      outline.push_back({u + design.helix_pitch * phi / (2 * M_PI) + (back ? half : -half), radius * std::sin(phi)});
     }
-    cairo_close_path(context_);
-    cairo_fill(context_);
+    polygon(outline);
   }
   void ring(double x, double y, double radius) {
     box(x - 1.75 * radius, y - 1.75 * radius, 3.5 * radius, 3.5 * radius, kWhite);
@@ -231,18 +232,11 @@ class GuidePainter {
 
   void rig() {
     colour(kLight);
-    cairo_new_path(context_);
-    cairo_move_to(context_, -1e-3, -8e-3);
-    cairo_line_to(context_, 1e-3, -8e-3);
-    cairo_line_to(context_, 23e-3, 17e-3);
-    cairo_line_to(context_, -23e-3, 17e-3);
-    cairo_close_path(context_);
-    cairo_fill(context_);
+    polygon({{-1e-3, -8e-3}, {1e-3, -8e-3}, {23e-3, 17e-3}, {-23e-3, 17e-3}});
     box(-5e-3, -18e-3, 10e-3, 6.5e-3, kInk);                                                           // camera
     box(-3e-3, -11.5e-3, 6e-3, 3.5e-3, kMetal);                                                        // lens
     for (const double side : {-1.0, 1.0}) box(side * 6e-3 - 1.6e-3, -10e-3, 3.2e-3, 1.6e-3, kAccent);  // ring light
-    face(Face::Plain, 2.2e-3);
-    colour(kInk);
+    style(kInk, Face::Plain, 2.2e-3);
     at(6.2e-3, -14.2e-3, "sharp and fixed");
     at(9e-3, -8.4e-3, "ring light");
     rod(-21e-3, 4e-3, 42e-3, -5e-3);
@@ -254,9 +248,6 @@ class GuidePainter {
   }
 
   /// A board of squares whose corners are given, upper left first, clockwise.
-  struct Point {
-    double x, y;
-  };
   void board(const std::array<Point, 4>& corner) {
     constexpr int kColumns = 6, kRows = 4;
     const auto inside = [&](double u, double v) {
@@ -268,13 +259,10 @@ class GuidePainter {
     for (int row = 0; row < kRows; ++row)
       for (int column = 0; column < kColumns; ++column) {
         colour((row + column) % 2 == 0 ? kInk : kWhite);
-        cairo_new_path(context_);
-        for (const auto& [u, v] : {Point{0, 0}, Point{1, 0}, Point{1, 1}, Point{0, 1}}) {
-          const Point p = inside((column + u) / kColumns, (row + v) / kRows);
-          cairo_line_to(context_, p.x, p.y);
-        }
-        cairo_close_path(context_);
-        cairo_fill(context_);
+        std::vector<Point> square;
+        for (const auto& [u, v] : {Point{0, 0}, Point{1, 0}, Point{1, 1}, Point{0, 1}})
+          square.push_back(inside((column + u) / kColumns, (row + v) / kRows));
+        polygon(square);
       }
   }
   void boards() {
@@ -310,14 +298,11 @@ class GuidePainter {
     stroke(-15.5e-3, 3.4e-3, -20.4e-3, 1.2e-3, 1.5e-4, kInk);
     label(3e-3, 4.2e-3, "gauge block");
     stroke(-4.4e-3, 3.4e-3, -11.5e-3, -1.4e-3, 1.5e-4, kInk);
-    colour(kWhite);
-    roundedBox(-25e-3, 6.5e-3, 50e-3, 13e-3, 1e-3);
-    cairo_fill(context_);
-    colour(kInk);
-    face(Face::Code, kCode);
+    roundedBox(-25e-3, 6.5e-3, 50e-3, 13e-3, 1e-3, kWhite);
+    style(kInk, Face::Code, kCode);
     const std::array<const char*, 3> lines = {"image,slide", "stop_00.png,0 mm", "stop_10.png,10 mm"};
     for (std::size_t i = 0; i < lines.size(); ++i) at(-23e-3, (10.3 + 3.6 * static_cast<double>(i)) * 1e-3, lines[i]);
-    face(Face::Plain, 2.2e-3);
+    style(kInk, Face::Plain, 2.2e-3);
     at(11e-3, 10.3e-3, "stops.csv");
   }
 
@@ -327,15 +312,13 @@ class GuidePainter {
     cairo_new_path(context_);
     cairo_arc(context_, left_ + kBadge, y_ + kBadge, kBadge, 0, 2 * M_PI);
     cairo_fill(context_);
-    colour(kWhite);
-    face(Face::Bold, 1.15 * kBody);
+    style(kWhite, Face::Bold, 1.15 * kBody);
     centred(left_ + kBadge, y_ + kBadge + 1.15e-3, std::to_string(number));
-    colour(kInk);
-    face(Face::Bold, kBody);
+    style(kInk, Face::Bold, kBody);
     const double baseline = y_ + kBody + 0.6e-3;
     at(x, baseline, s.title);
     const double begin = widthOf(s.title + " ");
-    face(Face::Plain, kBody);
+    style(kInk, Face::Plain, kBody);
     y_ = flow(x, baseline, width, kBody, s.what, begin).y + 2e-3;
     code(x, width, s.command);
     const double half = 0.38 * width, gap = 3e-3;
@@ -346,15 +329,12 @@ class GuidePainter {
   /// A grey box with a command.
   void code(double x, double width, const std::string& command) {
     constexpr double kPad = 1.3e-3;
-    face(Face::Code, kCode);
     cairo_push_group(context_);  // how many lines there are decides on the box
-    colour(kInk);
+    style(kInk, Face::Code, kCode);
     const double first = y_ + kPad + 0.8 * kCode;
     const double last = flow(x + kPad, first, width - 2 * kPad, kCode, command, 0, " \\", "--").y;
     cairo_pattern_t* words = cairo_pop_group(context_);
-    colour(kPale);
-    roundedBox(x, y_, width, last - y_ + 0.4 * kCode + kPad, 1e-3);
-    cairo_fill(context_);
+    roundedBox(x, y_, width, last - y_ + 0.4 * kCode + kPad, 1e-3, kPale);
     cairo_set_source(context_, words);
     cairo_paint(context_);
     cairo_pattern_destroy(words);
@@ -379,8 +359,7 @@ class GuidePainter {
     }
     cairo_stroke(context_);
     cairo_set_line_cap(context_, CAIRO_LINE_CAP_BUTT);
-    colour(kInk);
-    face(Face::Plain, size);
+    style(kInk, Face::Plain, size);
     return flow(x + kMark, baseline, width - kMark, size, words).y + 0.3 * size;
   }
 };

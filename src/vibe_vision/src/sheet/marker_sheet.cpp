@@ -41,22 +41,13 @@ double rodDiameter(const SleeveDesign& sleeve, double paper_thickness) {
 MarkerSheet::MarkerSheet(const VisionConfig& config, const SheetOptions& options)
     : options_(options), pages_(layOut(config, options)) {}
 
-double MarkerSheet::width() const {
-  return extentOf(options_.paper).width;
-}
-double MarkerSheet::height() const {
-  return extentOf(options_.paper).height;
-}
-
 void MarkerSheet::writePdf(const std::string& file) const {
   WholeFile whole(file, "The sheet");
   const Surface surface(
       cairo_pdf_surface_create(whole.part().c_str(), width() * kPointsPerMetre, height() * kPointsPerMetre));
   requireGood(surface, file);
-  {
-    SheetPainter painter(surface.get(), kPointsPerMetre, options_);
-    for (std::size_t i = 0; i < pages_.size(); ++i) painter.paint(pages_[i], i + 1, pages_.size());
-  }
+  for (std::size_t i = 0; i < pages_.size(); ++i)
+    paintPage(surface.get(), kPointsPerMetre, options_, pages_[i], i + 1, pages_.size());
   cairo_surface_finish(surface.get());
   requireGood(surface, file);
   whole.finish(true);
@@ -76,7 +67,7 @@ std::vector<std::string> MarkerSheet::writeSvg(const std::string& file) const {
                                                    height() * kMillimetresPerMetre));
     requireGood(surface, files.back());
     cairo_svg_surface_set_document_unit(surface.get(), CAIRO_SVG_UNIT_MM);
-    SheetPainter(surface.get(), kMillimetresPerMetre, options_).paint(pages_[i], i + 1, pages_.size());
+    paintPage(surface.get(), kMillimetresPerMetre, options_, pages_[i], i + 1, pages_.size());
     cairo_surface_finish(surface.get());
     requireGood(surface, files.back());
     whole.finish(true);
@@ -90,7 +81,7 @@ SheetRaster MarkerSheet::raster(std::size_t page, double pixels_per_metre) const
   raster.height = static_cast<int>(std::lround(height() * pixels_per_metre));
   const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, raster.width, raster.height));
   requireGood(surface, "raster of the sheet");
-  SheetPainter(surface.get(), pixels_per_metre, options_).paint(pages_.at(page), page + 1, pages_.size());
+  paintPage(surface.get(), pixels_per_metre, options_, pages_.at(page), page + 1, pages_.size());
   cairo_surface_flush(surface.get());
   const unsigned char* data = cairo_image_surface_get_data(surface.get());
   const int stride = cairo_image_surface_get_stride(surface.get());

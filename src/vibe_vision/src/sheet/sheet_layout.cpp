@@ -1,7 +1,6 @@
 #include "sheet/sheet_layout.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/yaml_source.hpp"

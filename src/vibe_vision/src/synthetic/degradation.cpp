@@ -113,17 +113,16 @@ double vignetteAt(const SyntheticScene& scene, double x, double y) {
 }
 
 Occluder::Occluder(const SyntheticScene& scene)
-    : present_(scene.degradation.occluder),
-      width_(scene.camera.width),
-      height_(scene.camera.height),
-      half_width_(kBarWidth * meanScale(scene) / 2),
-      speed_(kBarSpeed * meanScale(scene)),
-      slope_(0.08),
-      value_(static_cast<float>(0.55 * scene.background)) {}
+    : present(scene.degradation.occluder),
+      width(scene.camera.width),
+      height(scene.camera.height),
+      half_width(kBarWidth * meanScale(scene) / 2),
+      speed(kBarSpeed * meanScale(scene)),
+      value(static_cast<float>(0.55 * scene.background)) {}
 
 double Occluder::middle(double time, double y) const {
-  const double reach = width_ + 2 * half_width_;
-  return reach * triangle(time, reach / std::max(speed_, 1.0)) - half_width_ + slope_ * (y - height_ / 2);
+  const double reach = width + 2 * half_width;
+  return reach * triangle(time, reach / std::max(speed, 1.0)) - half_width + slope * (y - height / 2);
 }
 
 Highlights::Highlights(const SyntheticScene& scene, std::size_t instrument) {

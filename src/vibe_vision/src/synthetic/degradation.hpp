@@ -39,21 +39,16 @@ double meanLight(const Degradation& degradation, double begin, double end);
 double vignetteAt(const SyntheticScene& scene, double x, double y);
 
 /// A bar that sweeps to and fro across the image, in front of everything.
-class Occluder {
- public:
-  Occluder(const SyntheticScene& scene);
-  bool present() const { return present_; }
+struct Occluder {
+  explicit Occluder(const SyntheticScene& scene);
   /// Its middle in row y, at a time [s]. [px]
   double middle(double time, double y) const;
-  double halfWidth() const { return half_width_; }  ///< [px]
-  double speed() const { return speed_; }           ///< [px/s]
-  double slope() const { return slope_; }           ///< columns per row
-  float value() const { return value_; }            ///< [DN] at full light
 
- private:
-  bool present_;
-  double width_, height_, half_width_, speed_, slope_;
-  float value_;
+  bool present;
+  double width, height;      ///< of the image [px]
+  double half_width, speed;  ///< [px], [px/s]
+  double slope = 0.08;       ///< columns per row
+  float value;               ///< [DN] at full light
 };
 
 /// Reflections of lamps on glossy markers. They keep their place in the image: a row of them lies along the path of

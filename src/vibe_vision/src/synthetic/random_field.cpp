@@ -40,6 +40,10 @@ inline float normal(const RandomStream& random, std::uint32_t i) {
   return radius * sine(random.uniform(2 * i + 1));
 }
 
+float smoothStep(float t) {
+  return t * t * (3 - 2 * t);
+}
+
 }  // namespace
 
 void addNoise(const RandomStream& random, std::uint32_t counter, const float* expected, int count, float gain,
@@ -52,14 +56,6 @@ void addNoise(const RandomStream& random, std::uint32_t counter, const float* ex
     pixels[i] = static_cast<std::uint8_t>(static_cast<int>(clipped));
   }
 }
-
-namespace {
-
-float smoothStep(float t) {
-  return t * t * (3 - 2 * t);
-}
-
-}  // namespace
 
 Background::Background(int width, int height, double level, std::uint64_t seed)
     : width_(width),

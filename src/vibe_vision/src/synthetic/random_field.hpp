@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -46,7 +45,6 @@ class Background {
   Background(int width, int height, double level, std::uint64_t seed);
   /// At pixel centres from (-kPadding, y). @param y  from -kPadding to height + kPadding - 1
   const float* row(int y) const { return values_.data() + static_cast<std::size_t>(y + kPadding) * stride_; }
-  std::size_t stride() const { return stride_; }
   int width() const { return width_; }
   int height() const { return height_; }
 

@@ -46,7 +46,7 @@ struct Renderer::Impl {
       for (int x = 0; x < scene.camera.width; ++x) light.push_back(static_cast<float>(vignetteAt(scene, x, y)));
   }
 
-  std::vector<PixelRect> piecesOf(const Exposure& exposure) const;
+  std::vector<cv::Rect> piecesOf(const Exposure& exposure) const;
   std::vector<float> expected(std::uint64_t index) const;
   void vignette(std::vector<float>& image) const;
 
@@ -57,19 +57,19 @@ struct Renderer::Impl {
 };
 
 /// Where the image is not just background.
-std::vector<PixelRect> Renderer::Impl::piecesOf(const Exposure& exposure) const {
-  const PixelRect image{0, 0, scene.camera.width, scene.camera.height};
+std::vector<cv::Rect> Renderer::Impl::piecesOf(const Exposure& exposure) const {
+  const cv::Rect image(0, 0, scene.camera.width, scene.camera.height);
   const int reach = tiles.kernel().margin() + 1;
-  std::vector<PixelRect> pieces;
+  std::vector<cv::Rect> pieces;
   for (std::size_t i = 0; i < tiles.objectCount(); ++i)
-    pieces.push_back(intersection(image, grown(tiles.boundsOf(i, exposure), reach)));
+    pieces.push_back(image & grown(tiles.boundsOf(i, exposure), reach));
   const Occluder& bar = tiles.occluder();
-  for (int y = 0; bar.present() && y < image.y1; y += kStripHeight) {
+  for (int y = 0; bar.present && y < image.height; y += kStripHeight) {
     const double middle = bar.middle(exposure.middle(), y + kStripHeight / 2.0);
-    const double half = bar.halfWidth() + bar.speed() * (exposure.end - exposure.begin) +
-                        std::abs(bar.slope()) * kStripHeight / 2 + reach + 1;
-    const PixelRect strip{static_cast<int>(middle - half), y, static_cast<int>(middle + half) + 1, y + kStripHeight};
-    pieces.push_back(intersection(image, strip));
+    const double half = bar.half_width + bar.speed * (exposure.end - exposure.begin) +
+                        std::abs(bar.slope) * kStripHeight / 2 + reach + 1;
+    const int left = static_cast<int>(middle - half), right = static_cast<int>(middle + half) + 1;
+    pieces.push_back(image & cv::Rect(left, y, right - left, kStripHeight));
   }
   return pieces;
 }
@@ -85,7 +85,7 @@ std::vector<float> Renderer::Impl::expected(std::uint64_t index) const {
   const auto mean = static_cast<float>(meanLight(scene.degradation, exposure.begin, exposure.end));
   std::vector<float> image(background.size());
   std::transform(background.begin(), background.end(), image.begin(), [&](float v) { return v * mean; });
-  for (const PixelRect& piece : piecesOf(exposure)) tiles.render(piece, exposure, image.data());
+  for (const cv::Rect& piece : piecesOf(exposure)) tiles.render(piece, exposure, image.data());
   vignette(image);
   return image;
 }

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "vibe_core/program/error.hpp"

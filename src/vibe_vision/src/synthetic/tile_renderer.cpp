@@ -24,17 +24,13 @@ double sampleCentre(int first_pixel, int sample, float side) {
 
 }  // namespace
 
-PixelRect intersection(const PixelRect& a, const PixelRect& b) {
-  return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
-}
-
-PixelRect grown(const PixelRect& rect, int by) {
-  return {rect.x0 - by, rect.y0 - by, rect.x1 + by, rect.y1 + by};
+cv::Rect grown(const cv::Rect& rect, int by) {
+  return {rect.x - by, rect.y - by, rect.width + 2 * by, rect.height + 2 * by};
 }
 
 struct TileRenderer::Layer {
   std::unique_ptr<Surface> surface;
-  PixelRect bounds;
+  cv::Rect bounds;
   const Highlights* highlights = nullptr;
 };
 
@@ -45,7 +41,7 @@ struct TileRenderer::Moment {
 };
 
 struct TileRenderer::Grid {
-  PixelRect rect;
+  cv::Rect rect;
   int samples = 0;            // per pixel and direction
   float side = 0;             // of a sample [px]
   int columns = 0, rows = 0;  // of samples
@@ -67,7 +63,7 @@ TileRenderer::TileRenderer(const SyntheticScene& scene)
 
 TileRenderer::~TileRenderer() = default;
 
-PixelRect TileRenderer::boundsAt(std::size_t object, double time) const {
+cv::Rect TileRenderer::boundsAt(std::size_t object, double time) const {
   const MarkerFrame frame = markerFrame(scene_.camera, objects_[object], time);
   const Eigen::Vector2d half = halfExtents(objects_[object]);
   Eigen::Vector2d low = project(scene_.camera, frame.centre), high = low;
@@ -84,17 +80,14 @@ PixelRect TileRenderer::boundsAt(std::size_t object, double time) const {
       }
   constexpr double kClear = 1;  // the lens bends edges between corners
   const auto bound = [](double v) { return static_cast<int>(std::floor(std::clamp(v, -1e5, 1e5))); };
-  return {bound(low.x() - kClear), bound(low.y() - kClear), bound(high.x() + kClear) + 2, bound(high.y() + kClear) + 2};
+  return {cv::Point(bound(low.x() - kClear), bound(low.y() - kClear)),
+          cv::Point(bound(high.x() + kClear) + 2, bound(high.y() + kClear) + 2)};
 }
 
-PixelRect TileRenderer::boundsOf(std::size_t object, const Exposure& exposure) const {
-  PixelRect all = boundsAt(object, exposure.middle());
+cv::Rect TileRenderer::boundsOf(std::size_t object, const Exposure& exposure) const {
+  const cv::Rect all = boundsAt(object, exposure.middle());
   const double reach = 0.6 * (exposure.end - exposure.begin);  // moments reach a little beyond the exposure
-  for (const double time : {exposure.middle() - reach, exposure.middle() + reach}) {
-    const PixelRect rect = boundsAt(object, time);
-    all = {std::min(all.x0, rect.x0), std::min(all.y0, rect.y0), std::max(all.x1, rect.x1), std::max(all.y1, rect.y1)};
-  }
-  return all;
+  return all | boundsAt(object, exposure.middle() - reach) | boundsAt(object, exposure.middle() + reach);
 }
 
 double TileRenderer::pathLength(std::size_t object, const Exposure& exposure) const {
@@ -110,12 +103,12 @@ double TileRenderer::pathLength(std::size_t object, const Exposure& exposure) co
   return path(a, b) + path(b, c);
 }
 
-std::vector<TileRenderer::Moment> TileRenderer::moments(const PixelRect& rect, const Exposure& exposure,
+std::vector<TileRenderer::Moment> TileRenderer::moments(const cv::Rect& rect, const Exposure& exposure,
                                                         const Grid& grid) const {
   std::vector<std::size_t> seen;
-  double longest = occluder_.present() ? occluder_.speed() * (exposure.end - exposure.begin) : 0;
+  double longest = occluder_.present ? occluder_.speed * (exposure.end - exposure.begin) : 0;
   for (std::size_t i = 0; i < objects_.size(); ++i) {
-    if (intersection(rect, boundsOf(i, exposure)).empty()) continue;
+    if ((rect & boundsOf(i, exposure)).empty()) continue;
     seen.push_back(i);
     longest = std::max(longest, pathLength(i, exposure));
   }
@@ -141,20 +134,20 @@ std::vector<TileRenderer::Moment> TileRenderer::moments(const PixelRect& rect, c
   return all;
 }
 
-TileRenderer::Grid TileRenderer::makeGrid(const PixelRect& rect, int samples) const {
+TileRenderer::Grid TileRenderer::makeGrid(const cv::Rect& rect, int samples) const {
   Grid grid;
   grid.samples = samples;
   grid.side = 1.0F / static_cast<float>(samples);
   grid.rect = rect;
-  grid.columns = rect.width() * samples;
-  grid.rows = rect.height() * samples;
-  const SensorMap::Entry middle = map_.at((rect.x0 + rect.x1) / 2, (rect.y0 + rect.y1) / 2);
+  grid.columns = rect.width * samples;
+  grid.rows = rect.height * samples;
+  const SensorMap::Entry middle = map_.at((rect.x + rect.x + rect.width) / 2, (rect.y + rect.y + rect.height) / 2);
   grid.reference = middle.place;
   grid.aperture = grid.side * std::sqrt(std::abs(static_cast<double>(middle.jacobian.determinant())));
   grid.x.resize(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
   grid.y.resize(grid.x.size());
-  for (int py = rect.y0; py < rect.y1; ++py)
-    for (int px = rect.x0; px < rect.x1; ++px) {
+  for (int py = rect.y; py < rect.br().y; ++py)
+    for (int px = rect.x; px < rect.br().x; ++px) {
       const SensorMap::Entry entry = map_.at(px, py);
       const Eigen::Vector2f place = (entry.place - grid.reference).cast<float>();
       for (int j = 0; j < samples; ++j)
@@ -163,8 +156,8 @@ TileRenderer::Grid TileRenderer::makeGrid(const PixelRect& rect, int samples) co
                                        (static_cast<float>(j) + 0.5F) * grid.side - 0.5F);
           const Eigen::Vector2f point = place + entry.jacobian * within;
           const auto at =
-              static_cast<std::size_t>((py - rect.y0) * samples + j) * static_cast<std::size_t>(grid.columns) +
-              static_cast<std::size_t>((px - rect.x0) * samples + i);
+              static_cast<std::size_t>((py - rect.y) * samples + j) * static_cast<std::size_t>(grid.columns) +
+              static_cast<std::size_t>((px - rect.x) * samples + i);
           grid.x[at] = point.x();
           grid.y[at] = point.y();
         }
@@ -173,9 +166,9 @@ TileRenderer::Grid TileRenderer::makeGrid(const PixelRect& rect, int samples) co
 }
 
 void TileRenderer::backgroundRow(const Grid& grid, int sample_row, float* values) const {
-  const PixelRect& rect = grid.rect;
+  const cv::Rect& rect = grid.rect;
   const int limit = Background::kPadding - 1;
-  const double y = std::clamp(sampleCentre(rect.y0, sample_row, grid.side), -static_cast<double>(limit),
+  const double y = std::clamp(sampleCentre(rect.y, sample_row, grid.side), -static_cast<double>(limit),
                               static_cast<double>(background_.height() + limit - 1));
   const int row = static_cast<int>(std::floor(y));
   const auto down = static_cast<float>(y - row);
@@ -185,7 +178,7 @@ void TileRenderer::backgroundRow(const Grid& grid, int sample_row, float* values
     const int column = std::clamp(x, -limit, background_.width() + limit - 1);
     return upper[column] + down * (lower[column] - upper[column]);
   };
-  for (int px = rect.x0; px < rect.x1; ++px) {
+  for (int px = rect.x; px < rect.br().x; ++px) {
     const float left = at(px - 1), middle = at(px), right = at(px + 1);
     for (int s = 0; s < grid.samples; ++s) {
       const float t = (static_cast<float>(s) + 0.5F) * grid.side - 0.5F;
@@ -195,10 +188,10 @@ void TileRenderer::backgroundRow(const Grid& grid, int sample_row, float* values
 }
 
 void TileRenderer::layerRow(const Layer& layer, const Grid& grid, int sample_row, float* values, float* scratch) const {
-  const int y = grid.rect.y0 + sample_row / grid.samples;
-  if (y < layer.bounds.y0 || y >= layer.bounds.y1) return;
-  const int first = std::max(0, layer.bounds.x0 - grid.rect.x0) * grid.samples;
-  const int count = std::min(grid.rect.width(), layer.bounds.x1 - grid.rect.x0) * grid.samples - first;
+  const int y = grid.rect.y + sample_row / grid.samples;
+  if (y < layer.bounds.y || y >= layer.bounds.br().y) return;
+  const int first = std::max(0, layer.bounds.x - grid.rect.x) * grid.samples;
+  const int count = std::min(grid.rect.width, layer.bounds.br().x - grid.rect.x) * grid.samples - first;
   if (count <= 0) return;
   const auto from =
       static_cast<std::size_t>(sample_row) * static_cast<std::size_t>(grid.columns) + static_cast<std::size_t>(first);
@@ -208,36 +201,36 @@ void TileRenderer::layerRow(const Layer& layer, const Grid& grid, int sample_row
   float* to = values + first;
   for (int i = 0; i < count; ++i) to[i] += coverage[i] * (black + contrast * white[i] - to[i]);
   if (layer.highlights)
-    layer.highlights->addTo(to, coverage, count, static_cast<float>(sampleCentre(grid.rect.x0, first, grid.side)),
-                            grid.side, static_cast<float>(sampleCentre(grid.rect.y0, sample_row, grid.side)));
+    layer.highlights->addTo(to, coverage, count, static_cast<float>(sampleCentre(grid.rect.x, first, grid.side)),
+                            grid.side, static_cast<float>(sampleCentre(grid.rect.y, sample_row, grid.side)));
 }
 
 void TileRenderer::occluderRow(double time, const Grid& grid, double y, float* values) const {
   const double middle = occluder_.middle(time, y);
-  const auto half = static_cast<float>(occluder_.halfWidth());
-  const auto start = static_cast<float>(sampleCentre(grid.rect.x0, 0, grid.side) - middle);
+  const auto half = static_cast<float>(occluder_.half_width);
+  const auto start = static_cast<float>(sampleCentre(grid.rect.x, 0, grid.side) - middle);
   for (int i = 0; i < grid.columns; ++i) {
     const float share =
         edgeShare(half - std::abs(start + static_cast<float>(i) * grid.side), static_cast<float>(grid.samples));
-    values[i] += share * (occluder_.value() - values[i]);
+    values[i] += share * (occluder_.value - values[i]);
   }
 }
 
 /// True if few samples do: the optics or the motion of everything in the rectangle blurs what they leave of its edges.
-bool TileRenderer::isSmoothed(const PixelRect& rect, const Exposure& exposure) const {
+bool TileRenderer::isSmoothed(const cv::Rect& rect, const Exposure& exposure) const {
   if (scene_.degradation.blur >= kWideBlur) return true;
   for (std::size_t i = 0; i < objects_.size(); ++i)
-    if (!intersection(rect, boundsOf(i, exposure)).empty() && pathLength(i, exposure) < kSmooth) return false;
+    if (!(rect & boundsOf(i, exposure)).empty() && pathLength(i, exposure) < kSmooth) return false;
   return true;
 }
 
-void TileRenderer::render(const PixelRect& rect, const Exposure& exposure, float* image) const {
+void TileRenderer::render(const cv::Rect& rect, const Exposure& exposure, float* image) const {
   if (rect.empty()) return;
-  const PixelRect wide = grown(rect, kernel_.margin());
+  const cv::Rect wide = grown(rect, kernel_.margin());
   const PixelKernel& kernel = isSmoothed(wide, exposure) ? kernel_ : fine_kernel_;
   const Grid grid = makeGrid(wide, kernel.samples());
   const std::vector<Moment> all = moments(wide, exposure, grid);
-  const auto columns = static_cast<std::size_t>(grid.columns), width = static_cast<std::size_t>(rect.width());
+  const auto columns = static_cast<std::size_t>(grid.columns), width = static_cast<std::size_t>(rect.width);
   std::vector<float> behind(columns), values(columns), sum(columns), scratch(2 * columns);
   std::vector<float> blurred(width * static_cast<std::size_t>(grid.rows));
   for (int r = 0; r < grid.rows; ++r) {
@@ -246,14 +239,14 @@ void TileRenderer::render(const PixelRect& rect, const Exposure& exposure, float
     for (const Moment& moment : all) {
       values = behind;
       for (const Layer& layer : moment.layers) layerRow(layer, grid, r, values.data(), scratch.data());
-      if (occluder_.present()) occluderRow(moment.time, grid, sampleCentre(wide.y0, r, grid.side), values.data());
+      if (occluder_.present) occluderRow(moment.time, grid, sampleCentre(wide.y, r, grid.side), values.data());
       for (std::size_t i = 0; i < columns; ++i) sum[i] += moment.light * values[i];
     }
-    kernel.alongRow(sum.data(), rect.width(), blurred.data() + static_cast<std::size_t>(r) * width);
+    kernel.alongRow(sum.data(), rect.width, blurred.data() + static_cast<std::size_t>(r) * width);
   }
   const std::vector<float>& weights = kernel.weights();
-  for (int y = 0; y < rect.height(); ++y) {
-    float* to = image + static_cast<std::size_t>(rect.y0 + y) * static_cast<std::size_t>(scene_.camera.width) + rect.x0;
+  for (int y = 0; y < rect.height; ++y) {
+    float* to = image + static_cast<std::size_t>(rect.y + y) * static_cast<std::size_t>(scene_.camera.width) + rect.x;
     std::fill(to, to + width, 0.0F);
     for (std::size_t k = 0; k < weights.size(); ++k) {
       const float* from = blurred.data() + (static_cast<std::size_t>(y * grid.samples) + k) * width;

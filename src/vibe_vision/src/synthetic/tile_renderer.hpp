@@ -1,5 +1,5 @@
 #pragma once
-#include <memory>
+#include <opencv2/core.hpp>
 #include <vector>
 
 #include "synthetic/degradation.hpp"
@@ -9,15 +9,8 @@
 
 namespace vibe::vision {
 
-/// Pixels from (x0, y0) up to, without, (x1, y1).
-struct PixelRect {
-  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-  int width() const { return x1 - x0; }
-  int height() const { return y1 - y0; }
-  bool empty() const { return x1 <= x0 || y1 <= y0; }
-};
-PixelRect intersection(const PixelRect& a, const PixelRect& b);
-PixelRect grown(const PixelRect& rect, int by);
+/// The rectangle with so many pixels more on each side.
+cv::Rect grown(const cv::Rect& rect, int by);
 
 /// An exposure: from `begin` to `end` [s].
 struct Exposure {
@@ -33,12 +26,11 @@ class TileRenderer {
   ~TileRenderer();
 
   /// Where object `i` is seen during the exposure, without the blur of the optics.
-  PixelRect boundsOf(std::size_t object, const Exposure& exposure) const;
+  cv::Rect boundsOf(std::size_t object, const Exposure& exposure) const;
   std::size_t objectCount() const { return objects_.size(); }
   const PixelKernel& kernel() const { return kernel_; }
   const Background& background() const { return background_; }
   const Occluder& occluder() const { return occluder_; }
-  const SyntheticInstrument& object(std::size_t i) const { return objects_[i]; }
   void setObject(std::size_t i, const SyntheticInstrument& object) { objects_[i] = object; }
   /// Of all markers, at full light [DN].
   void setInk(double black, double white) {
@@ -47,7 +39,7 @@ class TileRenderer {
   }
 
   /// Mean grey values over the exposure, without vignetting, into image (rows of camera.width).
-  void render(const PixelRect& rect, const Exposure& exposure, float* image) const;
+  void render(const cv::Rect& rect, const Exposure& exposure, float* image) const;
 
  private:
   struct Layer;   // an object at one moment
@@ -55,10 +47,10 @@ class TileRenderer {
   struct Grid;    // the sample points of a tile
 
   double pathLength(std::size_t object, const Exposure& exposure) const;
-  PixelRect boundsAt(std::size_t object, double time) const;
-  std::vector<Moment> moments(const PixelRect& rect, const Exposure& exposure, const Grid& grid) const;
-  Grid makeGrid(const PixelRect& rect, int samples) const;
-  bool isSmoothed(const PixelRect& rect, const Exposure& exposure) const;
+  cv::Rect boundsAt(std::size_t object, double time) const;
+  std::vector<Moment> moments(const cv::Rect& rect, const Exposure& exposure, const Grid& grid) const;
+  Grid makeGrid(const cv::Rect& rect, int samples) const;
+  bool isSmoothed(const cv::Rect& rect, const Exposure& exposure) const;
   void backgroundRow(const Grid& grid, int sample_row, float* values) const;
   void layerRow(const Layer& layer, const Grid& grid, int sample_row, float* values, float* scratch) const;
   void occluderRow(double time, const Grid& grid, double y, float* values) const;

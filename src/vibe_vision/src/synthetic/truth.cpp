@@ -38,7 +38,7 @@ double visibleShare(const SyntheticScene& scene, const SyntheticInstrument& inst
       const bool inside = pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < scene.camera.width - 0.5 &&
                           pixel.y() < scene.camera.height - 0.5;
       const bool covered =
-          occluder.present() && std::abs(pixel.x() - occluder.middle(time, pixel.y())) < occluder.halfWidth();
+          occluder.present && std::abs(pixel.x() - occluder.middle(time, pixel.y())) < occluder.half_width;
       if (inside && !covered) ++seen;
     }
   return static_cast<double>(seen) / all;

@@ -112,11 +112,9 @@ class TagReader::ArucoDetector : public Detector {
   }
 
   std::vector<TagCorners> find(const ImageView& view) override {
-    const cv::Mat image(view.height, view.width, CV_8UC1, const_cast<std::uint8_t*>(view.data),
-                        static_cast<std::size_t>(view.stride));
     std::vector<std::vector<cv::Point2f>> corners;
     std::vector<int> ids;
-    cv::aruco::detectMarkers(image, dictionary_, corners, ids, parameters_);
+    cv::aruco::detectMarkers(view.mat(), dictionary_, corners, ids, parameters_);
     std::vector<TagCorners> tags;
     for (std::size_t i = 0; i < ids.size(); ++i) {
       if (ids[i] != id_) continue;

@@ -13,7 +13,7 @@ constexpr int kHalo = 5;                  // pixels around the middle of a highl
 }  // namespace
 
 AxisMap::AxisMap(const CameraModel& camera, const SlideAxis& axis, double begin, double end, double half_width)
-    : camera_(camera), axis_(axis), across_(-axis.direction.y(), axis.direction.x()) {
+    : camera_(camera), axis_(axis), across_(acrossOf(axis)) {
   const std::vector<Eigen::Vector2d> outline = border(begin, end, half_width);
   double top = 1e9, bottom = -1e9;
   for (const Eigen::Vector2d& p : outline) top = std::min(top, p.y()), bottom = std::max(bottom, p.y());
@@ -23,12 +23,8 @@ AxisMap::AxisMap(const CameraModel& camera, const SlideAxis& axis, double begin,
   saturated_.assign(side * side, 0);
 }
 
-Eigen::Vector2d AxisMap::undistorted(double along, double lateral) const {
-  return axis_.origin + along * axis_.direction + lateral * across_;
-}
-
 Eigen::Vector2d AxisMap::pixel(double along, double lateral) const {
-  return distort(camera_, undistorted(along, lateral));
+  return distort(camera_, pixelAt(axis_, along, lateral));
 }
 
 /// Points around the band, less than 1 px apart; what is far outside of the sensor is drawn to its edge.
@@ -65,7 +61,7 @@ void AxisMap::addRow(int y, const std::vector<Eigen::Vector2d>& border) {
   rows_.push_back(row);
 }
 
-PixelWindow AxisMap::boundsOf(const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents) const {
+cv::Rect AxisMap::boundsOf(const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents) const {
   Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
   for (double a : {-1.0, 0.0, 1.0})
     for (double b : {-1.0, 0.0, 1.0}) {
@@ -80,9 +76,9 @@ PixelWindow AxisMap::boundsOf(const Eigen::Vector2d& centre, const Eigen::Vector
   return {x, y, limit(std::ceil(high.x())) - x + 1, limit(std::ceil(high.y())) - y + 1};
 }
 
-PixelWindow AxisMap::gather(const Frame& frame, const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents,
-                            PixelBlock& pixels) {
-  PixelWindow rect = boundsOf(centre, half_extents);
+cv::Rect AxisMap::gather(const Frame& frame, const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents,
+                         PixelBlock& pixels) {
+  cv::Rect rect = boundsOf(centre, half_extents);
   const int last_row = first_row_ + static_cast<int>(rows_.size());
   const int top = std::max(rect.y, first_row_), bottom = std::min(rect.y + rect.height, last_row);
   rect.y = top, rect.height = std::max(bottom - top, 0);
@@ -97,7 +93,7 @@ PixelWindow AxisMap::gather(const Frame& frame, const Eigen::Vector2d& centre, c
 
 /// Marks what is near highlights in saturated_; nearly always there is none. Single saturated pixels are noise of a
 /// bright picture: a highlight saturates a pixel and its four neighbours.
-void AxisMap::markSaturated(const Frame& frame, const PixelWindow& rect) {
+void AxisMap::markSaturated(const Frame& frame, const cv::Rect& rect) {
   any_saturated_ = false;
   const ImageView& image = frame.image;
   const int left = std::max(rect.x - frame.offset_x, 1), top = std::max(rect.y - frame.offset_y, 1);
@@ -115,7 +111,7 @@ void AxisMap::markSaturated(const Frame& frame, const PixelWindow& rect) {
   }
 }
 
-void AxisMap::markHalo(const PixelWindow& rect, int x, int y) {
+void AxisMap::markHalo(const cv::Rect& rect, int x, int y) {
   const auto size = static_cast<std::size_t>(rect.width) * rect.height;
   if (!any_saturated_) saturated_.assign(std::max(size, saturated_.size()), 0);
   any_saturated_ = true;
@@ -128,7 +124,7 @@ void AxisMap::markHalo(const PixelWindow& rect, int x, int y) {
   }
 }
 
-void AxisMap::gatherRow(const Frame& frame, const PixelWindow& rect, int y, int parity, const Eigen::Vector2d& centre,
+void AxisMap::gatherRow(const Frame& frame, const cv::Rect& rect, int y, int parity, const Eigen::Vector2d& centre,
                         const Eigen::Vector2d& half_extents, PixelBlock& pixels) const {
   const Row& row = rows_[y - first_row_];
   int begin = std::max(rect.x, row.begin);
@@ -171,7 +167,7 @@ void AxisMap::readBand(const Frame& frame, double begin, double end, double half
   std::fill(profile.sum.begin(), profile.sum.end(), 0.F);
   std::fill(profile.count.begin(), profile.count.end(), 0.F);
   profile.pixels = profile.saturated = 0;
-  const PixelWindow rect = boundsOf({(begin + end) / 2, 0}, {(end - begin) / 2, half_width});
+  const cv::Rect rect = boundsOf({(begin + end) / 2, 0}, {(end - begin) / 2, half_width});
   const auto first = static_cast<float>(profile.first - 0.5), width = static_cast<float>(half_width);
   const float low = std::max(static_cast<float>(begin) - first, 0.F);
   const float high = std::min(static_cast<float>(end) - first, static_cast<float>(profile.sum.size()));

@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
-#include <optional>
+#include <opencv2/core.hpp>
 #include <vector>
 
 #include "vibe_vision/config/vision_config.hpp"
@@ -9,11 +9,6 @@
 #include "vibe_vision/track/marker_pattern.hpp"
 
 namespace vibe::vision {
-
-/// Pixels of the full sensor, [x, x + width) x [y, y + height).
-struct PixelWindow {
-  int x = 0, y = 0, width = 0, height = 0;
-};
 
 /// Sums of grey values over the width of a band, by bins of 1 px along the axis.
 struct AxisProfile {
@@ -30,17 +25,15 @@ class AxisMap {
   /// @param half_width  of the band [px]
   AxisMap(const CameraModel& camera, const SlideAxis& axis, double begin, double end, double half_width);
 
-  /// Undistorted pixel of a place at the axis.
-  Eigen::Vector2d undistorted(double along, double lateral) const;
-  /// The same as seen through the lens; NaN where the lens cannot show it.
+  /// Of a place at the axis as seen through the lens; NaN where the lens cannot show it.
   Eigen::Vector2d pixel(double along, double lateral) const;
 
   /// The pixels within half extents of a place, a quarter and then the second quarter of a checkered pattern first, so
   /// that the beginning of the block samples all of the window. Those outside of the
   /// frame and those near saturated ones get weight 0. No allocation once the block is large enough; pixels that the
-  /// block has no room for are left out.
-  PixelWindow gather(const Frame& frame, const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents,
-                     PixelBlock& pixels);
+  /// block has no room for are left out. @return the pixels of the full sensor around them
+  cv::Rect gather(const Frame& frame, const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents,
+                  PixelBlock& pixels);
 
   /// Sums the frame over a part of the band around the axis; bins outside of it are empty. No allocation.
   void readBand(const Frame& frame, double begin, double end, double half_width, AxisProfile& profile) const;
@@ -52,10 +45,10 @@ class AxisMap {
   };
   std::vector<Eigen::Vector2d> border(double begin, double end, double half_width) const;
   void addRow(int y, const std::vector<Eigen::Vector2d>& border);
-  PixelWindow boundsOf(const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents) const;
-  void markSaturated(const Frame& frame, const PixelWindow& rect);
-  void markHalo(const PixelWindow& rect, int x, int y);
-  void gatherRow(const Frame& frame, const PixelWindow& rect, int y, int parity, const Eigen::Vector2d& centre,
+  cv::Rect boundsOf(const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents) const;
+  void markSaturated(const Frame& frame, const cv::Rect& rect);
+  void markHalo(const cv::Rect& rect, int x, int y);
+  void gatherRow(const Frame& frame, const cv::Rect& rect, int y, int parity, const Eigen::Vector2d& centre,
                  const Eigen::Vector2d& half_extents, PixelBlock& pixels) const;
 
   CameraModel camera_;

@@ -63,6 +63,28 @@ VIBE_LANES void multiply(const float* values, const std::array<std::vector<float
   }
 }
 
+constexpr double kMotionStep = 4;  // between templates [px]
+constexpr int kMotions = 9;
+constexpr double kFirstMotion = 1;  // [px]
+constexpr double kScales[] = {0.93, 1, 1.075};
+constexpr double kMinCorrelation = 0.4;     // of a candidate,
+constexpr double kLeastCorrelation = 0.25;  // of a place beside one
+constexpr double kMaxTurn = 1.7;  // what the rotation adds, relative to what it can add: noise and other things
+constexpr int kMinDistance = 4;   // between candidates [px]
+
+std::vector<SearchTemplate> makeTemplates(const MarkerPattern& pattern) {
+  std::vector<SearchTemplate> templates;
+  for (int i = 0; i < kMotions; ++i)
+    for (double scale : kScales) templates.emplace_back(pattern, kFirstMotion + i * kMotionStep, scale);
+  return templates;
+}
+
+int reachOf(const std::vector<SearchTemplate>& templates) {
+  int reach = 0;
+  for (const SearchTemplate& t : templates) reach = std::max(reach, t.half());
+  return reach;
+}
+
 }  // namespace
 
 SearchTemplate::Match SearchTemplate::match(const AxisSamples& samples, std::size_t place, double least) const {
@@ -107,32 +129,6 @@ SearchTemplate::Match SearchTemplate::describe(const Eigen::Vector3d& parts, dou
   match.rotation = std::atan2(parts[2], parts[1]);
   return match;
 }
-
-namespace {
-
-constexpr double kMotionStep = 4;  // between templates [px]
-constexpr int kMotions = 9;
-constexpr double kFirstMotion = 1;  // [px]
-constexpr double kScales[] = {0.93, 1, 1.075};
-constexpr double kMinCorrelation = 0.4;     // of a candidate,
-constexpr double kLeastCorrelation = 0.25;  // of a place beside one
-constexpr double kMaxTurn = 1.7;  // what the rotation adds, relative to what it can add: noise and other things
-constexpr int kMinDistance = 4;   // between candidates [px]
-
-std::vector<SearchTemplate> makeTemplates(const MarkerPattern& pattern) {
-  std::vector<SearchTemplate> templates;
-  for (int i = 0; i < kMotions; ++i)
-    for (double scale : kScales) templates.emplace_back(pattern, kFirstMotion + i * kMotionStep, scale);
-  return templates;
-}
-
-int reachOf(const std::vector<SearchTemplate>& templates) {
-  int reach = 0;
-  for (const SearchTemplate& t : templates) reach = std::max(reach, t.half());
-  return reach;
-}
-
-}  // namespace
 
 AxisSearch::AxisSearch(const MarkerPattern& pattern, double begin, double end)
     : begin_(begin),

@@ -31,6 +31,38 @@ void addStep(double distance, double sign, double deviation, double cumulant, st
   sum[3] -= sign * z / deviation * slope;
 }
 
+using Order [[gnu::vector_size(16)]] = int;
+constexpr float kVarianceStepRatio = 0.12F;  // of the variances' step to the variance that needs no more levels
+constexpr int kStride = 2;                   // of the table against that of the line
+constexpr float kPerPixel = BlurredLine::kPerPixel / kStride;
+
+/// Elements n to the front, zeros behind.
+Four shifted1(Four v) {
+  return __builtin_shuffle(v, Four{}, Order{1, 2, 3, 4});
+}
+Four shifted2(Four v) {
+  return __builtin_shuffle(v, Four{}, Order{2, 3, 4, 4});
+}
+Four shifted3(Four v) {
+  return __builtin_shuffle(v, Four{}, Order{3, 4, 4, 4});
+}
+
+/// An entry of a BlurredLine, taken d further and with more variance; see BlurredLine::at().
+struct Shift {
+  int steps;
+  Four first, second, third;
+  Shift(float distance, float more_variance) {
+    const float place = distance * BlurredLine::kPerPixel;
+    steps = static_cast<int>(std::floor(place + 0.5F));
+    const float d = (place - static_cast<float>(steps)) / BlurredLine::kPerPixel;
+    const float s = 0.5F * (more_variance + d * d);
+    first = Four{d, d, d, 0};
+    second = Four{s, s, 0, 0};
+    third = Four{d * (s + more_variance) / 3, 0, 0, 0};
+  }
+  Four of(Four e) const { return e + first * shifted1(e) + second * shifted2(e) + third * shifted3(e); }
+};
+
 }  // namespace
 
 BlurredLine::BlurredLine(const std::vector<Interval>& black, double period, double min_variance, double pixel_variance)
@@ -70,42 +102,6 @@ BlurredLine::Entry BlurredLine::entryAt(const std::vector<Interval>& black, doub
   return {static_cast<float>(sum[0] - static_cast<double>(mean_) * x), static_cast<float>(sum[1]),
           static_cast<float>(sum[2]), static_cast<float>(sum[3])};
 }
-
-namespace {
-
-using Order [[gnu::vector_size(16)]] = int;
-constexpr float kVarianceStepRatio = 0.12F;  // of the variances' step to the variance that needs no more levels
-constexpr int kStride = 2;                   // of the table against that of the line
-constexpr float kPerPixel = BlurredLine::kPerPixel / kStride;
-
-/// Elements n to the front, zeros behind.
-Four shifted1(Four v) {
-  return __builtin_shuffle(v, Four{}, Order{1, 2, 3, 4});
-}
-Four shifted2(Four v) {
-  return __builtin_shuffle(v, Four{}, Order{2, 3, 4, 4});
-}
-Four shifted3(Four v) {
-  return __builtin_shuffle(v, Four{}, Order{3, 4, 4, 4});
-}
-
-/// An entry of a BlurredLine, taken d further and with more variance; see BlurredLine::at().
-struct Shift {
-  int steps;
-  Four first, second, third;
-  Shift(float distance, float more_variance) {
-    const float place = distance * BlurredLine::kPerPixel;
-    steps = static_cast<int>(std::floor(place + 0.5F));
-    const float d = (place - static_cast<float>(steps)) / BlurredLine::kPerPixel;
-    const float s = 0.5F * (more_variance + d * d);
-    first = Four{d, d, d, 0};
-    second = Four{s, s, 0, 0};
-    third = Four{d * (s + more_variance) / 3, 0, 0, 0};
-  }
-  Four of(Four e) const { return e + first * shifted1(e) + second * shifted2(e) + third * shifted3(e); }
-};
-
-}  // namespace
 
 /// Chords of the parabola have the same mean as it has if they are all shifted a little.
 MotionParts::MotionParts(float bend) {

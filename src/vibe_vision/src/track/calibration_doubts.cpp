@@ -29,13 +29,24 @@ constexpr double kImpossible = 1e40;  // information of an unknown that is 0
 
 }  // namespace
 
+void FadingMean::add(const Distortion& distortion, double unit) {
+  if (!(distortion.variance > 0)) return;
+  const double information = square(unit) / distortion.variance;
+  weight = kMemory * weight + information;
+  sum = kMemory * sum + distortion.value / unit * information;
+}
+
+bool FadingMean::exceeds(double least, double deviations) const {
+  return std::abs(sum) > least * weight && std::abs(sum) > deviations * std::sqrt(weight);
+}
+
 void CalibrationDoubts::reset() {
   information_.setZero();
   sums_.setZero();
   others_ = {};
-  exposure_weight_ = exposure_sum_ = 0;
-  oval_weight_ = oval_sum_ = {};
-  bend_weight_ = bend_sum_ = relief_weight_ = relief_sum_ = relief_bias_ = log_scale_ = log_gamma_ = 0;
+  exposure_ = bend_ = relief_ = {};
+  oval_ = {};
+  relief_bias_ = log_scale_ = log_gamma_ = 0;
   fits_ = 0;
   solve();
 }
@@ -109,56 +120,31 @@ void CalibrationDoubts::addShear(const Distortion& shear, double speed, double t
       variance);
 }
 
-void CalibrationDoubts::addBend(const Distortion& bend) {
-  if (!(bend.variance > 0)) return;
-  bend_weight_ = kMemory * bend_weight_ + 1 / bend.variance;
-  bend_sum_ = kMemory * bend_sum_ + bend.value / bend.variance;
-}
-
 void CalibrationDoubts::addRelief(const Distortion& relief, double size, double slope, double uneven) {
   if (!(relief.variance > 0)) return;
-  const double weight = square(size) / relief.variance;
-  relief_weight_ = kMemory * relief_weight_ + weight;
-  relief_sum_ = kMemory * relief_sum_ + relief.value / size * weight;
-  relief_bias_ =
-      kMemory * relief_bias_ + uneven / size / std::copysign(std::max(std::abs(slope), kLeastSlope), slope) * weight;
+  relief_.add(relief, size);
+  const double sight = std::copysign(std::max(std::abs(slope), kLeastSlope), slope);
+  relief_bias_ = kMemory * relief_bias_ + uneven / size / sight * (square(size) / relief.variance);
 }
 
 /// What moves the ends of a marker the same way wherever it is seen is no relief.
 bool CalibrationDoubts::isBent() const {
-  const double bend = bend_weight_ > 0 ? bend_sum_ / bend_weight_ : 0;
-  if (std::abs(bend) > kBent && std::abs(bend) * std::sqrt(bend_weight_) > kSignificant) return true;
-  const double deviation = std::sqrt(relief_weight_ + square(relief_bias_));
-  return std::abs(relief_sum_) > kStandsOff * relief_weight_ && std::abs(relief_sum_) > kReliefSignificant * deviation;
+  if (bend_.exceeds(kBent, kSignificant)) return true;
+  const double deviation = std::sqrt(relief_.weight + square(relief_bias_));
+  return std::abs(relief_.sum) > std::max(kStandsOff * relief_.weight, kReliefSignificant * deviation);
 }
 
 void CalibrationDoubts::addOval(const std::array<Distortion, 2>& oval) {
-  for (std::size_t k = 0; k < 2; ++k) {
-    if (!(oval[k].variance > 0)) continue;
-    oval_weight_[k] = kMemory * oval_weight_[k] + 1 / oval[k].variance;
-    oval_sum_[k] = kMemory * oval_sum_[k] + oval[k].value / oval[k].variance;
-  }
+  for (std::size_t k = 0; k < 2; ++k) oval_[k].add(oval[k]);
 }
 
 bool CalibrationDoubts::isOval() const {
   double square_sum = 0, chi_squared = 0;
-  for (std::size_t k = 0; k < 2; ++k) {
-    if (oval_weight_[k] == 0) continue;
-    square_sum += square(oval_sum_[k] / oval_weight_[k]);
-    chi_squared += square(oval_sum_[k]) / oval_weight_[k];
+  for (const FadingMean& part : oval_) {
+    square_sum += square(part.mean());
+    chi_squared += part.mean() * part.sum;
   }
   return square_sum > square(kOval) && chi_squared > square(kSignificant);
-}
-
-void CalibrationDoubts::addExposure(const Distortion& stretch, double motion) {
-  if (!(stretch.variance > 0)) return;
-  exposure_weight_ = kMemory * exposure_weight_ + square(motion) / stretch.variance;
-  exposure_sum_ = kMemory * exposure_sum_ + motion * stretch.value / stretch.variance;
-}
-
-bool CalibrationDoubts::isExposedOtherwise() const {
-  return std::abs(exposure_sum_) > kOtherExposure * exposure_weight_ &&
-         std::abs(exposure_sum_) > kSignificant * std::sqrt(exposure_weight_);
 }
 
 void CalibrationDoubts::addFit(double log_scale, double log_gamma) {
@@ -170,7 +156,7 @@ void CalibrationDoubts::addFit(double log_scale, double log_gamma) {
 Doubt CalibrationDoubts::doubt() const {
   if (row_time_ != 0) return Doubt::Shutter;
   if (fits_ >= kEnoughFits && std::abs(log_scale_) > kWrongSize) return Doubt::Size;
-  if (isExposedOtherwise()) return Doubt::Exposure;
+  if (exposure_.exceeds(kOtherExposure, kSignificant)) return Doubt::Exposure;
   if (askew_) return Doubt::Askew;
   if (isBent()) return Doubt::Bent;
   if (isOval()) return Doubt::Oval;

@@ -13,6 +13,18 @@ struct Distortion {
   double value = 0, variance = 0;  ///< variance 0: the picture does not tell
 };
 
+/// The mean of a quantity over many pictures, each by its information; the last ones count most.
+struct FadingMean {
+  double weight = 0, sum = 0;  ///< information, and its product with the mean
+
+  /// A picture that does not tell adds nothing. @param unit  that the distortion is counted in
+  void add(const Distortion& distortion, double unit = 1);
+  double mean() const { return weight > 0 ? sum / weight : 0; }
+  /// Both the size of the mean and its significance are beyond a limit. @param least  of its size
+  /// @param deviations  of the mean [1]
+  bool exceeds(double least, double deviations) const;
+};
+
 /// What a picture of a moving marker says of such ways.
 struct Distortions {
   /// By how many pixels a row of the image further down is moved along the axis.
@@ -43,7 +55,7 @@ class CalibrationDoubts {
   /// @param rows  rows of the image per pixel across the axis, with sign
   explicit CalibrationDoubts(double rows) : rows_(rows) { reset(); }
   void reset();
-  void addBend(const Distortion& bend);
+  void addBend(const Distortion& bend) { bend_.add(bend); }
   void addOval(const std::array<Distortion, 2>& oval);
   /// @param size  of the marker, from its middle [px]. @param slope  of the line of sight, as Sight::slope
   /// @param uneven  by how much other faults of the model may move the ends against the middle [px]
@@ -53,7 +65,7 @@ class CalibrationDoubts {
   /// Of a marker around a rod. @param tilt  that the fit found besides, in the image [rad]
   void addShear(const Distortion& shear, double speed, double tilt, double rotation);
   /// @param stretch  of the motion during the exposure [px]. @param motion  as speed and exposure say [px]
-  void addExposure(const Distortion& stretch, double motion);
+  void addExposure(const Distortion& stretch, double motion) { exposure_.add(stretch, motion); }
   /// @param log_scale  of the marker against its calibrated size. @param log_gamma  of the response against that given
   void addFit(double log_scale, double log_gamma);
 
@@ -86,7 +98,6 @@ class CalibrationDoubts {
   Explanation explain(bool shutter, bool askew) const;
   bool isBent() const;
   bool isOval() const;
-  bool isExposedOtherwise() const;
   void add(const Vector& by, double value, double variance);
   void solve();
 
@@ -97,11 +108,10 @@ class CalibrationDoubts {
   double row_deviation_ = 0;  ///< of the time between rows, whatever else may be wrong [s]
   double row_time_ = 0;       ///< [s]; 0: all rows are exposed at the same time
   bool askew_ = false;
-  double exposure_weight_ = 0, exposure_sum_ = 0;  ///< of the stretch, relative to the motion
-  std::array<double, 2> oval_weight_{}, oval_sum_{};
-  double bend_weight_ = 0, bend_sum_ = 0;
-  double relief_weight_ = 0, relief_sum_ = 0;  ///< relative to the size
-  double relief_bias_ = 0;                     ///< what other faults of the model add to relief_sum_
+  FadingMean exposure_;  ///< stretch relative to the motion
+  std::array<FadingMean, 2> oval_;
+  FadingMean bend_, relief_;  ///< relative to the size
+  double relief_bias_ = 0;    ///< what other faults of the model add to the sum of relief_
   double log_scale_ = 0, log_gamma_ = 0;
   int fits_ = 0;
 };

@@ -27,8 +27,9 @@ bool InstrumentTracker::searchNearby(const Frame& frame, const Prediction& predi
   if (deviation > policy_.known_place) return false;
   const FitPrior prior = slow_.prior(slide);
   const double motion = std::abs(motionAt(prediction.slide, prediction.rotation, frame.exposure).length);
-  MarkerFit fit = fitter_.acquire(map_, frame, startAt(slide, prior, prediction), prior, motion, fastestMotion(frame),
-                                  prediction.turn, policy_.nearby_reach * deviation);
+  MarkerFit fit = fitter_.acquire(map_, frame,
+                                  {startAt(slide, prior, prediction), prior, motion, fastestMotion(frame),
+                                   prediction.turn, policy_.nearby_reach * deviation});
   checkStripe(prior, prediction, fit);
   if (gates_.judge(fit, slow_.nominal(slide)) != LostReason::None || fit.visible < policy_.nearby_visible) return false;
   if (!isNear(fit, prediction)) return false;
@@ -123,14 +124,13 @@ bool InstrumentTracker::leaveCopy(const Frame& frame) {
 MarkerFit InstrumentTracker::tryCandidate(const Frame& frame, const Prediction& prediction,
                                           const AxisSearch::Candidate& candidate) {
   const double slide = slideOf(config_.axis, candidate.along);
-  const MarkerMotion fastest = fastestMotion(frame);
   const FitPrior prior = searchPrior(slide);
   FitVector start = startAt(slide, prior, prediction);
   const double size = std::log(candidate.scale);
   if (std::abs(size - start[kLogScale]) > policy_.scale_step) start[kLogScale] = size;
   if (candidate.shows_rotation && !prediction.turn) start[kRotation] = candidate.rotation;
-  MarkerFit fit = fitter_.acquire(map_, frame, start, prior, candidate.motion, fastest,
-                                  prediction.turn || candidate.shows_rotation);
+  MarkerFit fit = fitter_.acquire(
+      map_, frame, {start, prior, candidate.motion, fastestMotion(frame), prediction.turn || candidate.shows_rotation});
   checkStripe(prior, prediction, fit);
   return fit;
 }
@@ -141,8 +141,8 @@ MarkerFit InstrumentTracker::tryBars(const Frame& frame, const Prediction& predi
   const double slide = slideOf(config_.axis, candidate.along);
   const FitPrior prior = withTurn(searchPrior(slide), prediction);
   fitter_.useStripe(false);
-  MarkerFit fit = fitter_.acquire(map_, frame, startAt(slide, prior, prediction), prior, candidate.motion,
-                                  fastestMotion(frame), true);
+  MarkerFit fit = fitter_.acquire(
+      map_, frame, {startAt(slide, prior, prediction), prior, candidate.motion, fastestMotion(frame), true});
   if (fit.valid) fitter_.leaveStripe(fit, prior);
   fitter_.useStripe(true);
   fit.shows_turn = false;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "track/arithmetic.hpp"
 
@@ -31,8 +30,7 @@ double bandHalfWidth(const MarkerPattern& pattern, const InstrumentConfig& confi
 
 InstrumentTracker::InstrumentTracker(const VisionConfig& config, const InstrumentConfig& instrument,
                                      const TrackerPolicy& policy)
-    : config_(instrument),
-      policy_(policy),
+    : MarkerTracker(instrument, policy),
       view_(markerView(config.camera, instrument.axis)),
       min_contrast_(config.gates.min_contrast),
       fitter_(patternsOf(instrument, view_), instrument.ink, config.noise, rodRadius(instrument)),
@@ -43,32 +41,24 @@ InstrumentTracker::InstrumentTracker(const VisionConfig& config, const Instrumen
       search_(fitter_.pattern(), alongOf(instrument.axis, instrument.lower),
               alongOf(instrument.axis, instrument.upper)),
       gates_(config, instrument, policy),
-      reach_(instrument.motion.max_speed, policy),
       copies_(policy),
       slow_(config, instrument, fitter_.pattern().observes()),
       unknown_(slow_),
-      doubts_(instrument.axis.direction.x()),
-      slide_(instrument.motion.max_speed, instrument.motion.max_acceleration),
-      rotation_(instrument.motion.max_angular_speed, 30 * instrument.motion.max_angular_speed) {
-  lose(LostReason::NoFrame);
-}
+      rotation_(instrument.motion.max_angular_speed, 30 * instrument.motion.max_angular_speed) {}
 
 void InstrumentTracker::reset() {
-  slide_.reset();
   rotation_.reset();
   slow_.reset();
   fitter_.forget();
   light_.reset();
-  doubts_.reset();
   copies_.reset();
-  reach_.settle();
   lost_frames_ = followed_ = 0;
-  lose(LostReason::NoFrame);
+  MarkerTracker::reset();
 }
 
 const Measurement& InstrumentTracker::lose(LostReason reason) {
   const Measurement before = measurement_;
-  measurement_ = lostMeasurement(reason);
+  MarkerTracker::lose(reason);
   measurement_.roi_x = before.roi_x, measurement_.roi_y = before.roi_y;
   measurement_.roi_width = before.roi_width, measurement_.roi_height = before.roi_height;
   if (++lost_frames_ == policy_.forget_after) {
@@ -185,7 +175,7 @@ void InstrumentTracker::lookForDistortions(const Frame& frame, const MarkerFit& 
 void InstrumentTracker::learnInk(const MarkerFit& fit, const FitPrior& prior) {
   ++followed_;
   const bool due = followed_ > 1 && (followed_ & (followed_ - 1)) == 0;
-  if (due && fit.visible > policy_.whole_from && fitter_.confirmInk(fit, prior)) slow_.reset();
+  if (due && fit.visible > policy_.whole_from && fitter_.learnInk(fit, prior)) slow_.reset();
 }
 
 Sight InstrumentTracker::sightAt(const MarkerFit& fit) const {
@@ -200,8 +190,8 @@ Sight InstrumentTracker::sightAt(const MarkerFit& fit) const {
 
 /// Of several, that which leaves least of the report, and then what the calibration is doubted for.
 void InstrumentTracker::stateDoubts(const Frame& frame) {
-  vision::stateDoubts(doubts_, slide_.predict(frame.stamp), pixelsPerMetre(config_.axis, last_slide_),
-                      frame.sensor_height, policy_, measurement_);
+  MarkerTracker::stateDoubts(slide_.predict(frame.stamp), pixelsPerMetre(config_.axis, last_slide_),
+                             frame.sensor_height);
   Doubt& doubt = measurement_.doubt;
   if (!stripe_)
     doubt = Doubt::Stripe;
@@ -298,6 +288,11 @@ void InstrumentTracker::updateFilters(double stamp, const MarkerFit& fit, double
     rotation_.start(stamp, last_rotation_, turn_variance);
   else
     rotation_.update(stamp, last_rotation_, turn_variance);
+}
+
+std::unique_ptr<MarkerTracker> makeInstrumentTracker(const VisionConfig& config, const InstrumentConfig& instrument,
+                                                     const TrackerPolicy& policy) {
+  return std::make_unique<InstrumentTracker>(config, instrument, policy);
 }
 
 }  // namespace vibe::vision

@@ -9,19 +9,15 @@
 namespace vibe::vision {
 
 /// Follows one instrument. Each frame: predict, fit, gate; if that fails, search the axis, fit and gate again.
-class InstrumentTracker {
+class InstrumentTracker : public MarkerTracker {
  public:
   InstrumentTracker(const VisionConfig& config, const InstrumentConfig& instrument, const TrackerPolicy& policy);
 
-  /// @param frame  an image of the calibration's sensor
-  const Measurement& track(const Frame& frame);
-  /// There is no usable frame.
-  const Measurement& lose(LostReason reason);
-  const Measurement& measurement() const { return measurement_; }
-  CalibrationDoubts& doubts() { return doubts_; }
-  double ink() const { return fitter_.ink(); }  ///< of the print, as far as it was learnt [m]
-  void setNoise(const PixelNoise& noise) { fitter_.setNoise(noise); }
-  void reset();
+  const Measurement& track(const Frame& frame) override;
+  const Measurement& lose(LostReason reason) override;
+  void reset() override;
+  void setNoise(const PixelNoise& noise) override { fitter_.setNoise(noise); }
+  double ink() const override { return fitter_.ink(); }
 
  private:
   struct Prediction {
@@ -62,33 +58,27 @@ class InstrumentTracker {
   void describe(const MarkerFit& fit);
   void updateFilters(double stamp, const MarkerFit& fit, double scale, bool restart);
 
-  InstrumentConfig config_;
-  TrackerPolicy policy_;
   MarkerView view_;
   double min_contrast_;
   MarkerFitter fitter_;
   AxisMap map_;
   AxisSearch search_;
   Gates gates_;
-  Reach reach_;
   Copies copies_;
   SlowState slow_;
   const SlowState unknown_;  ///< at the beginning, always
   LightModel light_;
-  CalibrationDoubts doubts_;
   int looks_ = 0;     ///< moving frames
   int followed_ = 0;  ///< frames
-  MotionFilter slide_, rotation_;
-  double last_slide_ = 0, last_rotation_ = 0;
+  MotionFilter rotation_;
+  double last_rotation_ = 0;
   bool stripe_ = true;   ///< the rotation was seen, of a marker that shows it
   bool broken_ = false;  ///< the motion is not the one of the frames before
   double odd_rows_ = 0;  ///< share of the last picture, see PatternFit
   double looked_ = 0;    ///< for copies, from the beginning of the axis up to here [px]
   int looks_for_copies_ = 0, doubted_frames_ = 0;
-  int tries_ = 0;  ///< candidates of this frame
-  int lost_frames_ = 0;
-  LostReason reason_ = LostReason::NotFound;
-  Measurement measurement_;
+  int tries_ = 0;        ///< candidates of this frame
+  int lost_frames_ = 1;  ///< there is none at first
 };
 
 }  // namespace vibe::vision

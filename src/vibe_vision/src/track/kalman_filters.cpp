@@ -19,10 +19,23 @@ constexpr double kLearning = 0.05, kLeast = 0.02, kMost = 4;
 constexpr double kSurprise = 9;  // of this, at most, is learnt from one innovation
 constexpr double kBreak = 100;   // squared normalised innovation of another motion
 
-}  // namespace
+constexpr std::array<double, 2> kFlicker{100, 120};  // of lamps on 50 and 60 Hz mains [Hz]
+// Standard deviations at the beginning and of the random walk from one frame to the next. Design choices.
+constexpr double kLevel = 1, kLevelWalk = 1.5e-3;
+constexpr double kPlace = 0.3, kPlaceWalk = 1e-3;
+constexpr double kAmplitude = 0.03, kAmplitudeWalk = 2e-4;
+constexpr double kModel = 1e-3;  // what the model leaves unexplained, relative
+constexpr double kSurpriseMemory = 0.2;
+constexpr double kLongest = 60;  // after which phases are counted anew [s]
 
-MotionFilter::MotionFilter(double max_speed, double max_acceleration)
-    : max_speed_(max_speed), max_acceleration_(max_acceleration) {}
+/// Mean of t sin(w t) over an exposure, relative to the mean of cos(w t): what a flicker's slope moves the middle by.
+double lever(double frequency, double exposure) {
+  const double half = M_PI * frequency * exposure;
+  if (half < 1e-3) return 2 * M_PI * frequency * exposure * exposure / 12;
+  return exposure / 2 * (1 / half - std::cos(half) / std::sin(half));
+}
+
+}  // namespace
 
 void MotionFilter::start(double time, double value, double variance) {
   started_ = true;
@@ -68,26 +81,6 @@ bool MotionFilter::update(double time, double value, double variance) {
   state_.covariance = keep * predicted.covariance * keep.transpose() + variance * gain * gain.transpose();
   return false;
 }
-
-namespace {
-
-constexpr std::array<double, 2> kFlicker{100, 120};  // of lamps on 50 and 60 Hz mains [Hz]
-// Standard deviations at the beginning and of the random walk from one frame to the next. Design choices.
-constexpr double kLevel = 1, kLevelWalk = 1.5e-3;
-constexpr double kPlace = 0.3, kPlaceWalk = 1e-3;
-constexpr double kAmplitude = 0.03, kAmplitudeWalk = 2e-4;
-constexpr double kModel = 1e-3;  // what the model leaves unexplained, relative
-constexpr double kSurpriseMemory = 0.2;
-constexpr double kLongest = 60;  // after which phases are counted anew [s]
-
-/// Mean of t sin(w t) over an exposure, relative to the mean of cos(w t): what a flicker's slope moves the middle by.
-double lever(double frequency, double exposure) {
-  const double half = M_PI * frequency * exposure;
-  if (half < 1e-3) return 2 * M_PI * frequency * exposure * exposure / 12;
-  return exposure / 2 * (1 / half - std::cos(half) / std::sin(half));
-}
-
-}  // namespace
 
 void LightModel::reset() {
   started_ = false;

@@ -12,7 +12,8 @@ namespace vibe::vision {
 class MotionFilter {
  public:
   /// Limits of the coordinate's motion [unit/s], [unit/s^2].
-  MotionFilter(double max_speed, double max_acceleration);
+  MotionFilter(double max_speed, double max_acceleration)
+      : max_speed_(max_speed), max_acceleration_(max_acceleration) {}
 
   struct State {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();

@@ -63,11 +63,11 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
   prepare(fit);
   if (!known_rotation) {
     fit.loss = 1;
-    chooseRotation(fit);
+    choose(kRotation, rotations_, fit);
     if (!read(map, frame, fit)) return fit;
     prepare(fit);
   }
-  seen_ > kQuarterEnough ? useQuarter() : useHalf();
+  usePixels(seen_ > kQuarterEnough ? 4 : 2);
   fit_.evaluate(fit.x, pixels_);
   fit_.startLevels(pixels_, fit.x);
   for (const FitScope scope : {FitScope::Position, FitScope::All}) {
@@ -77,24 +77,24 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
     if (!step.valid) return fit;
     take(step, fit);
   }
-  useAll();
+  usePixels(1);
   refine(fit, prior, 0, kFollowSteps);
   if (fit.valid && fit.misfit > kStrangeMotion && isMotionLong(fit))
     refineMotion(fit, prior, std::abs(motion.length) + kMotionDoubt);
   seen_ = fit.visible;
   ink_known_ = ink_known_ || (fit.valid && fit.misfit < kStrangeMotion);
   if (light_.isRound() && fit.valid && std::min(fit.visible, fit.stripe_seen) > kLearnVisible) {
-    useQuarter();
+    usePixels(4);
     fit_.learnLight(fit.x, pixels_, light_);
     ++lit_frames_;
-    useAll();
+    usePixels(1);
   }
   return fit;
 }
 
 void MarkerFitter::repeat(MarkerFit& fit, const FitPrior& prior, const MarkerMotion& motion) {
   fit.motion = motion;
-  useAll();
+  usePixels(1);
   refine(fit, prior, 0, kFollowSteps);
 }
 
@@ -133,11 +133,6 @@ void MarkerFitter::hideStripe() {
   const std::vector<float>& slope = fit_.values().derivative[kRotation];
   for (std::size_t i = 0; i < pixels_.padded(); ++i)
     if (slope[i] != 0) pixels_.weight[i] = 0;
-}
-
-void MarkerFitter::learnLight(const MarkerFit& fit) {
-  fit_.learnLight(fit.x, pixels_, light_);
-  light_.shine(poseOf(fit.x), pixels_, pixels_.padded());
 }
 
 void MarkerFitter::forget() {
@@ -210,16 +205,9 @@ bool MarkerFitter::read(AxisMap& map, const Frame& frame, MarkerFit& fit, bool g
   return all_ >= kMinPixels;
 }
 
-void MarkerFitter::useHalf() {
-  pixels_.count = std::max(all_ / 2 / kLanes * kLanes, kMinPixels);
-}
-
-void MarkerFitter::useQuarter() {
-  pixels_.count = std::max(all_ / 4 / kLanes * kLanes, kMinPixels);
-}
-
-void MarkerFitter::useAll() {
-  pixels_.count = all_;
+/// The first half of the pixels that were read, or another part, which samples all of the window.
+void MarkerFitter::usePixels(std::size_t one_of) {
+  pixels_.count = one_of == 1 ? all_ : std::max(all_ / one_of / kLanes * kLanes, kMinPixels);
 }
 
 /// Steps with all parameters until they change no more.

@@ -22,7 +22,17 @@ struct MarkerFit {
   MarkerMotion motion;      ///< as assumed
   bool valid = false;       ///< the fit converged
   double clipped = 0;       ///< share of the pixels that are as bright as a pixel can be
-  PixelWindow roi;
+  cv::Rect roi;             ///< pixels of the full sensor that were looked at
+};
+
+/// What MarkerFitter::acquire() begins from.
+struct Candidate {
+  FitVector start;
+  FitPrior prior;
+  double motion = 0;            ///< during the exposure, as the search has seen it [px]
+  MarkerMotion most;            ///< that the instrument can do
+  bool known_rotation = false;  ///< start.rotation is a prediction
+  double reach = 0;             ///< from the start, within which the marker is [px]; 0: the search knows it well
 };
 
 /// Reads the pixels around a place and fits a marker's pattern to them.
@@ -39,7 +49,7 @@ class MarkerFitter {
   double ink() const { return ink_; }  ///< by which black reaches beyond the designed edges [m]
   /// Takes what the last fit, of follow(), tells of the ink, if that is clear. It costs tens of milliseconds and memory
   /// then. @return false if the ink stays as it was
-  bool confirmInk(const MarkerFit& fit, const FitPrior& prior) { return learnInk(fit, prior); }
+  bool learnInk(const MarkerFit& fit, const FitPrior& prior);
   /// Forgets the light on the rod.
   void forget();
 
@@ -62,11 +72,7 @@ class MarkerFitter {
     return fit_.distortions(unlearnt, pixels_, sight);
   }
   /// From a candidate of the search: from coarse to fine, with any rotation.
-  /// @param most  that the instrument can do
-  /// @param known_rotation  start.rotation is a prediction
-  /// @param reach  from the start, within which the marker is [px]; 0: the search knows it well
-  MarkerFit acquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior, double motion,
-                    const MarkerMotion& most, bool known_rotation, double reach = 0);
+  MarkerFit acquire(AxisMap& map, const Frame& frame, const Candidate& candidate);
 
  private:
   static constexpr double kStrangeMotion = 1.5;  ///< misfit from which a motion may be why
@@ -77,33 +83,26 @@ class MarkerFitter {
   void hideStripe();
   void prepare(const MarkerFit& fit, bool rough = false);
   void useGamma(double gamma);
-  MarkerFit acquireWithAnyResponse(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
-                                   double motion, double max_motion, bool known_rotation, double reach);
-  bool learnInk(const MarkerFit& fit, const FitPrior& prior);
+  MarkerFit acquireWithAnyResponse(AxisMap& map, const Frame& frame, const Candidate& candidate);
   void setInk(double ink);
-  MarkerFit acquireWithInk(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
-                           const MarkerFit& first, bool known_rotation);
-  MarkerFit tryToAcquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior, double motion,
-                         double max_motion, bool known_rotation, double reach);
-  void learnLight(const MarkerFit& fit);
-  void refineWithLight(MarkerFit& fit, const FitPrior& prior, double max_motion);
-  SideLimits sideLimits(const MarkerFit& fit, double max_motion) const;
+  MarkerFit acquireWithInk(AxisMap& map, const Frame& frame, const Candidate& candidate, const MarkerFit& first);
+  MarkerFit tryToAcquire(AxisMap& map, const Frame& frame, const Candidate& candidate);
+  void refineWithLight(MarkerFit& fit, const FitPrior& prior);
+  SideLimits sideLimits(const MarkerFit& fit) const;
   void stepWithSides(MarkerFit& fit, FitStep& step);
   void measureMotion(const MarkerFit& fit, const SideLimits& limits);
-  void useHalf();
-  void useQuarter();
-  void useAll();
+  void usePixels(std::size_t one_of);
   bool align(MarkerFit& fit, const FitPrior& prior, FitScope scope);
   void choosePlace(MarkerFit& fit, double reach);
-  void chooseRotation(MarkerFit& fit);
-  void chooseMotion(MarkerFit& fit, const FitPrior& prior, double max_motion);
+  void choose(PoseIndex k, const std::vector<double>& values, MarkerFit& fit);
+  void chooseMotion(MarkerFit& fit, const FitPrior& prior);
   static bool isMotionLong(const MarkerFit& fit);
   void refineMotion(MarkerFit& fit, const FitPrior& prior, double max_motion);
-  bool tryMotions(MarkerFit& fit, const FitPrior& prior, double max_motion, double distance);
+  bool tryMotions(MarkerFit& fit, const FitPrior& prior, double distance);
   void refine(MarkerFit& fit, const FitPrior& prior, double uncertainty, int max_steps);
   double lengthOf(const FitStep& step) const;
   void stateCovariance(MarkerFit& fit) const;
-  void doubtLight(MarkerFit& fit, double max_motion);
+  void doubtLight(MarkerFit& fit);
   static void doubtCovered(MarkerFit& fit);
   void take(const FitStep& step, MarkerFit& fit);
 

@@ -33,8 +33,7 @@ void PatternValues::allocate(std::size_t capacity, const std::array<bool, kPoseP
 
 MarkerView markerView(const CameraModel& camera, const SlideAxis& axis) {
   const Eigen::Vector2d offset = Eigen::Vector2d(camera.cx, camera.cy) - axis.origin;
-  const Eigen::Vector2d right(-axis.direction.y(), axis.direction.x());
-  return {camera.fx, offset.dot(axis.direction), offset.dot(right)};
+  return {camera.fx, offset.dot(axis.direction), offset.dot(acrossOf(axis))};
 }
 
 void MarkerPattern::select(const MarkerPose&, double, PixelBlock&) const {}

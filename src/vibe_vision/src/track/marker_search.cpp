@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 
-#include "track/arithmetic.hpp"
 #include "track/marker_fitter.hpp"
 
 namespace vibe::vision {
@@ -43,51 +42,49 @@ constexpr int kAcquireSteps = 14;    // a covered marker needs many
 
 }  // namespace
 
-MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
-                                double motion, const MarkerMotion& most, bool known_rotation, double reach) {
-  const double max_motion = most.length;
-  most_ = most;
-  MarkerFit fit = acquireWithAnyResponse(map, frame, start, prior, motion, max_motion, known_rotation, reach);
+MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const Candidate& candidate) {
+  most_ = candidate.most;
+  MarkerFit fit = acquireWithAnyResponse(map, frame, candidate);
   if (fit.misfit > kStrangeInk && fit.loss < kWorthInk && !ink_known_ && ink_tries_ < kInkTries)
-    fit = acquireWithInk(map, frame, start, prior, fit, known_rotation);
+    fit = acquireWithInk(map, frame, candidate, fit);
   // Only now: another motion would also explain some of what a response does.
   const bool strange = light_.isRound() && fit.valid && fit.misfit > kStrangeMotion && !isMotionLong(fit);
-  if (strange && max_motion > 1 && fit.loss < kWorthRefining && read(map, frame, fit))
-    refineMotion(fit, prior, max_motion);
+  if (strange && most_.length > 1 && fit.loss < kWorthRefining && read(map, frame, fit))
+    refineMotion(fit, candidate.prior, most_.length);
   return fit;
 }
 
-MarkerFit MarkerFitter::acquireWithAnyResponse(AxisMap& map, const Frame& frame, const FitVector& start,
-                                               const FitPrior& prior, double motion, double max_motion,
-                                               bool known_rotation, double reach) {
-  const MarkerFit fit = tryToAcquire(map, frame, start, prior, motion, max_motion, known_rotation, reach);
-  const double known = prior.information(kGamma, kGamma);
+MarkerFit MarkerFitter::acquireWithAnyResponse(AxisMap& map, const Frame& frame, const Candidate& candidate) {
+  const MarkerFit fit = tryToAcquire(map, frame, candidate);
+  const double known = candidate.prior.information(kGamma, kGamma);
   const auto explains = [this](const MarkerFit& f) {
     const double strange = light_.isRound() ? kStrangeRod : kStrange;
     return f.valid && f.loss < kPoor && f.misfit < strange && f.weaker_edges > kBothEdges * f.visible;
   };
   if (explains(fit) || seen_ > 0 || known == 0 || known * kUnknownGamma * kUnknownGamma > 1) return fit;
-  FitVector other = start;
-  other[kGamma] = kCommonGamma;
-  const MarkerFit second = tryToAcquire(map, frame, other, prior, motion, max_motion, known_rotation, reach);
+  Candidate other = candidate;
+  other.start[kGamma] = kCommonGamma;
+  const MarkerFit second = tryToAcquire(map, frame, other);
   return explains(second) && (!fit.valid || second.loss < fit.loss) ? second : fit;
 }
 
 /// Lines that are wider or narrower than designed spoil the fit of a marker that nothing else explains.
 /// @param first  that fit
-MarkerFit MarkerFitter::acquireWithInk(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
-                                       const MarkerFit& first, bool known_rotation) {
+MarkerFit MarkerFitter::acquireWithInk(AxisMap& map, const Frame& frame, const Candidate& candidate,
+                                       const MarkerFit& first) {
   ++ink_tries_;
   const double before = ink_;
-  FitVector begin = start;
-  begin[kGamma] = first.x[kGamma];
+  Candidate again = candidate;
+  again.start[kGamma] = first.x[kGamma];
+  again.reach = 0;
   MarkerFit fit = first;
   for (int i = 0; i < kInkSteps && fit.loss < kWorthInk; ++i) {
     // Another response may have been tried last.
     if (!read(map, frame, fit, true)) break;
-    refine(fit, prior, kMotionUncertainty, kAcquireSteps);
-    if (!learnInk(fit, prior)) break;
-    fit = tryToAcquire(map, frame, begin, prior, fit.motion.length, most_.length, known_rotation, 0);
+    refine(fit, candidate.prior, kMotionUncertainty, kAcquireSteps);
+    if (!learnInk(fit, candidate.prior)) break;
+    again.motion = fit.motion.length;
+    fit = tryToAcquire(map, frame, again);
   }
   // What covers a marker would be explained by lines of another width, too, but not all of it.
   if (fit.valid && fit.visible > kLearnVisible && fit.misfit < kStrangeMotion) return fit;
@@ -95,31 +92,31 @@ MarkerFit MarkerFitter::acquireWithInk(AxisMap& map, const Frame& frame, const F
   return first;
 }
 
-MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
-                                     double motion, double max_motion, bool known_rotation, double reach) {
+MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const Candidate& candidate) {
+  const FitPrior& prior = candidate.prior;
   MarkerFit fit;
-  fit.x = start;
-  fit.motion = motion;
+  fit.x = candidate.start;
+  fit.motion = candidate.motion;
   const double blur = fit.x[kBlur];
   // The search knows the place of a sleeve well, and its bars would vanish.
   fit.x[kBlur] = blur + (observed_[kRotation] ? kMiddleBlur : kCoarseBlur);
   const bool guess = !light_.known() || ++tries_ > kGuessAfter;
   if (!read(map, frame, fit, guess)) return fit;
-  observed_[kRotation] ? useHalf() : useQuarter();
-  if (reach > 0) choosePlace(fit, reach);
+  usePixels(observed_[kRotation] ? 2 : 4);
+  if (candidate.reach > 0) choosePlace(fit, candidate.reach);
   if (!align(fit, prior, FitScope::Position)) return fit;
   if (!observed_[kRotation] && fit.loss > kVeryHopeless) return fit;  // else the rotation may be wrong
   fit.x[kBlur] = blur + kMiddleBlur;
-  if (observed_[kRotation] && (!known_rotation || fit.loss > kPoor)) chooseRotation(fit);
+  if (observed_[kRotation] && (!candidate.known_rotation || fit.loss > kPoor)) choose(kRotation, rotations_, fit);
   if (!read(map, frame, fit)) return fit;
-  observed_[kRotation] ? useHalf() : useQuarter();
+  usePixels(observed_[kRotation] ? 2 : 4);
   if (!align(fit, prior, FitScope::Shape) || fit.loss > kHopeless) return fit;
   // The blur is not that of the prior if the camera is out of focus: edges along the motion tell it, and thin bars.
   if (!align(fit, prior, FitScope::All)) return fit;
-  if (max_motion > 1) chooseMotion(fit, prior, max_motion);
+  if (most_.length > 1) chooseMotion(fit, prior);
   if (!read(map, frame, fit)) return fit;
   refine(fit, prior, kMotionUncertainty, kAcquireSteps);
-  if (isMotionLong(fit)) refineMotion(fit, prior, max_motion);
+  if (isMotionLong(fit)) refineMotion(fit, prior, most_.length);
   if (!light_.isRound()) return fit;
   // The fit began aside: some of its pixels are on the rim or behind the ends, and others are missing.
   if (fit.loss < kPoor) {
@@ -129,26 +126,27 @@ MarkerFit MarkerFitter::tryToAcquire(AxisMap& map, const Frame& frame, const Fit
   const bool unsure = guess || (lit_frames_ < kLitFrames && isMotionLong(fit));
   const int rounds = !unsure ? 0 : (light_.shines() ? 2 : 1);
   for (int i = 0; i < rounds && fit.visible > (light_.shines() ? kLearnSheen : kLearnGuessed); ++i) {
-    refineWithLight(fit, prior, max_motion);
+    refineWithLight(fit, prior);
     if (fit.valid && guess) tries_ = 0;
   }
-  if (fit.valid && fit.visible > kLearnSheen) doubtLight(fit, max_motion);
+  if (fit.valid && fit.visible > kLearnSheen) doubtLight(fit);
   return fit;
 }
 
 /// Together with the light, since one picture hardly tells it from the rotation and the place across the axis, and with
 /// the motion.
-void MarkerFitter::refineWithLight(MarkerFit& fit, const FitPrior& prior, double max_motion) {
-  learnLight(fit);
-  sides_ = sideLimits(fit, max_motion);
+void MarkerFitter::refineWithLight(MarkerFit& fit, const FitPrior& prior) {
+  fit_.learnLight(fit.x, pixels_, light_);
+  light_.shine(poseOf(fit.x), pixels_, pixels_.padded());
+  sides_ = sideLimits(fit);
   refine(fit, prior, kMotionUncertainty, kAcquireSteps);
   sides_ = {};
 }
 
 /// A short motion looks like blur, which is a parameter.
-SideLimits MarkerFitter::sideLimits(const MarkerFit& fit, double max_motion) const {
+SideLimits MarkerFitter::sideLimits(const MarkerFit& fit) const {
   if (!isMotionLong(fit) || most_.bend <= 0 || most_.turn <= 0) return {kGuessedLight, {}};
-  return {kGuessedLight, {max_motion / 2, most_.bend / 2, most_.turn / 2}};
+  return {kGuessedLight, {most_.length / 2, most_.bend / 2, most_.turn / 2}};
 }
 
 /// A Gauss-Newton step as the last one, with the light on a rod and the motion as further unknowns.
@@ -190,28 +188,20 @@ bool MarkerFitter::align(MarkerFit& fit, const FitPrior& prior, FitScope scope) 
 
 /// The place with the least loss of a pixel, from trials.
 void MarkerFitter::choosePlace(MarkerFit& fit, double reach) {
-  const FitVector start = fit.x;
-  FitVector best = start;
+  std::vector<double> places;
   const int steps = static_cast<int>(std::ceil(reach / kPlaceTrial));
-  double least = 2;
-  prepare(fit, true);
-  for (int k = -steps; k <= steps; ++k) {
-    fit.x[kAlong] = start[kAlong] + k * kPlaceTrial;
-    fit_.evaluate(fit.x, pixels_);
-    fit_.startLevels(pixels_, fit.x);
-    const double loss = fit_.loss(fit.x, pixels_, {fit.x[kBlur], FitScope::Position});
-    if (loss < least) least = loss, best = fit.x;
-  }
-  fit.x = best;
+  for (int k = -steps; k <= steps; ++k) places.push_back(fit.x[kAlong] + k * kPlaceTrial);
+  fit.loss = 2;
+  choose(kAlong, places, fit);
 }
 
-/// The rotation with the least loss; that of the start stays if no other is better.
-void MarkerFitter::chooseRotation(MarkerFit& fit) {
+/// The value of a parameter with the least loss of a pixel; that of the fit stays if no other is better.
+void MarkerFitter::choose(PoseIndex k, const std::vector<double>& values, MarkerFit& fit) {
   FitVector best = fit.x;
-  prepare(fit, true);
   double least = fit.loss;
-  for (double rotation : rotations_) {
-    fit.x[kRotation] = rotation;
+  prepare(fit, true);
+  for (const double value : values) {
+    fit.x[k] = value;
     fit_.evaluate(fit.x, pixels_);
     fit_.startLevels(pixels_, fit.x);
     const double loss = fit_.loss(fit.x, pixels_, {fit.x[kBlur], FitScope::Position});
@@ -223,13 +213,14 @@ void MarkerFitter::chooseRotation(MarkerFit& fit) {
 /// Loss of a pixel against the motion that is assumed: a parabola through three places. Of a ring, coarse and then
 /// fine, since it is one near the least loss only, and together with the blur, which the edges along the motion tell.
 /// Of a sleeve, blur and motion look too much alike.
-void MarkerFitter::chooseMotion(MarkerFit& fit, const FitPrior& prior, double max_motion) {
+void MarkerFitter::chooseMotion(MarkerFit& fit, const FitPrior& prior) {
   for (const double distance : kMotionTrials)
-    if (!tryMotions(fit, prior, max_motion, distance) || observed_[kRotation]) return;
+    if (!tryMotions(fit, prior, distance) || observed_[kRotation]) return;
 }
 
 /// @return false if they do not tell the motion
-bool MarkerFitter::tryMotions(MarkerFit& fit, const FitPrior& prior, double max_motion, double distance) {
+bool MarkerFitter::tryMotions(MarkerFit& fit, const FitPrior& prior, double distance) {
+  const double max_motion = most_.length;
   const double middle = std::clamp(fit.motion.length, distance, std::max(max_motion - distance, distance));
   const MarkerFit start = fit;
   std::array<double, 3> loss{};
@@ -270,8 +261,8 @@ void MarkerFitter::refineMotion(MarkerFit& fit, const FitPrior& prior, double ma
 }
 
 /// One frame hardly tells the light around a rod from its rotation and its place across the axis.
-void MarkerFitter::doubtLight(MarkerFit& fit, double max_motion) {
-  const SideLimits limits = sideLimits(fit, max_motion);
+void MarkerFitter::doubtLight(MarkerFit& fit) {
+  const SideLimits limits = sideLimits(fit);
   measureMotion(fit, limits);
   fit.covariance = fit_.covariance(pixels_, light_, limits) * std::max(1.0, fit.misfit);
   doubtCovered(fit);

@@ -96,31 +96,10 @@ const char* toWord(Doubt doubt) {
   return wordsOf(kDoubts, doubt).word;
 }
 
-Measurement lostMeasurement(LostReason reason) {
-  constexpr double kNotSeen = std::numeric_limits<double>::quiet_NaN();
-  Measurement lost;
-  lost.reason = reason;
-  lost.slide = lost.rotation = lost.along = lost.lateral = kNotSeen;
-  lost.pixel.setConstant(kNotSeen);
-  return lost;
-}
-
 LostReason whyNothing(const BandLight& light, double min_contrast, const TrackerPolicy& policy) {
   if (!light.in_view) return LostReason::OutOfView;
   if (light.saturated > policy.saturated_share) return LostReason::Saturated;
   return light.brightest < policy.dark_contrasts * min_contrast ? LostReason::Dark : LostReason::NotFound;
-}
-
-void stateDoubts(const CalibrationDoubts& doubts, const MotionFilter::State& state, double scale, int height,
-                 const TrackerPolicy& policy, Measurement& measurement) {
-  const Doubt doubt = doubts.doubt();
-  // by the speed, and by what is not known of it, as after the motion was broken off
-  const double speed = std::sqrt(square(state.mean[1]) + state.covariance(1, 1));
-  measurement.along_variance += square(doubts.shutterError(speed * scale, height));
-  measurement.covariance(0, 0) = measurement.along_variance / square(scale);
-  const double fastest = std::abs(state.mean[1]) + std::sqrt(state.covariance(1, 1));
-  const bool known = doubts.unknownShutterError(fastest, height) < policy.unchecked_shift;
-  measurement.doubt = known || doubt == Doubt::Shutter ? doubt : Doubt::Unchecked;
 }
 
 void Copies::find(double along, bool lost) {
@@ -140,8 +119,7 @@ void Copies::follow(double along) {
 }
 
 void Copies::see(double along) {
-  const auto end = places_.begin() + static_cast<std::ptrdiff_t>(count_);
-  if (std::any_of(places_.begin(), end, [&](double p) { return std::abs(p - along) <= policy_.copy_moved; })) return;
+  if (isAt(along)) return;
   std::rotate(places_.rbegin(), places_.rbegin() + 1, places_.rend());
   places_.front() = along;
   count_ = std::min(count_ + 1, places_.size());
@@ -170,6 +148,42 @@ bool Reach::believes(double slide, double stamp, const MotionFilter::State& pred
   jumps_ = jumps_ > 0 && std::abs(slide - jump_slide_) < step ? jumps_ + 1 : 1;
   jump_slide_ = slide, jump_stamp_ = stamp;
   return jumped();
+}
+
+MarkerTracker::MarkerTracker(const InstrumentConfig& instrument, const TrackerPolicy& policy)
+    : config_(instrument),
+      policy_(policy),
+      reach_(instrument.motion.max_speed, policy),
+      doubts_(instrument.axis.direction.x()),
+      slide_(instrument.motion.max_speed, instrument.motion.max_acceleration) {
+  MarkerTracker::lose(LostReason::NoFrame);
+}
+
+const Measurement& MarkerTracker::lose(LostReason reason) {
+  constexpr double kNotSeen = std::numeric_limits<double>::quiet_NaN();
+  measurement_ = {};
+  measurement_.reason = reason;
+  measurement_.slide = measurement_.rotation = measurement_.along = measurement_.lateral = kNotSeen;
+  measurement_.pixel.setConstant(kNotSeen);
+  return measurement_;
+}
+
+void MarkerTracker::reset() {
+  slide_.reset();
+  doubts_.reset();
+  reach_.settle();
+  lose(LostReason::NoFrame);
+}
+
+void MarkerTracker::stateDoubts(const MotionFilter::State& state, double scale, int height) {
+  const Doubt doubt = doubts_.doubt();
+  // by the speed, and by what is not known of it, as after the motion was broken off
+  const double speed = std::sqrt(square(state.mean[1]) + state.covariance(1, 1));
+  measurement_.along_variance += square(doubts_.shutterError(speed * scale, height));
+  measurement_.covariance(0, 0) = measurement_.along_variance / square(scale);
+  const double fastest = std::abs(state.mean[1]) + std::sqrt(state.covariance(1, 1));
+  const bool known = doubts_.unknownShutterError(fastest, height) < policy_.unchecked_shift;
+  measurement_.doubt = known || doubt == Doubt::Shutter ? doubt : Doubt::Unchecked;
 }
 
 }  // namespace vibe::vision

@@ -1,15 +1,13 @@
 #pragma once
 
 #include <array>
+#include <memory>
 
 #include "track/calibration_doubts.hpp"
 #include "track/kalman_filters.hpp"
 #include "vibe_vision/track/tracker_policy.hpp"
 
 namespace vibe::vision {
-
-/// What trackers of all markers say where nothing was seen.
-Measurement lostMeasurement(LostReason reason);
 
 /// What the pixels tell in which a marker was looked for.
 struct BandLight {
@@ -18,12 +16,6 @@ struct BandLight {
   double brightest = 0;  ///< [DN]
 };
 LostReason whyNothing(const BandLight& light, double min_contrast, const TrackerPolicy& policy);
-
-/// States the doubt of a tracked instrument, and widens its variance by that of the shutter. As long as nobody knows
-/// whether all rows are exposed at the same time, what moves fast may be elsewhere.
-/// @param scale  [px/m]. @param height  of the sensor [px]
-void stateDoubts(const CalibrationDoubts& doubts, const MotionFilter::State& state, double scale, int height,
-                 const TrackerPolicy& policy, Measurement& measurement);
 
 /// The shift of a blurred marker's middle against its place at the middle of the exposure, per unit of acceleration:
 /// the mean of t^2 / 2 over the exposure.
@@ -73,5 +65,44 @@ class Reach {
   int jumps_ = 0;  ///< frames in a row that show the marker where it cannot be
   double jump_slide_ = 0, jump_stamp_ = 0;
 };
+
+/// Follows the marker of one instrument: what trackers of all markers have in common.
+class MarkerTracker {
+ public:
+  MarkerTracker(const InstrumentConfig& instrument, const TrackerPolicy& policy);
+  virtual ~MarkerTracker() = default;
+
+  /// @param frame  an image of the calibration's sensor
+  virtual const Measurement& track(const Frame& frame) = 0;
+  /// There is no usable frame.
+  virtual const Measurement& lose(LostReason reason);
+  virtual void reset();
+  virtual void setNoise(const PixelNoise& /*noise*/) {}
+  virtual double ink() const { return 0; }  ///< of the print, as far as it was learnt [m]
+  const Measurement& measurement() const { return measurement_; }
+  CalibrationDoubts& doubts() { return doubts_; }
+
+ protected:
+  /// States the doubt of a tracked instrument, and widens its variance by that of the shutter. As long as nobody knows
+  /// whether all rows are exposed at the same time, what moves fast may be elsewhere.
+  /// @param scale  [px/m]. @param height  of the sensor [px]
+  void stateDoubts(const MotionFilter::State& state, double scale, int height);
+
+  InstrumentConfig config_;
+  TrackerPolicy policy_;
+  Reach reach_;
+  CalibrationDoubts doubts_;
+  MotionFilter slide_;
+  double last_slide_ = 0;
+  LostReason reason_ = LostReason::NotFound;
+  Measurement measurement_;
+};
+
+/// For a ring or a sleeve.
+std::unique_ptr<MarkerTracker> makeInstrumentTracker(const VisionConfig& config, const InstrumentConfig& instrument,
+                                                     const TrackerPolicy& policy);
+/// For a tag.
+std::unique_ptr<MarkerTracker> makeTagTracker(const VisionConfig& config, const InstrumentConfig& instrument,
+                                              const TrackerPolicy& policy);
 
 }  // namespace vibe::vision

@@ -32,37 +32,6 @@ VIBE_LANES void addProducts(const float* a, const std::array<const float*, kToge
   }
 }
 
-}  // namespace
-
-NormalEquations::NormalEquations(std::size_t capacity) : capacity_((capacity + kLanes - 1) / kLanes * kLanes) {
-  columns_.assign(capacity_ * (kMaxColumns + 1), 0);
-  products_.setZero();
-}
-
-void NormalEquations::start(int columns) {
-  count_ = columns;
-  products_.setZero();
-}
-
-void NormalEquations::sum(std::size_t count) {
-  for (std::size_t begin = 0; begin < count; begin += kRowsAtATime)
-    for (int a = 0; a < count_; ++a)
-      for (int b = a; b <= count_; b += kTogether) sumGroup(a, b, begin, std::min(kRowsAtATime, count - begin));
-}
-
-/// Column a with column b and those behind it; column count_ stands for the residual.
-void NormalEquations::sumGroup(int a, int b, std::size_t begin, std::size_t rows) {
-  std::array<const float*, kTogether> others;
-  std::array<double, kTogether> sums;
-  for (int k = 0; k < static_cast<int>(kTogether); ++k)
-    others[k] = (b + k < count_ ? column(b + k) : residual()) + begin;
-  addProducts(column(a) + begin, others, rows, sums);
-  for (int k = 0; k < static_cast<int>(kTogether) && b + k <= count_; ++k)
-    products_(a, b + k < count_ ? b + k : kMaxColumns) += sums[k];
-}
-
-namespace {
-
 constexpr double kOutlier = 6;  // standard deviations beyond which a pixel counts nothing
 constexpr double kCut = kOutlier * kOutlier;
 constexpr float kSheenDoubt = 0.4F;  // of what a lamp's line adds: it is narrow
@@ -98,17 +67,39 @@ class LevelHistogram {
 
 }  // namespace
 
+NormalEquations::NormalEquations(std::size_t capacity) : capacity_((capacity + kLanes - 1) / kLanes * kLanes) {
+  columns_.assign(capacity_ * (kMaxColumns + 1), 0);
+  products_.setZero();
+}
+
+void NormalEquations::start(int columns) {
+  count_ = columns;
+  products_.setZero();
+}
+
+void NormalEquations::sum(std::size_t count) {
+  for (std::size_t begin = 0; begin < count; begin += kRowsAtATime)
+    for (int a = 0; a < count_; ++a)
+      for (int b = a; b <= count_; b += kTogether) sumGroup(a, b, begin, std::min(kRowsAtATime, count - begin));
+}
+
+/// Column a with column b and those behind it; column count_ stands for the residual.
+void NormalEquations::sumGroup(int a, int b, std::size_t begin, std::size_t rows) {
+  std::array<const float*, kTogether> others;
+  std::array<double, kTogether> sums;
+  for (int k = 0; k < static_cast<int>(kTogether); ++k)
+    others[k] = (b + k < count_ ? column(b + k) : residual()) + begin;
+  addProducts(column(a) + begin, others, rows, sums);
+  for (int k = 0; k < static_cast<int>(kTogether) && b + k <= count_; ++k)
+    products_(a, b + k < count_ ? b + k : kMaxColumns) += sums[k];
+}
+
 MarkerPose poseOf(const FitVector& x) {
   MarkerPose pose;
   pose.along = x[kAlong], pose.lateral = x[kLateral], pose.rotation = x[kRotation];
   pose.log_scale = x[kLogScale], pose.tilt = x[kTilt], pose.log_aspect = x[kLogAspect];
   pose.blur = x[kBlur], pose.keystone = x[kKeystone], pose.slant = x[kSlant];
   return pose;
-}
-
-void setPose(const MarkerPose& pose, FitVector& x) {
-  x.head<kPoseParameters>() << pose.along, pose.lateral, pose.rotation, pose.log_scale, pose.tilt, pose.log_aspect,
-      pose.blur, pose.keystone, pose.slant;
 }
 
 PatternFit::PatternFit(MarkerPattern& pattern, const PixelNoise& noise, std::size_t capacity)
@@ -281,86 +272,6 @@ void PatternFit::learnLight(const FitVector& x, const PixelBlock& pixels, RodLig
   light.learn();
 }
 
-Distortions PatternFit::distortions(const FitPrior& unlearnt, const PixelBlock& pixels, const Sight& sight) {
-  const FitVector& x = at_;
-  const auto contrast = static_cast<float>(x[kContrast]);
-  const auto x0 = static_cast<float>(x[kAlong]), y0 = static_cast<float>(x[kLateral]);
-  const auto down_x = static_cast<float>(sight.down.x()), down_y = static_cast<float>(sight.down.y());
-  const std::size_t count = pixels.padded();
-  const float *by_along = values_.derivative[kAlong].data(), *by_lateral = values_.derivative[kLateral].data();
-  float* column = equations_.column(columns_);
-  for (std::size_t i = 0; i < count; ++i) {
-    const float rows = down_x * (pixels.along[i] - x0) + down_y * (pixels.lateral[i] - y0);
-    column[i] = lit_[i] * contrast * rows * by_along[i];
-  }
-  Distortions found;
-  found.shear = distortion(factors_, gradient_, count);
-  FitSubmatrix h;
-  FitSubvector g;
-  assemble(x, unlearnt, h, g);
-  const Eigen::LDLT<FitSubmatrix> factors(h);
-  const auto per_area = static_cast<float>(1 / square(pattern_->rim() * std::exp(x[kLogScale])));
-  const auto slope = static_cast<float>(sight.slope), per_pixel = static_cast<float>(sight.per_pixel);
-  for (std::size_t i = 0; i < count; ++i) {
-    const float u = pixels.along[i] - x0;
-    column[i] = lit_[i] * contrast * per_area * u * u * (slope + per_pixel * u) * by_along[i];
-  }
-  found.relief = distortion(factors, g, count);
-  if (observed_[kRotation]) {
-    found.oval = oval(factors, g, pixels, sight);
-    return found;
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const float u = pixels.along[i] - x0, v = pixels.lateral[i] - y0;
-    column[i] = lit_[i] * contrast * per_area * (v * v * v * by_lateral[i] - u * u * u * by_along[i]);
-  }
-  found.bend = distortion(factors, g, count);
-  return found;
-}
-
-Distortion PatternFit::towards(MarkerPattern& other, const PixelBlock& pixels) {
-  const std::size_t count = pixels.padded();
-  const auto contrast = static_cast<float>(at_[kContrast]);
-  std::copy_n(values_.value.data(), count, before_.data());
-  other.evaluate(poseOf(at_), pixels, values_);
-  float* column = equations_.column(columns_);
-  for (std::size_t i = 0; i < count; ++i) column[i] = lit_[i] * contrast * (values_.value[i] - before_[i]);
-  pattern_->evaluate(poseOf(at_), pixels, values_);
-  return distortion(factors_, gradient_, count);
-}
-
-/// A line of sight meets a wider rod at a place nearer to its middle.
-std::array<Distortion, 2> PatternFit::oval(const Eigen::LDLT<FitSubmatrix>& factors, const FitSubvector& g,
-                                           const PixelBlock& pixels, const Sight& sight) {
-  const float* slope = values_.derivative[kRotation].data();
-  const auto sine = static_cast<float>(std::sin(at_[kTilt]) / sight.radius);
-  const auto cosine = static_cast<float>(std::cos(at_[kTilt]) / sight.radius);
-  const auto x0 = static_cast<float>(at_[kAlong]), y0 = static_cast<float>(at_[kLateral]);
-  const auto contrast = static_cast<float>(at_[kContrast]);
-  std::array<Distortion, 2> found;
-  for (std::size_t k = 0; k < 2; ++k) {
-    const double turn = 2 * at_[kRotation] + static_cast<double>(k) * M_PI / 2;
-    const auto c = static_cast<float>(std::cos(turn)), s = static_cast<float>(std::sin(turn));
-    float* column = equations_.column(columns_);
-    for (std::size_t i = 0; i < pixels.padded(); ++i) {
-      const float v = cosine * (pixels.lateral[i] - y0) - sine * (pixels.along[i] - x0);
-      const float sin_phi = std::max(-0.95F, std::min(v, 0.95F)), cos_phi = std::sqrt(1 - sin_phi * sin_phi);
-      const float wider = c * (1 - 2 * sin_phi * sin_phi) + s * 2 * sin_phi * cos_phi;
-      column[i] = lit_[i] * contrast * slope[i] * wider * sin_phi / cos_phi;
-    }
-    found[k] = distortion(factors, g, pixels.padded());
-  }
-  return found;
-}
-
-Distortion PatternFit::stretch(const FitPrior& unlearnt, const PixelBlock& pixels) {
-  FitSubmatrix h;
-  FitSubvector g;
-  assemble(at_, unlearnt, h, g);
-  std::copy_n(moved_[0].data(), pixels.padded(), equations_.column(columns_));
-  return distortion(Eigen::LDLT<FitSubmatrix>(h), g, pixels.padded());
-}
-
 /// What the column behind those of the fit tells beside them.
 Distortion PatternFit::distortion(const Eigen::LDLT<FitSubmatrix>& factors, const FitSubvector& g, std::size_t count) {
   const float* column = equations_.column(columns_);
@@ -395,36 +306,6 @@ void PatternFit::solve(const FitVector& x, const FitPrior& prior, FitStep& resul
   const FitSubvector change = factors_.solve(gradient_);
   result.valid = change.allFinite();
   for (int a = 0; a < columns_; ++a) result.change[parameter_[a]] = change[a];
-}
-
-double PatternFit::stripeSeen(const PixelBlock& pixels) const {
-  const std::vector<float>& slope = values_.derivative[kRotation];
-  float used = 0, full = 0;
-  for (std::size_t i = 0; i < pixels.padded(); ++i) {
-    const float told = slope[i] * slope[i];
-    used += weight_[i] * told;
-    full += told;
-  }
-  return full > 0 ? used / full : 0;
-}
-
-double PatternFit::oddRows(const PixelBlock& pixels, const Eigen::Vector2d& down) const {
-  constexpr int kBands = 64;  // of two rows
-  std::array<float, kBands> used{}, full{};
-  const auto x = static_cast<float>(down.x() / 2), y = static_cast<float>(down.y() / 2);
-  const auto first = static_cast<float>(kBands / 2 - x * at_[kAlong] - y * at_[kLateral]);
-  for (std::size_t i = 0; i < pixels.count / 2; ++i) {  // which sample all of the window
-    const float place = first + x * pixels.along[i] + y * pixels.lateral[i];
-    const auto band = static_cast<std::size_t>(std::clamp(place, 0.F, kBands - 1.F));
-    used[band] += weight_[i] * information_[i];
-    full[band] += pixels.weight[i] * information_[i];
-  }
-  float odd = 0, all = 0;
-  for (std::size_t i = 0; i < kBands; ++i) {
-    odd += used[i] < full[i] / 2 ? full[i] : 0;
-    all += full[i];
-  }
-  return all > 0 ? odd / all : 0;
 }
 
 FitMatrix PatternFit::covariance() const {

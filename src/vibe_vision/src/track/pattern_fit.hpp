@@ -52,7 +52,6 @@ using FitSubmatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kF
 using FitSubvector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kFitParameters, 1>;
 
 MarkerPose poseOf(const FitVector& x);
-void setPose(const MarkerPose& pose, FitVector& x);
 
 /// What is known before the picture is looked at.
 struct FitPrior {

@@ -10,7 +10,6 @@ namespace {
 
 constexpr double kMaxMotion = 48;  // during the exposure [px]
 constexpr double kBlurTail = 3;    // standard deviations of the blur that an edge reaches
-constexpr double kMaxScale = 1.3;  // of the marker's size
 
 /// Four values of one pixel and four of the next.
 using TwoFours [[gnu::vector_size(32)]] = float;
@@ -108,10 +107,6 @@ Eigen::Vector2d RingPattern::window(const MarkerPose& pose, double motion) const
   const double u = std::min(outer_ * size_u + blur + travel, half_side_ * size_u - blur - travel);
   const double v = std::min(outer_ * size_v + blur, half_side_ * size_v - blur);
   return {std::max(u, inner_ * size_u), std::max(v, inner_ * size_v)};
-}
-
-Eigen::Vector2d RingPattern::maxWindow() const {
-  return Eigen::Vector2d::Constant(half_side_ * kMaxScale);
 }
 
 /// Keeps what lies near one of the two edges at some time during the exposure.
@@ -251,10 +246,6 @@ VIBE_LANES void RingPattern::chain(const MarkerPose& pose, std::size_t begin, co
     store(by_width + i, by_blur * laplacian);
     store(trapeze + i, -x * (x * by_p + y * by_q));
   }
-}
-
-double RingPattern::searchHalfWidth() const {
-  return 0.5 * outer_;
 }
 
 /// Chords of the two discs at the middle of the band; the blur of the optics does not matter here.

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "track/arithmetic.hpp"
 #include "vibe_vision/track/marker_pattern.hpp"
 
 namespace vibe::vision {
@@ -29,7 +28,6 @@ class RingTable {
   int rows() const { return used_rows_; }
   int columns() const { return used_columns_; }
   double blur() const { return blur_; }  ///< of the composed table
-  double motion() const { return motion_; }
 
  private:
   struct Level {
@@ -58,12 +56,12 @@ class RingPattern : public MarkerPattern {
 
   std::array<bool, kPoseParameters> observes() const override;
   Eigen::Vector2d window(const MarkerPose& pose, double motion) const override;
-  Eigen::Vector2d maxWindow() const override;
+  Eigen::Vector2d maxWindow() const override { return Eigen::Vector2d::Constant(half_side_ * kMaxScale); }
   double rim() const override { return outer_; }
   void prepare(const MarkerPose& pose, const MarkerMotion& motion, bool rough = false) override;
   void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) override;
   void select(const MarkerPose& pose, double motion, PixelBlock& pixels) const override;
-  double searchHalfWidth() const override;
+  double searchHalfWidth() const override { return 0.5 * outer_; }
   void searchProfile(double motion, double scale, std::vector<float>& profile) const override;
 
  private:
@@ -73,7 +71,8 @@ class RingPattern : public MarkerPattern {
   void readTable(Part& part) const;
   void chain(const MarkerPose& pose, std::size_t begin, const Part& part, PatternValues& values) const;
 
-  double inner_, outer_, half_side_;  ///< [px]
+  static constexpr double kMaxScale = 1.3;  ///< of the marker's size
+  double inner_, outer_, half_side_;        ///< [px]
   RingTable table_;
 };
 

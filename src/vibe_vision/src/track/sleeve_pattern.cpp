@@ -92,10 +92,6 @@ Eigen::Vector2d SleevePattern::printWindow(const MarkerPose& pose, double motion
   return {std::max(end, 0.3 * half_length_), std::max(std::min(kRim * side, side - 2.9 * blur), 0.4 * side)};
 }
 
-Eigen::Vector2d SleevePattern::maxWindow() const {
-  return Eigen::Vector2d(half_length_, radius_) * 1.2;
-}
-
 void SleevePattern::compose(MovingLine& line, double low, double high, double half_motion) const {
   low = std::max(low, 0.3 * high);
   line.compose(static_cast<float>(low), static_cast<float>(high), static_cast<float>(std::max(half_motion, 0.1)),

@@ -18,7 +18,7 @@ class SleevePattern : public MarkerPattern {
 
   std::array<bool, kPoseParameters> observes() const override;
   Eigen::Vector2d window(const MarkerPose& pose, double motion) const override;
-  Eigen::Vector2d maxWindow() const override;
+  Eigen::Vector2d maxWindow() const override { return Eigen::Vector2d(half_length_, radius_) * 1.2; }
   double rim() const override { return half_length_; }
   void prepare(const MarkerPose& pose, const MarkerMotion& motion, bool rough = false) override;
   void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) override;

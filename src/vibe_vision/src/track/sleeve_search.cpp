@@ -23,6 +23,10 @@ float overlap(float u, float half, float begin, float end) {
   return std::clamp(std::min(u + half, end) - std::max(u - half, begin), 0.0F, 2 * half) / (2 * half);
 }
 
+constexpr float kTellReach = 2.7F;    // standard deviations from an edge within which a pixel tells something
+constexpr float kMaxUneven = 0.15F;   // of the motions of bars and stripe at an end of the helix [px]
+constexpr float kLongHalfMotion = 4;  // half of one that leaves few pixels that are not near a corner [px]
+
 }  // namespace
 
 double SleevePattern::searchHalfWidth() const {
@@ -61,14 +65,6 @@ std::vector<double> SleevePattern::rotationGuesses() const {
   for (int k = 0; k < kGuesses; ++k) guesses.push_back(2 * M_PI * k / kGuesses);
   return guesses;
 }
-
-namespace {
-
-constexpr float kTellReach = 2.7F;    // standard deviations from an edge within which a pixel tells something
-constexpr float kMaxUneven = 0.15F;   // of the motions of bars and stripe at an end of the helix [px]
-constexpr float kLongHalfMotion = 4;  // half of one that leaves few pixels that are not near a corner [px]
-
-}  // namespace
 
 /// Pixels of the sleeve near an edge. Those where the helix ends at an edge of the stripe are few and costly.
 void SleevePattern::select(const MarkerPose& pose, double motion, PixelBlock& pixels) const {

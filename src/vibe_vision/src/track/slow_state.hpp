@@ -24,7 +24,6 @@ class SlowState {
   FitPrior prior(double slide) const;
   /// What the calibration and the axis say about a marker there; position and light are 0.
   FitVector nominal(double slide) const;
-  const FitMatrix& covariance() const { return covariance_; }
 
  private:
   double greatestSlant() const;

@@ -1,11 +1,10 @@
-#include "track/tag_tracker.hpp"
-
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "track/arithmetic.hpp"
+#include "track/axis_map.hpp"
+#include "track/outcome.hpp"
+#include "vibe_vision/tag/tag_reader.hpp"
 
 namespace vibe::vision {
 namespace {
@@ -26,32 +25,42 @@ double sampled(const Frame& frame, const Eigen::Vector2d& pixel) {
   return frame.image.row(y)[x];
 }
 
-}  // namespace
+/// Reads the tag in a window around the prediction; if it is not there, in the band around the axis.
+class TagTracker : public MarkerTracker {
+ public:
+  TagTracker(const VisionConfig& config, const InstrumentConfig& instrument, const TrackerPolicy& policy)
+      : MarkerTracker(instrument, policy),
+        camera_(config.camera),
+        limits_(config.gates),
+        tag_(std::get<TagDesign>(instrument.marker)),
+        reader_(tag_, instrument.axis.pixels_per_metre) {}
 
-TagTracker::TagTracker(const VisionConfig& config, const InstrumentConfig& instrument, const TrackerPolicy& policy)
-    : camera_(config.camera),
-      policy_(policy),
-      limits_(config.gates),
-      config_(instrument),
-      tag_(std::get<TagDesign>(instrument.marker)),
-      reader_(tag_, instrument.axis.pixels_per_metre),
-      reach_(instrument.motion.max_speed, policy),
-      doubts_(instrument.axis.direction.x()),
-      slide_(instrument.motion.max_speed, instrument.motion.max_acceleration) {
-  lose(LostReason::NoFrame);
-}
+  const Measurement& track(const Frame& frame) override;
 
-void TagTracker::reset() {
-  slide_.reset();
-  doubts_.reset();
-  reach_.settle();
-  lose(LostReason::NoFrame);
-}
+ private:
+  /// A tag against the axis.
+  struct Look {
+    TagPlace place;
+    double along = 0, lateral = 0;  ///< of its centre [px]
+    double size = 1, tilt = 0;      ///< against the calibrated ones; the tilt to the nearest quarter turn [rad]
+    double shear = 0;               ///< along the axis, per pixel across it
+    double contrast = 0;            ///< white - black [DN]
+    double corner_variance = 0;     ///< of a corner, in one direction [px^2]
+  };
+  bool search(const Frame& frame, double from, double to, const MotionFilter::State* prediction);
+  cv::Rect band(const Frame& frame, double from, double to) const;
+  Look lookAt(const Frame& frame, const TagCorners& corners, const Eigen::Vector2d& shift) const;
+  double contrastOf(const Frame& frame, const TagPlace& place) const;
+  LostReason judge(const Look& look) const;
+  void accept(const Frame& frame, const Look& look, bool reacquired);
+  void doubt(const Frame& frame, const Look& look, const MotionFilter::State& state);
+  LostReason whyNothing(const Frame& frame) const;
 
-const Measurement& TagTracker::lose(LostReason reason) {
-  measurement_ = lostMeasurement(reason);
-  return measurement_;
-}
+  CameraModel camera_;
+  GateConfig limits_;
+  TagDesign tag_;
+  TagReader reader_;
+};
 
 const Measurement& TagTracker::track(const Frame& frame) {
   reason_ = LostReason::NotFound;
@@ -68,39 +77,35 @@ const Measurement& TagTracker::track(const Frame& frame) {
   return lose(reason_ == LostReason::NotFound ? whyNothing(frame) : reason_);
 }
 
-/// Pixels of the full image around a part of the axis, as far as a tag there reaches.
-PixelWindow TagTracker::band(double from, double to) const {
+/// Pixels of the full image around a part of the axis, as far as a tag there reaches and the frame shows them.
+cv::Rect TagTracker::band(const Frame& frame, double from, double to) const {
   const double scale = config_.axis.pixels_per_metre;
   const double reach = (0.75 * tag_.side + tagMargin(tag_) + config_.lateral_tolerance) * (1 + limits_.max_scale_error);
   const double begin = alongOf(config_.axis, std::max(from, config_.lower)) - reach * scale;
   const double end = alongOf(config_.axis, std::min(to, config_.upper)) + reach * scale;
-  const Eigen::Vector2d along = config_.axis.direction, across(-along.y(), along.x());
   Eigen::Vector2d low = Eigen::Vector2d::Constant(1e6), high = -low;
   constexpr int kPieces = 8;  // the lens bends the band
   for (int i = 0; i <= kPieces; ++i)
     for (const double side : {-1.0, 1.0}) {
-      const Eigen::Vector2d place =
-          config_.axis.origin + (begin + (end - begin) * i / kPieces) * along + side * reach * scale * across;
-      const Eigen::Vector2d p = distort(camera_, place);
+      const Eigen::Vector2d p =
+          distort(camera_, pixelAt(config_.axis, begin + (end - begin) * i / kPieces, side * reach * scale));
       if (p.allFinite()) low = low.cwiseMin(p), high = high.cwiseMax(p);
     }
   const auto whole = [](double v, int size) { return static_cast<int>(std::clamp(std::floor(v), 0.0, double(size))); };
   const int x0 = whole(low.x(), camera_.width), x1 = whole(high.x() + 1, camera_.width);
   const int y0 = whole(low.y(), camera_.height), y1 = whole(high.y() + 1, camera_.height);
-  return {x0, y0, std::max(0, x1 - x0), std::max(0, y1 - y0)};
+  return cv::Rect(x0, y0, x1 - x0, y1 - y0) &
+         cv::Rect(frame.offset_x, frame.offset_y, frame.image.width, frame.image.height);
 }
 
 bool TagTracker::search(const Frame& frame, double from, double to, const MotionFilter::State* prediction) {
-  const PixelWindow window = band(from, to);
-  const int x0 = std::max(window.x, frame.offset_x), y0 = std::max(window.y, frame.offset_y);
-  const int x1 = std::min(window.x + window.width, frame.offset_x + frame.image.width);
-  const int y1 = std::min(window.y + window.height, frame.offset_y + frame.image.height);
-  if (x1 <= x0 || y1 <= y0) return false;
-  const ImageView view = {frame.image.row(y0 - frame.offset_y) + (x0 - frame.offset_x), x1 - x0, y1 - y0,
-                          frame.image.stride};
+  const cv::Rect window = band(frame, from, to);
+  if (window.empty()) return false;
+  const ImageView view = {frame.image.row(window.y - frame.offset_y) + (window.x - frame.offset_x), window.width,
+                          window.height, frame.image.stride};
   const Look* best = nullptr;
   std::vector<Look> looks;
-  for (const TagCorners& corners : reader_.find(view)) looks.push_back(lookAt(frame, corners, {x0, y0}));
+  for (const TagCorners& corners : reader_.find(view)) looks.push_back(lookAt(frame, corners, {window.x, window.y}));
   for (const Look& look : looks) {
     const LostReason reason = judge(look);
     if (reason != LostReason::None && reason_ == LostReason::NotFound) reason_ = reason;
@@ -115,7 +120,8 @@ bool TagTracker::search(const Frame& frame, double from, double to, const Motion
   }
   if (reach_.jumped()) slide_.reset();
   measurement_ = {};
-  measurement_.roi_x = x0, measurement_.roi_y = y0, measurement_.roi_width = x1 - x0, measurement_.roi_height = y1 - y0;
+  measurement_.roi_x = window.x, measurement_.roi_y = window.y;
+  measurement_.roi_width = window.width, measurement_.roi_height = window.height;
   const bool wide = from <= config_.lower && to >= config_.upper;
   accept(frame, *best, wide);
   return true;
@@ -124,7 +130,7 @@ bool TagTracker::search(const Frame& frame, double from, double to, const Motion
 TagTracker::Look TagTracker::lookAt(const Frame& frame, const TagCorners& corners, const Eigen::Vector2d& shift) const {
   Look look;
   look.place = TagPlace::of(camera_, corners, shift, tag_.side);
-  const Eigen::Vector2d direction = config_.axis.direction, across(-direction.y(), direction.x());
+  const Eigen::Vector2d direction = config_.axis.direction, across = acrossOf(config_.axis);
   const Eigen::Vector2d offset = look.place.centre - config_.axis.origin;
   look.along = offset.dot(direction), look.lateral = offset.dot(across);
   const double expected = pixelsPerMetre(config_.axis, slideOf(config_.axis, look.along));
@@ -190,39 +196,43 @@ void TagTracker::accept(const Frame& frame, const Look& look, bool reacquired) {
   measurement_.slide = slideOf(config_.axis, measurement_.along);
   measurement_.rotation = NAN;
   measurement_.lateral = look.lateral;
-  const Eigen::Vector2d direction = config_.axis.direction, across(-direction.y(), direction.x());
-  measurement_.pixel = distort(camera_, config_.axis.origin + measurement_.along * direction + look.lateral * across);
+  measurement_.pixel = distort(camera_, pixelAt(config_.axis, measurement_.along, look.lateral));
   measurement_.visible = 1;  // what is covered in part is not read
   measurement_.score = 1 / (1 + square(look.place.misfit));
   measurement_.scale = look.size;
   measurement_.tilt = look.tilt;
   measurement_.contrast = look.contrast;
-  stateDoubts(frame, look, state);
+  doubt(frame, look, state);
 }
 
-void TagTracker::stateDoubts(const Frame& frame, const Look& look, const MotionFilter::State& state) {
+void TagTracker::doubt(const Frame& frame, const Look& look, const MotionFilter::State& state) {
   const double scale = pixelsPerMetre(config_.axis, measurement_.slide), rows = config_.axis.direction.x();
   doubts_.addFit(std::log(look.size), 0);
   if (std::abs(state.mean[1]) > policy_.telling_speed && std::abs(rows) > kRowsAcross) {
     const double variance = 2 * look.corner_variance / square(tag_.side * scale) + square(kSlantedShear);
     doubts_.addShear({look.shear / rows, variance / square(rows)}, state.mean[1] * scale);
   }
-  vision::stateDoubts(doubts_, state, scale, frame.sensor_height, policy_, measurement_);
+  stateDoubts(state, scale, frame.sensor_height);
 }
 
 LostReason TagTracker::whyNothing(const Frame& frame) const {
-  const PixelWindow window = band(config_.lower, config_.upper);
-  int seen = 0, saturated = 0, brightest = 0;
-  for (int y = std::max(window.y, frame.offset_y); y < window.y + window.height; ++y) {
-    if (y - frame.offset_y >= frame.image.height) break;
-    for (int x = std::max(window.x, frame.offset_x); x < window.x + window.width; ++x) {
-      if (x - frame.offset_x >= frame.image.width) break;
+  const cv::Rect window = band(frame, config_.lower, config_.upper);
+  const int seen = window.area();
+  int saturated = 0, brightest = 0;
+  for (int y = window.y; y < window.br().y; ++y)
+    for (int x = window.x; x < window.br().x; ++x) {
       const int value = frame.image.row(y - frame.offset_y)[x - frame.offset_x];
-      ++seen, saturated += value >= 253 ? 1 : 0, brightest = std::max(brightest, value);
+      saturated += value >= 253 ? 1 : 0, brightest = std::max(brightest, value);
     }
-  }
   const double share = static_cast<double>(saturated) / std::max(seen, 1);
   return vision::whyNothing({seen > 0, share, static_cast<double>(brightest)}, limits_.min_contrast, policy_);
+}
+
+}  // namespace
+
+std::unique_ptr<MarkerTracker> makeTagTracker(const VisionConfig& config, const InstrumentConfig& instrument,
+                                              const TrackerPolicy& policy) {
+  return std::make_unique<TagTracker>(config, instrument, policy);
 }
 
 }  // namespace vibe::vision

@@ -1,5 +1,3 @@
-#include "camera/v4l2_source.hpp"
-
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -9,7 +7,10 @@
 #include <cstdio>
 #include <fstream>
 
+#include <opencv2/videoio.hpp>
+
 #include "camera/host_time.hpp"
+#include "camera/sources.hpp"
 
 namespace vibe::vision::v4l2_source_test {
 

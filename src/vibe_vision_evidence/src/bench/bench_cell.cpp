@@ -1,8 +1,6 @@
 #include "bench/bench_cell.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
 
 #include "bench/bench_scene.hpp"

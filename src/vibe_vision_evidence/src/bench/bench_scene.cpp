@@ -5,6 +5,7 @@ namespace {
 
 constexpr double kNominalMarker = 40;                      // [px]
 constexpr double kTagSide = 4e-3;                          // [m]
+constexpr int kTagId = 7;                                  // of both families
 constexpr double kArucoBelow = 132, kAprilTagBelow = 232;  // the ring; look-alikes pass between them [px]
 
 void resize(RingDesign& ring, double factor) {
@@ -34,6 +35,21 @@ void changeMotion(SyntheticMotion& motion, std::uint64_t seed) {
   if (rotation) motion.rotation = [=](double time) { return rotation(time + later); };
 }
 
+void indexMarkers(BenchScene& bench) {
+  for (std::size_t i = 0; i < bench.scene.instruments.size(); ++i)
+    (std::holds_alternative<SleeveDesign>(bench.scene.instruments[i].nominal.marker) ? bench.sleeve : bench.ring) = i;
+}
+
+/// A tag that moves as the ring does, on an axis of its own below it. @return its index
+std::size_t addTag(BenchScene& bench, const TagDesign& tag, double below) {
+  SyntheticInstrument instrument = bench.scene.instruments[bench.ring];
+  instrument.nominal.name = tagFamilyName(tag.family);
+  instrument.nominal.axis.origin.y() += below;
+  setTag(instrument, tag);
+  bench.scene.instruments.push_back(instrument);
+  return bench.scene.instruments.size() - 1;
+}
+
 }  // namespace
 
 void enlarge(SyntheticScene& scene, int width, int height) {
@@ -44,35 +60,6 @@ void enlarge(SyntheticScene& scene, int width, int height) {
   scene.camera.cy += shift.y();
   for (SyntheticInstrument& instrument : scene.instruments) instrument.nominal.axis.origin += shift;
 }
-
-namespace {
-
-/// A tag that moves as the ring does, on an axis of its own below it.
-SyntheticInstrument tagBeside(const SyntheticInstrument& ring, const std::string& name, const TagDesign& tag,
-                              double below) {
-  SyntheticInstrument instrument = ring;
-  instrument.nominal.name = name;
-  instrument.nominal.axis.origin.y() += below;
-  setTag(instrument, tag);
-  return instrument;
-}
-
-void indexMarkers(BenchScene& bench) {
-  for (std::size_t i = 0; i < bench.scene.instruments.size(); ++i)
-    (std::holds_alternative<SleeveDesign>(bench.scene.instruments[i].nominal.marker) ? bench.sleeve : bench.ring) = i;
-}
-
-void addTags(BenchScene& bench, double factor) {
-  const SyntheticInstrument ring = bench.scene.instruments[bench.ring];
-  bench.aruco = bench.scene.instruments.size();
-  bench.scene.instruments.push_back(
-      tagBeside(ring, "aruco", {TagFamily::Aruco, kArucoId, kTagSide * factor}, kArucoBelow));
-  bench.apriltag = bench.scene.instruments.size();
-  bench.scene.instruments.push_back(
-      tagBeside(ring, "apriltag", {TagFamily::AprilTag, kAprilTagId, kTagSide * factor}, kAprilTagBelow));
-}
-
-}  // namespace
 
 BenchScene makeBenchScene(const Cell& cell, std::uint64_t seed) {
   BenchScene bench;
@@ -88,7 +75,8 @@ BenchScene makeBenchScene(const Cell& cell, std::uint64_t seed) {
     instrument.nominal.axis.origin += static_cast<double>(seed - 1) * Eigen::Vector2d(0.37, 0.21);
   }
   indexMarkers(bench);
-  addTags(bench, factor);
+  bench.aruco = addTag(bench, {TagFamily::Aruco, kTagId, kTagSide * factor}, kArucoBelow);
+  bench.apriltag = addTag(bench, {TagFamily::AprilTag, kTagId, kTagSide * factor}, kAprilTagBelow);
   if (harder) harder->change(bench.scene, seed);
   bench.config = nominalConfig(bench.scene);
   bench.config.instruments = {bench.scene.instruments[bench.sleeve].nominal,
@@ -98,17 +86,12 @@ BenchScene makeBenchScene(const Cell& cell, std::uint64_t seed) {
 
 std::vector<Cell> furtherCells() {
   std::vector<Cell> cells;
-  const auto add = [&](const std::string& scene) -> Cell& {
-    cells.push_back({});
-    cells.back().scene = scene;
-    return cells.back();
-  };
   for (const char* scene : {"static", "moving"})
-    for (const double marker : {16.0, 24.0, 32.0, 64.0}) add(scene).marker = marker;
-  for (const double exposure : {0.1e-3, 0.2e-3, 0.5e-3, 1e-3, 2e-3, 4e-3}) add("moving").exposure = exposure;
-  Cell& large = add("moving");
-  large.width = 1936;
-  large.height = 1216;
+    for (const double marker : {16.0, 24.0, 32.0, 64.0}) cells.push_back({scene, marker});
+  const Cell moving{"moving"};
+  for (const double exposure : {0.1e-3, 0.2e-3, 0.5e-3, 1e-3, 2e-3, 4e-3})
+    cells.push_back({moving.scene, moving.marker, exposure});
+  cells.push_back({moving.scene, moving.marker, std::nullopt, 1936, 1216});
   return cells;
 }
 

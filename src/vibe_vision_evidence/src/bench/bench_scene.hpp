@@ -13,10 +13,10 @@ namespace vibe::vision::evidence {
 
 /// What to measure: a scene and how it differs from the standard one.
 struct Cell {
-  std::string scene;               ///< of sceneNames() or harderScenes()
-  double marker = 40;              ///< side of the tags and outer diameter of the ring [px]; the sleeve goes with it
-  std::optional<double> exposure;  ///< instead of the scene's [s]
-  int width = 0, height = 0;       ///< of the sensor [px]; 0: the scene's
+  std::string scene;   ///< of sceneNames() or harderScenes()
+  double marker = 40;  ///< side of the tags and outer diameter of the ring [px]; the sleeve goes with it
+  std::optional<double> exposure = {};  ///< instead of the scene's [s]
+  int width = 0, height = 0;            ///< of the sensor [px]; 0: the scene's
 };
 
 /// A scene with four markers on axes of their own, side by side in every frame: sleeve, ring, ArUco, AprilTag.
@@ -25,7 +25,6 @@ struct BenchScene {
   VisionConfig config;                                        ///< of sleeve and ring only
   std::size_t sleeve = 0, ring = 0, aruco = 0, apriltag = 0;  ///< indices into scene.instruments
 };
-constexpr int kArucoId = 7, kAprilTagId = 7;
 
 /// @throws Error for an unknown scene
 BenchScene makeBenchScene(const Cell& cell, std::uint64_t seed);

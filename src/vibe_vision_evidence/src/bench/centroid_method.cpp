@@ -63,17 +63,15 @@ class Centroid {
   cv::Rect axisBand(const Frame& frame) const {
     const SlideAxis& axis = instrument_.axis;
     const Eigen::Vector2d half = Eigen::Vector2d::Constant(half_);
-    const Eigen::Vector2d a = distort(camera_, axis.origin + axis.direction * alongOf(axis, instrument_.lower));
-    const Eigen::Vector2d b = distort(camera_, axis.origin + axis.direction * alongOf(axis, instrument_.upper));
+    const Eigen::Vector2d a = distort(camera_, pixelAt(axis, alongOf(axis, instrument_.lower)));
+    const Eigen::Vector2d b = distort(camera_, pixelAt(axis, alongOf(axis, instrument_.upper)));
     return cut(frame, a.cwiseMin(b) - half, a.cwiseMax(b) + half);
   }
 
   /// The component whose area is next to the ring's, within limits, inside the window.
   std::optional<Eigen::Vector2d> search(const Frame& frame, const cv::Rect& window) {
     if (window.width < 8 || window.height < 8) return std::nullopt;
-    const cv::Mat image(frame.image.height, frame.image.width, CV_8UC1, const_cast<std::uint8_t*>(frame.image.data),
-                        static_cast<std::size_t>(frame.image.stride));
-    const cv::Mat part = image(window);
+    const cv::Mat part = frame.image.mat()(window);
     double darkest = 0, brightest = 0;
     cv::minMaxLoc(part, &darkest, &brightest);
     if (brightest - darkest < 40) return std::nullopt;

@@ -48,8 +48,7 @@ std::vector<DoubtRow> doubtTable(const std::vector<std::string>& scenes, const s
   std::vector<DoubtRow> rows;
   for (const std::string& name : scenes.empty() ? allScenes() : scenes) {
     DoubtRow pair[2] = {{name, false}, {name, true}};
-    Cell cell;
-    cell.scene = name;
+    const Cell cell{name};
     for (const std::uint64_t seed : seeds) {
       const BenchScene scene = makeBenchScene(cell, seed);
       const std::vector<RenderedFrame> drawn = renderFrames(scene, cell, frames);

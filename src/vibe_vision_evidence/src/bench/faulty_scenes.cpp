@@ -131,11 +131,13 @@ void makeOval(const SyntheticScene& scene, RenderedFrame& frame) {
   }
 }
 
-std::vector<HarderScene> makeFaultyScenes() {
+}  // namespace
+
+const std::vector<HarderScene>& faultyScenes() {
   using Scene = SyntheticScene;
   using Seed = std::uint64_t;
   const auto nothing = [](Scene&, Seed) {};
-  return {
+  static const std::vector<HarderScene> scenes = {
       {"covered_stripe", "moving", nothing, coverStripe},
       {"covered_stripe_rest", "static", nothing, coverStripe},
       {"copy", "moving", addCopies, hideInstruments},
@@ -155,12 +157,6 @@ std::vector<HarderScene> makeFaultyScenes() {
       {"mirrored", "moving", nothing, mirror},
       {"glare", "moving", [](Scene& s, Seed) { s.black = 70, s.white = 330; }, {}},
   };
-}
-
-}  // namespace
-
-const std::vector<HarderScene>& faultyScenes() {
-  static const std::vector<HarderScene> scenes = makeFaultyScenes();
   return scenes;
 }
 

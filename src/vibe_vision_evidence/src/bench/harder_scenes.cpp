@@ -152,11 +152,22 @@ void cutOut(const SyntheticScene&, RenderedFrame& frame) {
   frame.frame.offset_y = kTop;
 }
 
-std::vector<HarderScene> makeScenes() {
+}  // namespace
+
+std::uint8_t* ownPixels(Frame& frame) {
+  const ImageView old = frame.image;
+  const auto pixels = std::make_shared<std::vector<std::uint8_t>>();
+  for (int y = 0; y < old.height; ++y) pixels->insert(pixels->end(), old.row(y), old.row(y) + old.width);
+  frame.image = {pixels->data(), old.width, old.height, old.width};
+  frame.owner = pixels;
+  return pixels->data();
+}
+
+const std::vector<HarderScene>& harderScenes() {
   using Scene = SyntheticScene;
   using Seed = std::uint64_t;
   const auto turned = [](double degrees) { return [=](Scene& s, Seed) { turnAxes(s, degrees * M_PI / 180); }; };
-  return {
+  static const std::vector<HarderScene> scenes = {
       {"vertical", "moving", turned(90), {}},
       {"oblique", "moving", turned(30), {}},
       {"reversed", "moving", turned(180), {}},
@@ -190,21 +201,6 @@ std::vector<HarderScene> makeScenes() {
       {"cut_out", "moving", [](Scene&, Seed) {}, cutOut},
       {"rolling", "moving", [](Scene&, Seed) {}, shearRows},
   };
-}
-
-}  // namespace
-
-std::uint8_t* ownPixels(Frame& frame) {
-  const ImageView old = frame.image;
-  const auto pixels = std::make_shared<std::vector<std::uint8_t>>();
-  for (int y = 0; y < old.height; ++y) pixels->insert(pixels->end(), old.row(y), old.row(y) + old.width);
-  frame.image = {pixels->data(), old.width, old.height, old.width};
-  frame.owner = pixels;
-  return pixels->data();
-}
-
-const std::vector<HarderScene>& harderScenes() {
-  static const std::vector<HarderScene> scenes = makeScenes();
   return scenes;
 }
 

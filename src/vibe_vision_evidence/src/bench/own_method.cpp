@@ -1,4 +1,3 @@
-#include <cmath>
 
 #include "bench/method.hpp"
 #include "vibe_core/clocks/step_timer.hpp"

@@ -26,16 +26,16 @@ class ChangedPictures {
       : scene_(scene), instrument_(instrument), tiles_(scene) {
     const double middle = static_cast<double>(index) / scene.rate, half = scene.degradation.exposure / 2;
     exposure_ = {middle - half, middle + half};
-    const PixelRect image{0, 0, scene.camera.width, scene.camera.height};
-    rect_ = intersection(image, grown(tiles_.boundsOf(instrument, exposure_), tiles_.kernel().margin()));
+    const cv::Rect image(0, 0, scene.camera.width, scene.camera.height);
+    rect_ = image & grown(tiles_.boundsOf(instrument, exposure_), tiles_.kernel().margin());
   }
 
   Picture draw() const {
     const int width = scene_.camera.width;
     Picture image(static_cast<std::size_t>(width) * static_cast<std::size_t>(scene_.camera.height)), piece;
     tiles_.render(rect_, exposure_, image.data());
-    for (int y = rect_.y0; y < rect_.y1; ++y)
-      for (int x = rect_.x0; x < rect_.x1; ++x)
+    for (int y = rect_.y; y < rect_.br().y; ++y)
+      for (int x = rect_.x; x < rect_.br().x; ++x)
         piece.push_back(image[static_cast<std::size_t>(y * width + x)] * static_cast<float>(vignetteAt(scene_, x, y)));
     return piece;
   }
@@ -63,8 +63,8 @@ class ChangedPictures {
     Picture share = sum(inkDerivative(1, 0), inkDerivative(0, 1));
     const double light = meanLight(scene_.degradation, exposure_.begin, exposure_.end);
     auto value = share.begin();
-    for (int y = rect_.y0; y < rect_.y1; ++y)
-      for (int x = rect_.x0; x < rect_.x1; ++x, ++value)
+    for (int y = rect_.y; y < rect_.br().y; ++y)
+      for (int x = rect_.x; x < rect_.br().x; ++x, ++value)
         *value = *value >= kWhole * static_cast<float>(light * vignetteAt(scene_, x, y)) ? 1.0F : 0.0F;
     return share;
   }
@@ -107,7 +107,7 @@ class ChangedPictures {
   std::size_t instrument_;
   TileRenderer tiles_;
   Exposure exposure_;
-  PixelRect rect_;
+  cv::Rect rect_;
 };
 
 /// Covariance bound of the parameters with these derivatives. @param mask  1 for pixels that count

@@ -67,8 +67,7 @@ std::vector<NumberEffect> studyNumbers(const StudyOptions& options, const std::f
   std::vector<NumberEffect> effects = shiftsOf(options);
   for (const std::string& name : options.scenes) {
     progress(name);
-    Cell cell;
-    cell.scene = name;
+    const Cell cell{name};
     const BenchScene scene = makeBenchScene(cell, 1);
     const std::vector<RenderedFrame> frames = renderFrames(scene, cell, options.frames);
     for (const bool sleeve : {false, true}) {

@@ -1,9 +1,11 @@
 #pragma once
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 
 #include "vibe_vision/camera/frame_source.hpp"
 
@@ -30,26 +32,43 @@ class LatestFrame {
   std::uint64_t dropped_ = 0;
 };
 
+/// Where somebody takes the newest frame. One thread takes; the other functions may be called from any.
+class FrameInput {
+ public:
+  virtual ~FrameInput() = default;
+  /// The newest frame that was not taken yet. Gone is told after the timeout, End after the last frame was taken.
+  /// @param timeout [s]
+  virtual ReadResult take(Frame& frame, double timeout) = 0;
+  virtual std::uint64_t dropped() const = 0;        ///< frames that a newer one has replaced before they were taken
+  virtual SourceStatistics statistics() const = 0;  ///< of the source
+  virtual std::string status() const = 0;           ///< one line for people
+};
+
 /// Reads a source in a thread of its own and keeps the newest frame only: a slow consumer drops frames, it never lags,
-/// and memory stays constant. One thread takes; the other functions may be called from any.
-class Capture {
+/// and memory stays constant.
+class Capture : public FrameInput {
  public:
   /// Begins to read at once. @param source  its statistics() and status() may be called from any thread
   explicit Capture(std::unique_ptr<FrameSource> source);
-  ~Capture();  ///< stops the thread; waits for a read or an opening of the camera under way
+  ~Capture() override;  ///< stops the thread; waits for a read or an opening of the camera under way
   Capture(const Capture&) = delete;
   Capture& operator=(const Capture&) = delete;
 
-  /// The newest frame that was not taken yet. Gone is told after the timeout, End after the last frame was taken.
-  /// @param timeout [s]
-  ReadResult take(Frame& frame, double timeout);
-  std::uint64_t dropped() const;        ///< overwritten before they were taken
-  SourceStatistics statistics() const;  ///< of the source
-  std::string status() const;           ///< one line for people: that of the source, or why the thread has ended
+  ReadResult take(Frame& frame, double timeout) override;
+  std::uint64_t dropped() const override { return latest_.dropped(); }
+  SourceStatistics statistics() const override { return source_->statistics(); }
+  std::string status() const override;  ///< that of the source, or why the thread has ended
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<FrameSource> source_;
+  std::atomic<bool> shall_stop_{false};
+  std::atomic<bool> is_gone_{false};  // at the last read
+  LatestFrame latest_;
+  mutable std::mutex mutex_;
+  std::string failure_;
+  std::thread thread_;
+
+  void run();
 };
 
 }  // namespace vibe::vision

@@ -70,4 +70,9 @@ struct SourceOptions {
 ///         not there is no error: read() keeps trying
 std::unique_ptr<FrameSource> openSource(const std::string& address, const SourceOptions& options);
 
+/// Whether an address is that of a recording: its stamps are not of today.
+inline bool isRecording(const std::string& address) {
+  return address.rfind("video:", 0) == 0 || address.rfind("images:", 0) == 0;
+}
+
 }  // namespace vibe::vision

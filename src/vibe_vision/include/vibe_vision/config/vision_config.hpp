@@ -32,6 +32,10 @@ double alongOf(const SlideAxis& axis, double slide);         ///< [m] -> [px]
 double slideOf(const SlideAxis& axis, double along);         ///< [px] -> [m]
 double pixelsPerMetre(const SlideAxis& axis, double slide);  ///< d along / d slide [px/m]
 
+Eigen::Vector2d acrossOf(const SlideAxis& axis);  ///< unit vector, to the right of the direction (y down)
+/// Undistorted pixel of a place along the axis and across it [px].
+Eigen::Vector2d pixelAt(const SlideAxis& axis, double along, double lateral = 0);
+
 /// Noise of a pixel, in grey values (DN): variance = gain * value + read^2 (photon transfer, EMVA 1288).
 struct PixelNoise {
   double gain = 0.096;  ///< [DN]; 10.6 ke- full well and 12 dB of analogue gain

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <string>
 
 namespace vibe::vision {
 
@@ -15,6 +16,13 @@ struct CameraModel {
 
   bool isDistorted() const;  ///< any coefficient is not 0
 };
+
+/// "728 x 544", of an image [px].
+inline std::string sizeText(int width, int height) {
+  return std::to_string(width) + " x " + std::to_string(height);
+}
+/// @throws Error "WHOSE 640 x 480 px, the configuration is for 728 x 544 px; REMEDY" for another size than the camera's
+void requireSize(const CameraModel& camera, int width, int height, const std::string& whose, const std::string& remedy);
 
 /// Pixel of the image as a camera without distortion, with the same matrix, would see it.
 /// Newton iterations to 1e-9 px. @return NaN outside of where the model can be inverted

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <opencv2/core.hpp>
 
 namespace vibe::vision {
 
@@ -14,6 +15,10 @@ struct ImageView {
   /// The left pixel of row y, 0 to height - 1.
   const std::uint8_t* row(int y) const { return data + static_cast<std::ptrdiff_t>(y) * stride; }
   bool empty() const { return width <= 0 || height <= 0; }
+  /// The same for functions of OpenCV, which must only read it.
+  cv::Mat mat() const {
+    return {height, width, CV_8U, const_cast<std::uint8_t*>(data), static_cast<std::size_t>(stride)};
+  }
 };
 
 /// One exposure of a global-shutter camera. Copies share the pixels.

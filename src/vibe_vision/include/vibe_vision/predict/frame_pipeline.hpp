@@ -29,15 +29,15 @@ struct JointSample {
 class InstrumentPredictor {
  public:
   /// Knows no motion yet.
-  explicit InstrumentPredictor(const InstrumentConfig& instrument);
+  explicit InstrumentPredictor(const InstrumentConfig& instrument) : instrument_(instrument) {}
 
   /// Takes a measurement. @param time  of the frame [s]
   JointSample update(double time, const Measurement& measurement);
-  void reset();  ///< forgets the motion, for a clock that was set back
+  /// Forgets the motion, for a clock that was set back.
+  void reset() { slide_.reset(), rotation_.reset(); }
 
  private:
-  double slide_sign_, slide_offset_, rotation_sign_, rotation_offset_;
-  bool has_rotation_;
+  InstrumentConfig instrument_;
   Predictor slide_{kSlidePrior}, rotation_{kRotationPrior};
 };
 

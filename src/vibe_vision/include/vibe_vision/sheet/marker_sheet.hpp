@@ -10,6 +10,10 @@ namespace vibe::vision {
 
 /// Size of a page, upright: A4 is 210 x 297 mm, Letter 8.5 x 11 inches.
 enum class Paper { A4, Letter };
+struct PaperExtent {
+  double width = 0, height = 0;  ///< [m]
+};
+PaperExtent extentOf(Paper paper);  ///< of an upright page
 
 struct SheetOptions {
   Paper paper = Paper::A4;               ///< of all pages
@@ -51,9 +55,9 @@ class MarkerSheet {
   /// @throws Error if something does not fit on the paper
   MarkerSheet(const VisionConfig& config, const SheetOptions& options);
 
-  const std::vector<SheetPage>& pages() const { return pages_; }  ///< with markers first, chessboard, guide
-  double width() const;                                           ///< of the paper [m]
-  double height() const;                                          ///< [m]
+  const std::vector<SheetPage>& pages() const { return pages_; }     ///< with markers first, chessboard, guide
+  double width() const { return extentOf(options_.paper).width; }    ///< of the paper [m]
+  double height() const { return extentOf(options_.paper).height; }  ///< [m]
 
   /// One file with all pages. @throws Error if it cannot be written
   void writePdf(const std::string& file) const;
