@@ -2,14 +2,16 @@
 #include <sensor_msgs/PointCloud2.h>
 #include <vibe_msgs/SutureArray.h>
 #include <vibe_msgs/TissueTopology.h>
-
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "robot_shapes.hpp"
 #include "truth/truth_scene.hpp"
 #include "vibe_graphics/geometry/tissue_mesh.hpp"
+#include "vibe_graphics/messages/suture_messages.hpp"
+#include "vibe_graphics/messages/tissue_messages.hpp"
 
 namespace vibe::endoscope {
 
@@ -22,12 +24,39 @@ class TruthWorld {
 
   /// @param description  URDF of the instrument
   /// @throws std::runtime_error  Embree cannot be used, or the instrument has more parts than there are labels
-  explicit TruthWorld(const std::string& description);
+  explicit TruthWorld(const std::string& description) {
+    for (RobotShape& part : robotShapes(description, problems_))
+      parts_.push_back({part.frame, scene_.addPart(part.name, std::move(part.shape))});
+  }
 
-  std::string setTopology(const vibe_msgs::TissueTopology& message);
-  std::string setParticles(const sensor_msgs::PointCloud2& message);
-  std::string setSutures(const vibe_msgs::SutureArray& message, const PoseOf& poseOf);
-  void placeInstrument(const PoseOf& poseOf);
+  std::string setTopology(const vibe_msgs::TissueTopology& message) {
+    const std::string problem = graphics::readTopology(message, mesh_);
+    has_mesh_ = problem.empty();
+    if (has_mesh_) scene_.setMesh(mesh_);
+    return problem;
+  }
+
+  std::string setParticles(const sensor_msgs::PointCloud2& message) {
+    if (!has_mesh_) return "There is no usable tissue/topology yet, so there is no truth of tissue/particles.";
+    const std::string problem = graphics::readParticles(message, mesh_, frame_);
+    if (problem.empty()) scene_.setFrame(frame_);
+    return problem;
+  }
+
+  std::string setSutures(const vibe_msgs::SutureArray& message, const PoseOf& poseOf) {
+    graphics::SutureDrawing seen;
+    const std::string problem = graphics::readSutures(message, seen);
+    if (!problem.empty()) return problem;
+    const std::optional<Eigen::Isometry3d> pose = poseOf(message.header.frame_id);
+    if (!pose) return "There is no transform to the frame '" + message.header.frame_id + "' of the sutures.";
+    scene_.setSutures(seen, message.header.stamp.toSec(), *pose);
+    return "";
+  }
+
+  void placeInstrument(const PoseOf& poseOf) {
+    for (const Part& part : parts_) scene_.placePart(part.body, poseOf(part.frame));
+  }
+
   void pressOnLens(const Eigen::Isometry3d& camera) { scene_.pressOnLens(camera); }
   void commit() { scene_.commit(); }
 

@@ -22,6 +22,9 @@ class FuzzInput {
     const int low = byte();
     return static_cast<std::uint16_t>(low | byte() << 8);
   }
+  void fill(std::uint8_t* bytes, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i) bytes[i] = byte();
+  }
   /// Bytes in memory of exactly their size, so that the sanitizer sees every access beyond it.
   std::vector<std::uint8_t> bytes(std::size_t count) {
     std::vector<std::uint8_t> result(count);

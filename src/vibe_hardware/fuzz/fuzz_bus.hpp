@@ -3,35 +3,18 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <vector>
 
+#include "fuzz_input.hpp"
 #include "vibe_firmware/protocol/descriptors.hpp"
 #include "vibe_hardware/hid/hid_port.hpp"
 
 namespace vibe::hardware {
 
-inline void require(bool condition) {
-  if (!condition) std::abort();
-}
-
-/// Numbers from the bytes of the fuzzer; zeros after their end.
-class FuzzInput {
- public:
-  FuzzInput(const std::uint8_t* data, std::size_t size) : data_(data), left_(size) {}
-
-  bool empty() const { return left_ == 0; }
-  std::uint8_t byte() { return left_ == 0 ? 0 : (--left_, *data_++); }
-  void fill(std::uint8_t* bytes, std::size_t size) {
-    for (std::size_t i = 0; i < size; ++i) bytes[i] = byte();
-  }
-
- private:
-  const std::uint8_t* data_;
-  std::size_t left_;
-};
+using vibe_firmware::FuzzInput;
+using vibe_firmware::require;
 
 /// A haptic device on a bus, both made up by the fuzzer. Reports and answers are often nearly right, so that the driver
 /// gets past its first checks.

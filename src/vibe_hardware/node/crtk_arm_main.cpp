@@ -25,11 +25,9 @@ namespace {
 
 using namespace vibe::hardware;
 
-constexpr int kUsage = 2;
-constexpr double kMasterPatience = 10;  // [s]
-constexpr double kRate = 1000;          // of measurements [Hz]
-constexpr int kFineSteps = 5;           // of the mechanics between two measurements
-constexpr double kLargestForce = 10;    // what its motors make [N]
+constexpr double kRate = 1000;        // of measurements [Hz]
+constexpr int kFineSteps = 5;         // of the mechanics between two measurements
+constexpr double kLargestForce = 10;  // what its motors make [N]
 constexpr std::uint32_t kQueue = 10;
 // Joints, of an arm that measures only those: away from the person, up, about the way away.
 const char* const kReach = "reach";
@@ -201,15 +199,9 @@ class Arm {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    vibe::ros_utils::init(argc, argv, "arm");
-    vibe::ros_utils::waitForMaster(kMasterPatience);
+  return vibe::ros_utils::runNode(argc, argv, "arm", [] {
     ros::NodeHandle handle("arm");
     Arm arm(handle, readParameters(ros::NodeHandle("~")));
     ros::spin();
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "crtk_arm: %s\n", error.what());
-    return kUsage;
-  }
+  });
 }

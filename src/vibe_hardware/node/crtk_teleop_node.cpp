@@ -7,7 +7,6 @@
 #include <geometry_msgs/WrenchStamped.h>
 #include <std_msgs/Bool.h>
 
-#include "gamepad_node.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_ros_utils/parameter_reader.hpp"
@@ -27,20 +26,6 @@ constexpr double kLookInterval = 10;        // between looks for an arm that is 
 constexpr double kFirstLook = 2;            // after it began to be silent [s]
 constexpr double kMissed = 0.2;             // share of a force that is missed when it is held back; design choice
 constexpr std::uint32_t kArmQueue = 10;
-
-/// Values of a message in the order of vibe::Joint from `first` on. @return whether all are there and finite
-bool readJointsInto(const sensor_msgs::JointState& message, int first, int count,
-                    std::array<double, kJointCount>& joints) {
-  std::array<double, kJointCount> read = joints;
-  int found = 0;
-  for (std::size_t i = 0; i < message.name.size() && i < message.position.size(); ++i)
-    for (int j = first; j < first + count; ++j)
-      if (message.name[i] == kJointNames[static_cast<std::size_t>(j)] && std::isfinite(message.position[i]))
-        read[static_cast<std::size_t>(j)] = message.position[i], ++found;
-  if (found != count) return false;
-  joints = read;
-  return true;
-}
 
 /// Of the ports of the scope's joints [s]
 double largestDelay(const TeleopMapping& mapping) {
@@ -110,7 +95,7 @@ void CrtkTeleopNode::release() {
   timer_.stop();
   const ros::Time stamp = ros::Time::now();
   publishForce(TeleopOutput(), stamp);
-  button_publisher_.publish(buttonCommand(DriveState(), stamp));
+  button_publisher_.publish(makeButtons({}, stamp));
 }
 
 std::string CrtkTeleopNode::nameOf(const std::string& topic) const {
@@ -296,11 +281,11 @@ void CrtkTeleopNode::onState(const vibe_msgs::OperatingState& message) {
 }
 
 void CrtkTeleopNode::onScope(const sensor_msgs::JointState& message) {
-  scope_known_ |= readJointsInto(message, 0, kScopeJointCount, input_.joints);
+  scope_known_ |= readJoints(message, 0, kScopeJointCount, input_.joints);
 }
 
 void CrtkTeleopNode::onSuturingDevice(const sensor_msgs::JointState& message) {
-  suturing_device_known_ |= readJointsInto(message, kScopeJointCount, kSuturingDeviceJointCount, input_.joints);
+  suturing_device_known_ |= readJoints(message, kScopeJointCount, kSuturingDeviceJointCount, input_.joints);
 }
 
 void CrtkTeleopNode::onParameters(const vibe_msgs::HapticParameters& message) {
@@ -373,9 +358,7 @@ void CrtkTeleopNode::publishCommands(const TeleopOutput& output, double now, con
     if (mapping_.gripper || output.on_device) suturing_device_.publish(suturingDeviceCommand(drive, stamp));
   }
   if (output.buttons == sent_buttons_ && now - last_buttons_ < kArmButtonInterval) return;
-  DriveState drive;
-  drive.buttons = output.buttons;
-  button_publisher_.publish(buttonCommand(drive, stamp));
+  button_publisher_.publish(makeButtons(output.buttons, stamp));
   sent_buttons_ = output.buttons;
   last_buttons_ = now;
 }

@@ -56,12 +56,22 @@ ros::Time StampSource::at(double time) {
   return stamp;
 }
 
-sensor_msgs::JointState makeScopeJoints(const ScopeJoints& joints, const ros::Time& stamp) {
+namespace {
+
+/// Joints in the order of vibe::Joint from `first` on.
+template <class Iterator>
+sensor_msgs::JointState jointMessage(Iterator begin, Iterator end, int first, const ros::Time& stamp) {
   sensor_msgs::JointState message;
   message.header.stamp = stamp;
-  message.name.assign(kJointNames.begin(), kJointNames.begin() + kScopeJointCount);
-  message.position.assign(joints.positions().begin(), joints.positions().end());
+  message.position.assign(begin, end);
+  message.name.assign(kJointNames.begin() + first, kJointNames.begin() + first + (end - begin));
   return message;
+}
+
+}  // namespace
+
+sensor_msgs::JointState makeScopeJoints(const ScopeJoints& joints, const ros::Time& stamp) {
+  return jointMessage(joints.positions().begin(), joints.positions().end(), 0, stamp);
 }
 
 sensor_msgs::JointState makeHapticJoints(const ScopeJoints& joints, const ros::Time& stamp) {
@@ -78,17 +88,13 @@ sensor_msgs::JointState makeHapticJoints(const ScopeJoints& joints, const ros::T
 }
 
 sensor_msgs::JointState makeSuturingDeviceJoints(const SuturingDeviceDrive& drive, const ros::Time& stamp) {
-  sensor_msgs::JointState message;
-  message.header.stamp = stamp;
-  message.name.assign(kJointNames.begin() + kScopeJointCount, kJointNames.end());
-  message.position.assign(drive.positions().begin(), drive.positions().end());
-  return message;
+  return jointMessage(drive.positions().begin(), drive.positions().end(), kScopeJointCount, stamp);
 }
 
-sensor_msgs::Joy makeButtons(const ScopeButtons& buttons, const ros::Time& stamp) {
+sensor_msgs::Joy makeButtons(const std::array<std::uint8_t, kButtonCount>& pressed, const ros::Time& stamp) {
   sensor_msgs::Joy message;
   message.header.stamp = stamp;
-  message.buttons.assign(buttons.pressed().begin(), buttons.pressed().end());
+  message.buttons.assign(pressed.begin(), pressed.end());
   return message;
 }
 
@@ -121,42 +127,25 @@ std::string operatingState(const DeviceStatistics& device, const HapticStatistic
   return haptic.in_force ? "ENABLED" : "PAUSED";
 }
 
-namespace {
-
-sensor_msgs::JointState jointMessage(const DriveState& drive, const ros::Time& stamp, int first, int last) {
-  sensor_msgs::JointState message;
-  message.header.stamp = stamp;
-  message.name.assign(kJointNames.begin() + first, kJointNames.begin() + last);
-  message.position.assign(drive.joints.begin() + first, drive.joints.begin() + last);
-  return message;
-}
-
-}  // namespace
-
 sensor_msgs::JointState scopeCommand(const DriveState& drive, const ros::Time& stamp) {
-  return jointMessage(drive, stamp, 0, kScopeJointCount);
+  return jointMessage(drive.joints.begin(), drive.joints.begin() + kScopeJointCount, 0, stamp);
 }
 
 sensor_msgs::JointState suturingDeviceCommand(const DriveState& drive, const ros::Time& stamp) {
-  return jointMessage(drive, stamp, kScopeJointCount, kJointCount);
+  return jointMessage(drive.joints.begin() + kScopeJointCount, drive.joints.end(), kScopeJointCount, stamp);
 }
 
-sensor_msgs::Joy buttonCommand(const DriveState& drive, const ros::Time& stamp) {
-  sensor_msgs::Joy message;
-  message.header.stamp = stamp;
-  message.buttons.assign(drive.buttons.begin(), drive.buttons.end());
-  return message;
-}
-
-std::optional<std::array<double, kJointCount>> readJointStates(const sensor_msgs::JointState& message) {
-  std::array<double, kJointCount> joints{};
-  for (std::size_t i = 0; i < kJointCount; ++i) {
-    const auto found = std::find(message.name.begin(), message.name.end(), kJointNames[i]);
+bool readJoints(const sensor_msgs::JointState& message, int first, int count, std::array<double, kJointCount>& joints) {
+  std::array<double, kJointCount> read = joints;
+  for (int j = first; j < first + count; ++j) {
+    const auto joint = static_cast<std::size_t>(j);
+    const auto found = std::find(message.name.begin(), message.name.end(), kJointNames[joint]);
     const auto index = static_cast<std::size_t>(found - message.name.begin());
-    if (index >= message.position.size() || !std::isfinite(message.position[index])) return std::nullopt;
-    joints[i] = message.position[index];
+    if (index >= message.position.size() || !std::isfinite(message.position[index])) return false;
+    read[joint] = message.position[index];
   }
-  return joints;
+  joints = read;
+  return true;
 }
 
 JointSprings readJointSprings(const vibe_msgs::HapticParameters& message) {
@@ -170,6 +159,13 @@ JointSprings readJointSprings(const vibe_msgs::HapticParameters& message) {
     springs.equilibrium[i] = message.joint_equilibrium[index];
   }
   return springs;
+}
+
+ToolLimits toolLimitsOf(const ros::NodeHandle& handle) {
+  std::string key, urdf;
+  if (handle.searchParam("robot_description", key) && handle.getParam(key, urdf))
+    return ToolModel::fromUrdf(urdf, "parameter " + key).limits();
+  return loadToolLimits("package://vibe_description/urdf/scope.urdf");
 }
 
 std::optional<PadPulse> pulseOf(const vibe_msgs::ProcedureEvent& event) {

@@ -34,7 +34,8 @@ sensor_msgs::JointState makeScopeJoints(const ScopeJoints& joints, const ros::Ti
 /// Joints of the haptic device, with the commanded torque as effort.
 sensor_msgs::JointState makeHapticJoints(const ScopeJoints& joints, const ros::Time& stamp);
 sensor_msgs::JointState makeSuturingDeviceJoints(const SuturingDeviceDrive& drive, const ros::Time& stamp);
-sensor_msgs::Joy makeButtons(const ScopeButtons& buttons, const ros::Time& stamp);
+/// For scope/buttons. @param pressed  by vibe::Button; 1 while pressed
+sensor_msgs::Joy makeButtons(const std::array<std::uint8_t, kButtonCount>& pressed, const ros::Time& stamp);
 
 /// The spring-dampers of the message on the axes of the haptic device; axes without a joint get none.
 /// @throws Error with one sentence for a value that is not finite, a negative stiffness or unknown joints
@@ -53,15 +54,17 @@ std::string operatingState(const DeviceStatistics& device, const HapticStatistic
 sensor_msgs::JointState scopeCommand(const DriveState& drive, const ros::Time& stamp);
 /// For suturing_device/input/joint_states.
 sensor_msgs::JointState suturingDeviceCommand(const DriveState& drive, const ros::Time& stamp);
-/// For scope/buttons.
-sensor_msgs::Joy buttonCommand(const DriveState& drive, const ros::Time& stamp);
 
-/// The seven joints of joint_states, by name. Nothing if one is missing or not finite.
-std::optional<std::array<double, kJointCount>> readJointStates(const sensor_msgs::JointState& message);
+/// Values of a message for `count` joints in the order of vibe::Joint from `first` on. `joints` stay as they are if one
+/// of them is missing or not finite. @return whether all are there
+bool readJoints(const sensor_msgs::JointState& message, int first, int count, std::array<double, kJointCount>& joints);
 /// Stiffness and equilibrium of the scope's joints.
 JointSprings readJointSprings(const vibe_msgs::HapticParameters& message);
 /// What an event feels like; nothing for those that are not felt.
 std::optional<PadPulse> pulseOf(const vibe_msgs::ProcedureEvent& event);
+
+/// Limits of the tool from the parameter robot_description, or from the package's URDF if it is not set.
+ToolLimits toolLimitsOf(const ros::NodeHandle& handle);
 
 /// What a device's entry on /diagnostics compares with its last one.
 struct DiagnosticMemory {

@@ -94,6 +94,40 @@ bool waitForMaster(double patience) {
   return true;
 }
 
+namespace {
+
+constexpr int kUsage = 2;
+constexpr double kPatience = 10;  // for the master [s]
+
+int runOrFail(const char* program, const std::function<void()>& run) {
+  try {
+    run();
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", std::filesystem::path(program).filename().c_str(), error.what());
+    return kUsage;
+  }
+}
+
+}  // namespace
+
+int runNode(int argc, char** argv, const std::string& name, const std::function<void()>& run) {
+  return runOrFail(argv[0], [&] {
+    init(argc, argv, name);
+    waitForMaster(kPatience);
+    run();
+  });
+}
+
+int runNodeWithGoodbye(int argc, char** argv, const std::string& name, const std::function<void()>& run) {
+  return runOrFail(argv[0], [&] {
+    initWithGoodbye(argc, argv, name);
+    if (!waitForMaster(kPatience)) return;
+    run();
+    ros::shutdown();
+  });
+}
+
 bool asksForHelp(int argc, const char* const* argv) {
   return std::any_of(argv + 1, argv + argc,
                      [](const char* word) { return std::string(word) == "--help" || std::string(word) == "-h"; });

@@ -5,7 +5,9 @@
 
 #include <Eigen/Geometry>
 
+#include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/program/error.hpp"
+#include "vibe_core/simulation/simulation.hpp"
 
 namespace vibe::benchmarks {
 
@@ -90,6 +92,31 @@ std::string withJointLimits(std::string urdf, const std::string& joint, const Jo
   setAttribute("upper", limits.upper, limit, end(), urdf);
   setAttribute("velocity", limits.velocity, limit, end(), urdf);
   return urdf;
+}
+
+std::shared_ptr<Model> modelWith(const Scene& scene, const std::string& urdf, const Model& like) {
+  auto model = std::make_shared<Model>();
+  model->scene = scene;
+  model->organ = like.organ;
+  finishModel(urdf, *model);
+  return model;
+}
+
+double insertionAtContact(const std::shared_ptr<const Model>& model, State& state) {
+  Simulation simulation(model, SimulationSettings::study(1));
+  simulation.replaceState(state);
+  StepInput input = holdAt(state);
+  while (simulation.state().tool_force.norm() < kTouch) {
+    if (input.joints[Insertion] >= model->tool->limits()[Insertion].upper)
+      throw Error("The scope does not reach the wall; the state of contact needs it.");
+    input.joints[Insertion] += kApproach * simulation.stepPeriod();
+    simulation.step(input);
+  }
+  const double touching = simulation.state().joints[Insertion];
+  input.joints[Insertion] = touching - kClearance;
+  for (long k = std::lround(1 / simulation.stepPeriod()); k > 0; --k) simulation.step(input);
+  state = simulation.state();
+  return touching;
 }
 
 }  // namespace vibe::benchmarks

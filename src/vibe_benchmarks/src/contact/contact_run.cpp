@@ -7,6 +7,7 @@
 #include <limits>
 #include <thread>
 
+#include "contact/bench_tools.hpp"
 #include "contact/way_counts.hpp"
 #include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/constraints/wall_contacts.hpp"
@@ -16,14 +17,11 @@
 namespace vibe::benchmarks {
 
 std::shared_ptr<const Model> modelAt(const ContactCase& one, const ContactSetting& setting) {
-  auto model = std::make_shared<Model>();
-  model->scene = one.model->scene;
-  model->organ = one.model->organ;
-  model->scene.step_period = 1.0 / setting.rate;
-  model->scene.tissue.iterations = setting.iterations;
-  model->scene.tissue.spectral_radius = setting.spectral_radius;
-  finishModel(one.urdf, *model);
-  return model;
+  Scene scene = one.model->scene;
+  scene.step_period = 1.0 / setting.rate;
+  scene.tissue.iterations = setting.iterations;
+  scene.tissue.spectral_radius = setting.spectral_radius;
+  return modelWith(scene, one.urdf, *one.model);
 }
 
 ContactCheck::ContactCheck(const Model& model) : model_(model) {
@@ -51,16 +49,25 @@ namespace {
 constexpr int kFramesPerSecond = 60;
 constexpr std::size_t kFirstForceFrame = 5;  // before, the force is that of a shock wave
 
-Eigen::Vector3d signalOf(const ContactCase& one, const State& state) {
-  if (one.signal == ContactSignal::ToolForce) return state.tool_force;
-  const Suture& suture = state.procedure.sutures.back();
-  return {suture.tension.empty() ? 0 : suture.tension.front(), 0, 0};
-}
-
 bool isMishap(const Event& event) {
   return event.kind == Event::Kind::Slip || event.kind == Event::Kind::TearOut ||
          event.kind == Event::Kind::ThreadBroke || event.kind == Event::Kind::Recovery;
 }
+
+}  // namespace
+
+Eigen::Vector3d signalOf(const ContactCase& one, const State& state) {
+  if (one.signal == ContactSignal::ToolForce) return state.tool_force;
+  const std::vector<double>& tension = state.procedure.sutures.back().tension;
+  return {tension.empty() ? 0 : tension.front(), 0, 0};
+}
+
+double workBetween(const EnergyAccount& a, const EnergyAccount& b) {
+  return std::abs(b.tool_work - a.tool_work) + std::abs(b.gas_work - a.gas_work) +
+         std::abs(b.thread_work - a.thread_work) + std::abs(b.pull_work - a.pull_work);
+}
+
+namespace {
 
 double distance(const std::array<std::vector<double>, 3>& a, const std::array<std::vector<double>, 3>& b) {
   double sum = 0;
@@ -134,9 +141,7 @@ class Recorder {
     trace_.fallback_steps += report.fallback ? 1 : 0;
     trace_.contacts = std::max(trace_.contacts, state.contact_count);
     trace_.events += static_cast<int>(std::count_if(events.begin(), events.end(), isMishap));
-    const EnergyAccount& now = state.energy;
-    trace_.work += std::abs(now.tool_work - before.tool_work) + std::abs(now.gas_work - before.gas_work) +
-                   std::abs(now.thread_work - before.thread_work) + std::abs(now.pull_work - before.pull_work);
+    trace_.work += workBetween(before, state.energy);
   }
 
   void noteTimes(double end) {

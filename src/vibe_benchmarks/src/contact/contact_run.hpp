@@ -46,6 +46,12 @@ struct ContactSetting {
   bool real_time = false;        ///< a step begins when its time has come, not as soon as the last one has ended
 };
 
+/// The force that the case compares [N].
+Eigen::Vector3d signalOf(const ContactCase& one, const State& state);
+
+/// Sum of |work| of tool, gas, threads and pull spring [J].
+double workBetween(const EnergyAccount& a, const EnergyAccount& b);
+
 /// The model of the case with another setting.
 std::shared_ptr<const Model> modelAt(const ContactCase& one, const ContactSetting& setting);
 

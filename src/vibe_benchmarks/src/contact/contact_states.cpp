@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 
 #include "contact/bench_tools.hpp"
 #include "suture/suture_session.hpp"
@@ -26,11 +28,6 @@ constexpr double kCinch = 3.5;           // longer than a set here needs [s]
 /// Part of a motion that is done at a time.
 double part(double time, double duration) {
   return std::clamp(time / duration, 0.0, 1.0);
-}
-
-void startClock(State& state) {
-  state.step = 0;
-  state.time = 0;
 }
 
 /// Steps with an input that may depend on the time since now.
@@ -69,21 +66,13 @@ ContactStates::ContactStates(const Scene& scene, std::string urdf, std::ostream&
 
 ContactCase ContactStates::prepare(const std::string& name) {
   log_ << name << ": preparation" << std::endl;
-  ContactCase one;
-  if (name == "free")
-    one = pull(true);
-  else if (name == "free_closed")
-    one = pull(false);
-  else if (name == "pressed")
-    one = pressed();
-  else if (name == "wound")
-    one = wound();
-  else if (name == "cinch1")
-    one = cinch(0);
-  else if (name == "cinch6")
-    one = cinch(5);
-  else
-    throw Error("There is no state '" + name + "'; the program's help names those there are.");
+  const std::map<std::string, std::function<ContactCase()>> makers{
+      {"free", [&] { return pull(true); }},   {"free_closed", [&] { return pull(false); }},
+      {"pressed", [&] { return pressed(); }}, {"wound", [&] { return wound(); }},
+      {"cinch1", [&] { return cinch(0); }},   {"cinch6", [&] { return cinch(5); }}};
+  const auto maker = makers.find(name);
+  if (maker == makers.end()) throw Error("There is no state '" + name + "'; the program's help names those there are.");
+  ContactCase one = maker->second();
   one.name = name;
   startClock(one.start);
   return one;
@@ -94,13 +83,10 @@ ContactCase ContactStates::byHand(const State& state, const WallSpot& spot) cons
   ContactCase one;
   const SurfaceView wall{model_->organ.surface.triangles, state.x, state.y, state.z};
   const Eigen::Vector3d place = placeOf(spot, wall);
-  auto model = std::make_shared<Model>();
-  model->scene = model_->scene;
-  model->organ = model_->organ;
-  holdByHand(place, inwardsAt(wall, place), model->scene);
+  Scene scene = model_->scene;
+  holdByHand(place, inwardsAt(wall, place), scene);
   one.urdf = freeHandUrdf();
-  finishModel(one.urdf, *model);
-  one.model = model;
+  one.model = modelWith(scene, one.urdf, *model_);
   one.start = state;
   one.start.joints = {};
   one.start.joints[Insertion] = kHandStart;
@@ -128,19 +114,9 @@ ContactCase ContactStates::pressed() const {
   one.model = model_;
   one.urdf = urdf_;
   one.duration = kMotion + kHold;
-  Simulation simulation(model_, SimulationSettings::study(1));
-  simulation.replaceState(settled_);
+  one.start = settled_;
   StepInput input = holdAt(settled_);
-  const double farthest = model_->tool->limits()[Insertion].upper;
-  while (simulation.state().tool_force.norm() < kTouch) {
-    if (input.joints[Insertion] >= farthest) throw Error("The scope does not reach the wall; 'pressed' needs it.");
-    input.joints[Insertion] += kApproach * simulation.stepPeriod();
-    simulation.step(input);
-  }
-  input.joints[Insertion] = simulation.state().joints[Insertion] - kClearance;
-  stepFor(
-      1, [&](double) { return input; }, simulation);
-  one.start = simulation.state();
+  input.joints[Insertion] = insertionAtContact(model_, one.start) - kClearance;
   one.input = [input](double end) {
     StepInput now = input;
     now.joints[Insertion] += (kClearance + kPressDepth) * part(end, kMotion);

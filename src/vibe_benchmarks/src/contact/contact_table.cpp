@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <map>
 
+#include "output/result_row.hpp"
 #include "vibe_core/arithmetic/machine.hpp"
 #include "vibe_core/program/error.hpp"
 
@@ -122,26 +123,21 @@ void printContactHeader(std::ostream& out) {
 
 void printContactRow(const ContactRow& row, std::ostream& out) {
   const ContactTrace& t = row.trace;
-  char text[400];
-  std::snprintf(text, sizeof text,
-                "%-12s %-26s %6.2f %6.2f %6.1f  %8.2f %7.2f %4.1f %3d %3d %5d %5d %5d %6.2f %6d %11.5f %9.4f",
-                row.name.c_str(), textOf(row.setting).c_str(), row.times.p50, row.times.p99, row.times.max,
-                row.times.mean * row.setting.rate / 60, row.ratio, t.iterations, t.max_iterations, t.fallback_steps,
-                t.contacts, t.pairs, t.crossings, 1e3 * t.depth, t.events, t.balance, t.work);
-  out << text;
+  printTo(out, "%-12s %-26s %6.2f %6.2f %6.1f  %8.2f %7.2f %4.1f %3d %3d %5d %5d %5d %6.2f %6d %11.5f %9.4f",
+          row.name.c_str(), textOf(row.setting).c_str(), row.times.p50, row.times.p99, row.times.max,
+          row.times.mean * row.setting.rate / 60, row.ratio, t.iterations, t.max_iterations, t.fallback_steps,
+          t.contacts, t.pairs, t.crossings, 1e3 * t.depth, t.events, t.balance, t.work);
   if (row.errors) {
     const ContactErrors& e = *row.errors;
-    std::snprintf(text, sizeof text, " %6.3f %% %6.3f %% %6.2f %% %6.2f %% %6.2f N", 100 * e.motion, 100 * e.motion_end,
-                  100 * e.force, 100 * e.force_end, e.largest);
-    out << text;
+    printTo(out, " %6.3f %% %6.3f %% %6.2f %% %6.2f %% %6.2f N", 100 * e.motion, 100 * e.motion_end, 100 * e.force,
+            100 * e.force_end, e.largest);
   }
   out << std::endl;
   if (row.setting.real_time || row.setting.threads > 1) {
-    std::snprintf(text, sizeof text,
-                  "             wall time %.2f ms in the mean, %.2f p50, %.2f p99; CPU %.2f ms of the stepping thread, "
-                  "%.2f of all\n",
-                  row.wall.mean, row.wall.p50, row.wall.p99, row.times.mean, row.times.mean + t.others);
-    out << text;
+    printTo(out,
+            "             wall time %.2f ms in the mean, %.2f p50, %.2f p99; CPU %.2f ms of the stepping thread, "
+            "%.2f of all\n",
+            row.wall.mean, row.wall.p50, row.wall.p99, row.times.mean, row.times.mean + t.others);
   }
   out << t.stages;
 }
@@ -153,23 +149,17 @@ void writeContactRows(const std::vector<ContactRow>& rows, std::ostream& out) {
          "wall_p99,ms_all_threads\n";
   for (const ContactRow& row : rows) {
     const ContactTrace& t = row.trace;
-    char text[600];
-    std::snprintf(text, sizeof text, "%s,%d,%d,%g,%.4g,%.4g,%.4g,%.4g,%.4g,%.3g,%d,%d,%d,%d,%d,%.4g,%d,%.6g,%.6g,",
-                  row.name.c_str(), row.setting.rate, row.setting.iterations, row.setting.spectral_radius,
-                  row.times.mean, row.times.p50, row.times.p99, row.times.max, row.ratio, t.iterations,
-                  t.max_iterations, t.fallback_steps, t.contacts, t.pairs, t.crossings, 1e3 * t.depth, t.events,
-                  t.balance, t.work);
-    out << text;
+    printTo(out, "%s,%d,%d,%g,%.4g,%.4g,%.4g,%.4g,%.4g,%.3g,%d,%d,%d,%d,%d,%.4g,%d,%.6g,%.6g,", row.name.c_str(),
+            row.setting.rate, row.setting.iterations, row.setting.spectral_radius, row.times.mean, row.times.p50,
+            row.times.p99, row.times.max, row.ratio, t.iterations, t.max_iterations, t.fallback_steps, t.contacts,
+            t.pairs, t.crossings, 1e3 * t.depth, t.events, t.balance, t.work);
     if (row.errors)
-      std::snprintf(text, sizeof text, "%.4g,%.4g,%.4g,%.4g,%.4g,%016llx", row.errors->motion, row.errors->motion_end,
-                    row.errors->force, row.errors->force_end, row.errors->largest,
-                    static_cast<unsigned long long>(t.hash));
+      printTo(out, "%.4g,%.4g,%.4g,%.4g,%.4g,%016llx", row.errors->motion, row.errors->motion_end, row.errors->force,
+              row.errors->force_end, row.errors->largest, static_cast<unsigned long long>(t.hash));
     else
-      std::snprintf(text, sizeof text, ",,,,,%016llx", static_cast<unsigned long long>(t.hash));
-    out << text;
-    std::snprintf(text, sizeof text, ",%d,%.4g,%.4g,%.4g,%.4g\n", row.setting.threads, row.wall.mean, row.wall.p50,
-                  row.wall.p99, row.times.mean + t.others);
-    out << text;
+      printTo(out, ",,,,,%016llx", static_cast<unsigned long long>(t.hash));
+    printTo(out, ",%d,%.4g,%.4g,%.4g,%.4g\n", row.setting.threads, row.wall.mean, row.wall.p50, row.wall.p99,
+            row.times.mean + t.others);
   }
 }
 

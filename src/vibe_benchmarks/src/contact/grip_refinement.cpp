@@ -3,11 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <ostream>
 
 #include "contact/bench_tools.hpp"
+#include "output/result_row.hpp"
 #include "suture/suture_session.hpp"
 #include "vibe_core/arithmetic/rotation.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
@@ -171,25 +171,21 @@ std::vector<RefinementMean> meansOf(const std::vector<RefinementRow>& rows) {
 }
 
 void printRefinement(const std::vector<RefinementRow>& rows, std::ostream& out) {
-  char text[200];
   out << "grip   particles  sites  mean N  spread %  held\n";
   for (const RefinementMean& mean : meansOf(rows)) {
     double held = 0;
     for (const RefinementRow& row : rows)
       if (row.grip == mean.grip && row.particles == mean.particles) held += 1.0 * row.held / mean.sites;
-    std::snprintf(text, sizeof text, "%-6s %9d %6d %7.3f %9.2f %5.1f\n", mean.grip.c_str(), mean.particles, mean.sites,
-                  mean.force, 100 * mean.spread / mean.force, held);
-    out << text;
+    printTo(out, "%-6s %9d %6d %7.3f %9.2f %5.1f\n", mean.grip.c_str(), mean.particles, mean.sites, mean.force,
+            100 * mean.spread / mean.force, held);
   }
 }
 
 void writeRefinement(const std::vector<RefinementRow>& rows, std::ostream& out) {
   out << "grip,particles,site,held,distance_m,force_N\n";
-  char text[200];
   for (const RefinementRow& row : rows) {
-    std::snprintf(text, sizeof text, "%s,%d,%d,%d,%.6g,%.6g\n", row.grip.c_str(), row.particles, row.site, row.held,
-                  row.distance, row.force);
-    out << text;
+    printTo(out, "%s,%d,%d,%d,%.6g,%.6g\n", row.grip.c_str(), row.particles, row.site, row.held, row.distance,
+            row.force);
   }
 }
 

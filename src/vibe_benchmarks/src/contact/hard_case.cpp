@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <ostream>
 
 #include "contact/contact_run.hpp"
 #include "contact/way_counts.hpp"
+#include "output/result_row.hpp"
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 
@@ -25,11 +25,6 @@ void forEachTerm(Visit visit) {
   visit("contact_loss", &EnergyAccount::contact_loss);
   visit("numerical_loss", &EnergyAccount::numerical_loss);
   visit("correction_work", &EnergyAccount::correction_work);
-}
-
-double workBetween(const EnergyAccount& a, const EnergyAccount& b) {
-  return std::abs(b.tool_work - a.tool_work) + std::abs(b.gas_work - a.gas_work) +
-         std::abs(b.thread_work - a.thread_work) + std::abs(b.pull_work - a.pull_work);
 }
 
 double farthest(const State& a, const State& b) {
@@ -126,25 +121,18 @@ class Runner {
 
   void writeStep(const HardPhase& phase, double ms, double balance) const {
     const State& state = simulation_->state();
-    char text[400];
-    std::snprintf(text, sizeof text, "%s,%s,%.4f,%.3f,%d,%d,%d,%d,%d,%.4g,%.4g,%.4g,%.5g,%.5g", hard_.name.c_str(),
-                  phase.name.c_str(), result_.steps * simulation_->stepPeriod(), ms, simulation_->report().iterations,
-                  simulation_->report().fallback ? 1 : 0, state.contact_count, result_.last_crossings, tool_.pierced,
-                  1e3 * tool_.depth, state.tool_force.norm(), state.grip_force, balance, maxSpeed(state));
-    *output_.steps << text;
+    printTo(*output_.steps, "%s,%s,%.4f,%.3f,%d,%d,%d,%d,%d,%.4g,%.4g,%.4g,%.5g,%.5g", hard_.name.c_str(),
+            phase.name.c_str(), result_.steps * simulation_->stepPeriod(), ms, simulation_->report().iterations,
+            simulation_->report().fallback ? 1 : 0, state.contact_count, result_.last_crossings, tool_.pierced,
+            1e3 * tool_.depth, state.tool_force.norm(), state.grip_force, balance, maxSpeed(state));
     writeWork();
   }
 
   void writeWork() const {
     const StepReport& report = simulation_->report();
-    char text[200];
-    std::snprintf(text, sizeof text, ",%d,%d,%d,%d,%d,%.4g", report.solves, report.evaluations, report.rows,
-                  report.wall_pairs, report.arrived ? 1 : 0, report.residual);
-    *output_.steps << text;
-    for (const double seconds : report.stage_times) {
-      std::snprintf(text, sizeof text, ",%.3f", 1e3 * seconds);
-      *output_.steps << text;
-    }
+    printTo(*output_.steps, ",%d,%d,%d,%d,%d,%.4g", report.solves, report.evaluations, report.rows, report.wall_pairs,
+            report.arrived ? 1 : 0, report.residual);
+    for (const double seconds : report.stage_times) printTo(*output_.steps, ",%.3f", 1e3 * seconds);
     *output_.steps << "\n";
   }
 
@@ -179,12 +167,12 @@ class Runner {
 
 }  // namespace
 
+HardPhase phaseOf(const std::string& name, double duration, std::function<StepInput(double)> input) {
+  return {name, duration, std::move(input), nullptr, {}};
+}
+
 HardPhase still(const std::string& name, double duration, const StepInput& input) {
-  HardPhase phase;
-  phase.name = name;
-  phase.duration = duration;
-  phase.input = [input](double) { return input; };
-  return phase;
+  return phaseOf(name, duration, [input](double) { return input; });
 }
 
 HardResult runHardCase(const HardCase& hard, const HardOutput& output) {
@@ -198,16 +186,15 @@ void printHardHeader(std::ostream& out) {
 }
 
 void printHardResult(const HardResult& r, std::ostream& out) {
-  char text[600];
-  std::snprintf(text, sizeof text,
-                "%-12s %6.2f %6.2f %6.1f %6.2f %4.1f %3d %4d | %5d %5d %4d %7.2f %7d %8.2f | %5d %7.2f %6.2f %8.2f %4d "
-                "%4d %5d %4d | %8.4f %10.5f %10.5f %7.2f | %11.3f %8.3f%s",
-                r.name.c_str(), r.times.p50, r.times.p99, r.times.max, r.real_time, r.iterations, r.max_iterations,
-                r.fallback_steps, r.crossings, r.crossed_steps, r.last_crossings, r.first_crossing, r.pierced,
-                1e3 * r.depth, r.contacts, r.force, r.grip_force, r.tension, r.slips, r.tear_outs, r.breaks,
-                r.recoveries, r.work, r.balance, r.worst_balance, r.work > 0 ? 100 * r.balance / r.work : 0.0,
-                1e3 * r.speed, 1e3 * r.away, r.returns ? "" : " (sutured)");
-  out << text << std::endl;
+  printTo(out,
+          "%-12s %6.2f %6.2f %6.1f %6.2f %4.1f %3d %4d | %5d %5d %4d %7.2f %7d %8.2f | %5d %7.2f %6.2f %8.2f %4d "
+          "%4d %5d %4d | %8.4f %10.5f %10.5f %7.2f | %11.3f %8.3f%s",
+          r.name.c_str(), r.times.p50, r.times.p99, r.times.max, r.real_time, r.iterations, r.max_iterations,
+          r.fallback_steps, r.crossings, r.crossed_steps, r.last_crossings, r.first_crossing, r.pierced, 1e3 * r.depth,
+          r.contacts, r.force, r.grip_force, r.tension, r.slips, r.tear_outs, r.breaks, r.recoveries, r.work, r.balance,
+          r.worst_balance, r.work > 0 ? 100 * r.balance / r.work : 0.0, 1e3 * r.speed, 1e3 * r.away,
+          r.returns ? "" : " (sutured)");
+  out << std::endl;
 }
 
 void writeHardResults(const std::vector<HardResult>& results, std::ostream& out) {
@@ -217,22 +204,16 @@ void writeHardResults(const std::vector<HardResult>& results, std::ostream& out)
   forEachTerm([&](const char* name, double EnergyAccount::*) { out << "," << name << "_J"; });
   out << ",speed_mm_s,away_mm,returns,state_hash\n";
   for (const HardResult& r : results) {
-    char text[600];
-    std::snprintf(text, sizeof text,
-                  "%s,%d,%.4g,%.4g,%.4g,%.4g,%.4g,%.3g,%d,%d,%d,%d,%d,%.4g,%d,%.4g,%d,%.4g,%.4g,%.4g,%d,%d,%d,%d,%.6g,"
-                  "%.6g,%.6g",
-                  r.name.c_str(), r.steps, r.times.mean, r.times.p50, r.times.p99, r.times.max, r.real_time,
-                  r.iterations, r.max_iterations, r.fallback_steps, r.crossings, r.crossed_steps, r.last_crossings,
-                  r.first_crossing, r.pierced, 1e3 * r.depth, r.contacts, r.force, r.grip_force, r.tension, r.slips,
-                  r.tear_outs, r.breaks, r.recoveries, r.work, r.balance, r.worst_balance);
-    out << text;
-    forEachTerm([&](const char*, double EnergyAccount::*term) {
-      std::snprintf(text, sizeof text, ",%.6g", r.account.*term);
-      out << text;
-    });
-    std::snprintf(text, sizeof text, ",%.4g,%.4g,%d,%016llx\n", 1e3 * r.speed, 1e3 * r.away, r.returns ? 1 : 0,
-                  static_cast<unsigned long long>(r.hash));
-    out << text;
+    printTo(out,
+            "%s,%d,%.4g,%.4g,%.4g,%.4g,%.4g,%.3g,%d,%d,%d,%d,%d,%.4g,%d,%.4g,%d,%.4g,%.4g,%.4g,%d,%d,%d,%d,%.6g,"
+            "%.6g,%.6g",
+            r.name.c_str(), r.steps, r.times.mean, r.times.p50, r.times.p99, r.times.max, r.real_time, r.iterations,
+            r.max_iterations, r.fallback_steps, r.crossings, r.crossed_steps, r.last_crossings, r.first_crossing,
+            r.pierced, 1e3 * r.depth, r.contacts, r.force, r.grip_force, r.tension, r.slips, r.tear_outs, r.breaks,
+            r.recoveries, r.work, r.balance, r.worst_balance);
+    forEachTerm([&](const char*, double EnergyAccount::*term) { printTo(out, ",%.6g", r.account.*term); });
+    printTo(out, ",%.4g,%.4g,%d,%016llx\n", 1e3 * r.speed, 1e3 * r.away, r.returns ? 1 : 0,
+            static_cast<unsigned long long>(r.hash));
   }
 }
 

@@ -24,6 +24,8 @@ struct HardPhase {
   std::function<void(Simulation&)> prepare = {};  ///< called before the first step; empty: nothing
 };
 
+/// A phase without another model.
+HardPhase phaseOf(const std::string& name, double duration, std::function<StepInput(double end)> input);
 /// A phase in which the command stays.
 HardPhase still(const std::string& name, double duration, const StepInput& input);
 

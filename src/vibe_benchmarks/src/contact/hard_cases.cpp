@@ -1,6 +1,8 @@
 #include "contact/hard_cases.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <ostream>
 
 #include "contact/bench_tools.hpp"
@@ -40,38 +42,28 @@ HardCases::HardCases(const Scene& scene, std::string urdf, bool brief, std::ostr
   SutureSession session(model_);
   session.settle();
   settled_ = session.state();
-  settled_.step = 0;
-  settled_.time = 0;
+  startClock(settled_);
 }
 
 HardCase HardCases::prepare(const std::string& name, std::uint64_t seed) {
-  HardCase hard;
-  if (name.rfind("ram_", 0) == 0)
-    hard = ram(std::stod(name.substr(4)));
-  else if (name == "random")
-    hard = random(seed);
-  else if (name == "jump")
-    hard = jump(seed);
-  else if (name == "wind")
-    hard = wind();
-  else if (name == "across")
-    hard = cinchAcross();
-  else if (name == "desufflate")
-    hard = desufflate();
-  else if (name == "sets_20")
-    hard = manySets(20, 4);
-  else if (name == "8x7")
-    hard = manySets(8, 7);
-  else if (name == "14x4")
-    hard = manySets(14, 4);
-  else if (name == "over_set")
-    hard = setOverSet();
-  else if (name == "pressure")
-    hard = pressureSteps();
-  else if (name == "sleeve")
-    hard = sleeve();
-  else
+  const std::map<std::string, std::function<HardCase()>> makers{
+      {"random", [&] { return random(seed); }},
+      {"jump", [&] { return jump(seed); }},
+      {"wind", [&] { return wind(); }},
+      {"across", [&] { return cinchAcross(); }},
+      {"desufflate", [&] { return desufflate(); }},
+      {"sets_20", [&] { return manySets(20, 4); }},
+      {"8x7", [&] { return manySets(8, 7); }},
+      {"14x4", [&] { return manySets(14, 4); }},
+      {"over_set", [&] { return setOverSet(); }},
+      {"pressure", [&] { return pressureSteps(); }},
+      {"sleeve", [&] { return sleeve(); }},
+  };
+  const auto maker = makers.find(name);
+  const bool rams = name.rfind("ram_", 0) == 0;
+  if (!rams && maker == makers.end())
     throw Error("There is no hard case '" + name + "'; the program's help names those there are.");
+  HardCase hard = rams ? ram(std::stod(name.substr(4))) : maker->second();
   hard.name = name == "random" || name == "jump" ? name + "_" + std::to_string(seed) : name;
   return hard;
 }
@@ -83,11 +75,9 @@ HardCase HardCases::session(const std::string& script, double longest) const {
   hard.model = model_;
   hard.start = hard.home = initialState(*model_, model_->scene.seed);
   hard.returns = false;
-  HardPhase phase;
-  phase.name = "session";
-  phase.duration = std::min(longest, trainee->duration());
-  phase.input = [trainee, step = model_->scene.step_period](double end) { return trainee->at(end - step); };
-  hard.phases.push_back(std::move(phase));
+  const double step = model_->scene.step_period;
+  hard.phases.push_back(phaseOf("session", std::min(longest, trainee->duration()),
+                                [trainee, step](double end) { return trainee->at(end - step); }));
   return hard;
 }
 
@@ -96,14 +86,6 @@ HardCase HardCases::begin() const {
   hard.model = model_;
   hard.start = hard.home = settled_;
   return hard;
-}
-
-std::shared_ptr<const Model> HardCases::withScene(const Scene& scene, const std::string& urdf) const {
-  auto model = std::make_shared<Model>();
-  model->scene = scene;
-  model->organ = model_->organ;
-  finishModel(urdf, *model);
-  return model;
 }
 
 }  // namespace vibe::benchmarks

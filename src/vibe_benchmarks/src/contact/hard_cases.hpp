@@ -48,8 +48,6 @@ class HardCases {
   HardCase pressureSteps() const;
   HardCase sleeve() const;
   std::vector<std::vector<WallSpot>> sleeveSets() const;
-  double insertionAtContact(const std::shared_ptr<const Model>& model, State& state) const;
-  std::shared_ptr<const Model> withScene(const Scene& scene, const std::string& urdf) const;
   void addSet(const std::vector<WallSpot>& spots, const StepInput& hold, HardCase& hard) const;
   std::vector<std::vector<WallSpot>> setsOf(int sets, int bites, double half_width, double share) const;
 

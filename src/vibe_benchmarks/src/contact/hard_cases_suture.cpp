@@ -70,7 +70,7 @@ HardCase HardCases::cinchAcross() const {
   Scene scene = model_->scene;
   scene.suture->cinch_tension = kAcrossTension;
   scene.suture->pull_out_force = kStrongTissue;
-  hard.model = withScene(scene, urdf_);
+  hard.model = modelWith(scene, urdf_, *model_);
   const SurfaceView wall{model_->organ.surface.triangles, settled_.x, settled_.y, settled_.z};
   const StepInput hold = holdAt(hard.start);
   addSet(spotsApart(WallPlan(model_->organ, wall), wall, kApart), hold, hard);
@@ -90,7 +90,7 @@ HardCase HardCases::desufflate() const {
   empty.gas->regulated_pressure = 0;
   if (brief_) empty.gas->flow_limit *= 4;
   hard.phases.push_back(still("gas out", brief_ ? 2 : 8, hold));
-  hard.phases.back().model = withScene(empty, urdf_);
+  hard.phases.back().model = modelWith(empty, urdf_, *model_);
   hard.phases.push_back(still("gas in", brief_ ? 2 : 10, hold));
   hard.phases.back().model = model_;
   return hard;
@@ -122,7 +122,7 @@ HardCase HardCases::pressureSteps() const {
   low.gas->regulated_pressure = 5 * kMercury;
   high.gas->regulated_pressure = 45 * kMercury;
   low.gas->flow_limit = high.gas->flow_limit = kPressureFlow;
-  const auto low_model = withScene(low, urdf_), high_model = withScene(high, urdf_);
+  const auto low_model = modelWith(low, urdf_, *model_), high_model = modelWith(high, urdf_, *model_);
   const StepInput hold = holdAt(hard.start);
   for (int k = 0; k < (brief_ ? 1 : 5); ++k) {
     hard.phases.push_back(still("5 mmHg", 1, hold));
@@ -135,7 +135,7 @@ HardCase HardCases::pressureSteps() const {
   Scene back = model_->scene;
   back.gas->flow_limit = kPressureFlow;
   hard.phases.push_back(still("rest", brief_ ? 1 : 3, hold));
-  hard.phases.back().model = withScene(back, urdf_);
+  hard.phases.back().model = modelWith(back, urdf_, *model_);
   return hard;
 }
 

@@ -28,23 +28,10 @@ constexpr double kSleeveTime = 8;                  // of a cinch [s]
 constexpr double kShortest = 0.3, kLongest = 1.5;  // time of a random motion [s]
 constexpr double kPressProbability = 0.3;          // probability that a button changes with a motion
 
-HardPhase phaseOf(const std::string& name, double duration, std::function<StepInput(double)> input) {
-  HardPhase phase;
-  phase.name = name;
-  phase.duration = duration;
-  phase.input = std::move(input);
-  return phase;
-}
-
 /// From one command to another, all joints in the same time.
 HardPhase move(const std::string& name, double duration, const StepInput& from, const StepInput& to) {
-  return phaseOf(name, duration, [from, to, duration](double end) {
-    StepInput input = to;
-    const double part = std::clamp(end / duration, 0.0, 1.0);
-    for (std::size_t j = 0; j < input.joints.size(); ++j)
-      input.joints[j] = from.joints[j] + part * (to.joints[j] - from.joints[j]);
-    return input;
-  });
+  return phaseOf(name, duration,
+                 [from, to, duration](double end) { return between(from, to, std::clamp(end / duration, 0.0, 1.0)); });
 }
 
 /// Joints that go from one random place to the next, with smooth speeds within the limits, and buttons that change.
@@ -55,12 +42,9 @@ class RandomDrive {
 
   StepInput at(double time) {
     while (time >= end_) choose();
-    StepInput input = to_;
     const double part = std::clamp((time - begin_) / (end_ - begin_), 0.0, 1.0);
     const double smooth = part * part * (3 - 2 * part);
-    for (std::size_t j = 0; j < input.joints.size(); ++j)
-      input.joints[j] = from_.joints[j] + smooth * (to_.joints[j] - from_.joints[j]);
-    return input;
+    return between(from_, to_, smooth);
   }
 
  private:
@@ -109,32 +93,13 @@ double bestAdvance(const Model& model, State state) {
 
 }  // namespace
 
-// Inserts the scope until it touches.
-double HardCases::insertionAtContact(const std::shared_ptr<const Model>& model, State& state) const {
-  Simulation simulation(model, SimulationSettings::study(1));
-  simulation.replaceState(state);
-  StepInput input = holdAt(state);
-  while (simulation.state().tool_force.norm() < kTouch) {
-    if (input.joints[Insertion] >= model->tool->limits()[Insertion].upper)
-      throw Error("The scope does not reach the wall; the hard case needs it.");
-    input.joints[Insertion] += kApproach * simulation.stepPeriod();
-    simulation.step(input);
-  }
-  const double touching = simulation.state().joints[Insertion];
-  input.joints[Insertion] = touching - kClearance;
-  for (int k = 0; k < 60; ++k) simulation.step(input);
-  state = simulation.state();
-  return touching;
-}
-
 HardCase HardCases::ram(double speed) const {
   HardCase hard = begin();
   JointLimits limits = model_->tool->limits()[Insertion];
   limits.velocity = std::max(limits.velocity, 1.01 * speed);
-  hard.model = withScene(model_->scene, withJointLimits(urdf_, "insertion", limits));
+  hard.model = modelWith(model_->scene, withJointLimits(urdf_, "insertion", limits), *model_);
   const double touching = insertionAtContact(hard.model, hard.start);
-  hard.start.step = 0;
-  hard.start.time = 0;
+  startClock(hard.start);
   const StepInput near = holdAt(hard.start);
   StepInput deep = near;
   deep.joints[Insertion] = std::min(limits.upper, touching + kRam);
@@ -161,9 +126,7 @@ HardCase HardCases::random(std::uint64_t seed) const {
   hard.phases.push_back(phaseOf("withdraw", 3, [drive, start, duration](double end) {
     StepInput input = drive->at(duration);
     input.buttons = start.buttons;
-    const double part = std::clamp(end / 2.5, 0.0, 1.0);
-    for (std::size_t j = 0; j < input.joints.size(); ++j) input.joints[j] += part * (start.joints[j] - input.joints[j]);
-    return input;
+    return between(input, start, std::clamp(end / 2.5, 0.0, 1.0));
   }));
   hard.phases.push_back(still("rest", 2, start));
   hard.phases.back().prepare = [](Simulation& simulation) { simulation.editState().procedure.sutures.clear(); };
@@ -183,8 +146,7 @@ StepInput HardCases::takeHold(HardCase& hard) const {
   simulation.step(input);
   if (simulation.state().grip.empty()) throw Error("The helix does not reach the wall; the hard case needs it.");
   hard.start = simulation.state();
-  hard.start.step = 0;
-  hard.start.time = 0;
+  startClock(hard.start);
   return input;
 }
 
@@ -194,7 +156,7 @@ HardCase HardCases::wind() const {
   limits.upper = std::max(limits.upper, 2 * M_PI * (kTurns + 1));
   Scene scene = model_->scene;
   scene.helix->reach = std::max(scene.helix->reach, kWindReach);
-  hard.model = withScene(scene, withJointLimits(urdf_, "helix_rotation", limits));
+  hard.model = modelWith(scene, withJointLimits(urdf_, "helix_rotation", limits), *model_);
   const StepInput input = takeHold(hard);
   const double turns = brief_ ? 4 : kTurns;
   StepInput wound = input, turned, pulled;
@@ -220,7 +182,7 @@ HardCase HardCases::jump(std::uint64_t seed) const {
   std::uint64_t random = seed;
   Scene scene = model_->scene;
   scene.helix->reach = kLeastReach + (kWindReach - kLeastReach) * nextUniform(random);
-  hard.model = withScene(scene, urdf_);
+  hard.model = modelWith(scene, urdf_, *model_);
   StepInput wound;
   const StepInput start = takeHold(hard);
   wound = start;
@@ -271,10 +233,9 @@ HardCase HardCases::sleeve() const {
   scene.suture->cinch_tension = kSleeveTension;
   scene.suture->cinch_speed = kSleeveSpeed;
   scene.suture->pull_out_force = kStrongTissue;
-  hard.model = withScene(scene, urdf_);
+  hard.model = modelWith(scene, urdf_, *model_);
   insertionAtContact(hard.model, hard.start);
-  hard.start.step = 0;
-  hard.start.time = 0;
+  startClock(hard.start);
   hard.returns = false;
   const StepInput inside = holdAt(hard.start);
   for (const auto& spots : sleeveSets()) addSet(spots, inside, hard);

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <ostream>
 
+#include "output/result_row.hpp"
 #include "suture/suture_session.hpp"
 #include "vibe_core/arithmetic/random.hpp"
 #include "vibe_core/simulation/simulation.hpp"
@@ -147,12 +147,10 @@ void writeHeldHeader(std::ostream& out) {
 }
 
 void writeHeldPose(const HeldPose& pose, std::ostream& out) {
-  char text[300];
-  std::snprintf(text, sizeof text, "%d,%d,%.3f,%.4f,%.4f,%.4f,%.4g,%.3g,%d,%.4g,%.4g,%.4g,%d,%s\n", pose.particles,
-                pose.pose, 1e3 * pose.joints[Insertion], pose.joints[Rotation], pose.joints[TipUpDown],
-                pose.joints[TipLeftRight], pose.force, pose.force_range, pose.contacts, 1e3 * pose.motion,
-                1e3 * pose.drift, 1e3 * pose.speed, pose.period, nameOf(pose.wall));
-  out << text;
+  printTo(out, "%d,%d,%.3f,%.4f,%.4f,%.4f,%.4g,%.3g,%d,%.4g,%.4g,%.4g,%d,%s\n", pose.particles, pose.pose,
+          1e3 * pose.joints[Insertion], pose.joints[Rotation], pose.joints[TipUpDown], pose.joints[TipLeftRight],
+          pose.force, pose.force_range, pose.contacts, 1e3 * pose.motion, 1e3 * pose.drift, 1e3 * pose.speed,
+          pose.period, nameOf(pose.wall));
 }
 
 }  // namespace vibe::benchmarks

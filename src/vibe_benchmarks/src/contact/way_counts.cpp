@@ -1,7 +1,5 @@
 #include "contact/way_counts.hpp"
 
-#include <cstdio>
-
 namespace vibe::benchmarks {
 
 void WayCounts::add(const StepReport& report) {
@@ -18,11 +16,8 @@ void WayCounts::write(std::ostream& out) const {
   for (std::size_t k = 0; k < kStepWayCount; ++k) {
     const Sum& sum = of_[k];
     if (sum.steps == 0) continue;
-    char text[160];
-    std::snprintf(text, sizeof text, "%s,%d,%s,%d,%.3g,%.3g\n", name_.c_str(), all_.steps,
-                  nameOf(static_cast<StepWay>(k)), sum.steps, sum.evaluations / sum.steps,
-                  all_.evaluations / all_.steps);
-    out << text;
+    printTo(out, "%s,%d,%s,%d,%.3g,%.3g\n", name_.c_str(), all_.steps, nameOf(static_cast<StepWay>(k)), sum.steps,
+            sum.evaluations / sum.steps, all_.evaluations / all_.steps);
   }
 }
 

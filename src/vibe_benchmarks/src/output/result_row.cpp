@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cinttypes>
+#include <cstdarg>
 #include <cstdio>
 #include <iostream>
 #include <sstream>
@@ -80,20 +81,15 @@ void writeValues(const std::vector<CaseValue>& values, std::ostream& out) {
 }
 
 void printTable(const std::vector<ResultRow>& rows, std::ostream& out) {
-  char line[320];
-  std::snprintf(line, sizeof line, "%-26s %-16s %-24s %7s %8s %8s %8s | %9s %9s %9s %9s %9s  %-6s %s\n", "case",
-                "method", "setting", "nodes", "ms p50", "p99", "max", "motion %", "static %", "force %", "ref %",
-                "drift %", "branch", "hash");
-  out << line;
+  printTo(out, "%-26s %-16s %-24s %7s %8s %8s %8s | %9s %9s %9s %9s %9s  %-6s %s\n", "case", "method", "setting",
+          "nodes", "ms p50", "p99", "max", "motion %", "static %", "force %", "ref %", "drift %", "branch", "hash");
   for (const ResultRow& row : rows) {
     const auto ms = [](double value) { return std::isfinite(value) ? show("%.3f", value) : std::string("-"); };
-    std::snprintf(line, sizeof line, "%-26.26s %-16.16s %-24.24s %7d %8s %8s %8s | %9s %9s %9s %9s %9s  %-6s %s\n",
-                  row.bench_case.c_str(), row.method.c_str(), row.setting.c_str(), row.particles,
-                  ms(row.ms_p50).c_str(), ms(row.ms_p99).c_str(), ms(row.ms_max).c_str(),
-                  percent(row.motion_error).c_str(), percent(row.static_error).c_str(),
-                  percent(row.force_error).c_str(), percent(row.reference_error).c_str(),
-                  percent(row.energy_drift).c_str(), branchName(row.branch), showHash(row.state_hash).c_str());
-    out << line;
+    printTo(out, "%-26.26s %-16.16s %-24.24s %7d %8s %8s %8s | %9s %9s %9s %9s %9s  %-6s %s\n", row.bench_case.c_str(),
+            row.method.c_str(), row.setting.c_str(), row.particles, ms(row.ms_p50).c_str(), ms(row.ms_p99).c_str(),
+            ms(row.ms_max).c_str(), percent(row.motion_error).c_str(), percent(row.static_error).c_str(),
+            percent(row.force_error).c_str(), percent(row.reference_error).c_str(), percent(row.energy_drift).c_str(),
+            branchName(row.branch), showHash(row.state_hash).c_str());
   }
 }
 
@@ -103,6 +99,15 @@ void save(const std::string& file, const std::function<void(std::ostream&)>& wri
   std::ostringstream text;
   write(text);
   writeFile(file, text.str(), "The table");
+}
+
+void printTo(std::ostream& out, const char* format, ...) {
+  char text[1000];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  out << text;
 }
 
 double threadMilliseconds() {

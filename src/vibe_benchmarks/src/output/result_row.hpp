@@ -51,6 +51,9 @@ void printTable(const std::vector<ResultRow>& rows, std::ostream& out);
 /// @throws Error if the file cannot be written
 void save(const std::string& file, const std::function<void(std::ostream&)>& write);
 
+/// Writes as std::printf() does, at most 1,000 characters.
+[[gnu::format(printf, 2, 3)]] void printTo(std::ostream& out, const char* format, ...);
+
 /// CPU time of this thread [ms].
 double threadMilliseconds();
 

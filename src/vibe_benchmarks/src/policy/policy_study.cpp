@@ -23,15 +23,9 @@ void addPoints(const State& state, PolicyTrace& trace) {
   for (std::size_t i = 0; i < state.x.size(); ++i) points.emplace_back(state.x[i], state.y[i], state.z[i]);
 }
 
-Eigen::Vector3d forceOf(const ContactCase& one, const State& state) {
-  if (one.signal == ContactSignal::ToolForce) return state.tool_force;
-  const std::vector<double>& tension = state.procedure.sutures.back().tension;
-  return {tension.empty() ? 0 : tension.front(), 0, 0};
-}
-
 void addStep(const ContactCase& one, const Simulation& simulation, PolicyTrace& trace, Fnv1a& bits) {
   const StepReport& report = simulation.report();
-  trace.force.push_back(forceOf(one, simulation.state()));
+  trace.force.push_back(signalOf(one, simulation.state()));
   trace.stiffness.emplace_back(Eigen::Matrix3d::Zero());
   if (report.tool_impedance) trace.stiffness.back() = report.tool_impedance->stiffness;
   addPoints(simulation.state(), trace);
@@ -221,12 +215,9 @@ ContactCase rammed(ContactCase pressed) {
 /// The hand holds a fold while the stomach collapses around it.
 ContactCase deflated(ContactCase wound) {
   wound.name = "deflated";
-  auto model = std::make_shared<Model>();
-  model->scene = wound.model->scene;
-  model->organ = wound.model->organ;
-  model->scene.gas->regulated_pressure = kLowPressure;
-  finishModel(wound.urdf, *model);
-  wound.model = model;
+  Scene scene = wound.model->scene;
+  scene.gas->regulated_pressure = kLowPressure;
+  wound.model = modelWith(scene, wound.urdf, *wound.model);
   wound.input = [still = wound.input(0)](double) { return still; };
   wound.duration = kDeflationTime;
   return wound;

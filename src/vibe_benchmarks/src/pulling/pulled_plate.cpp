@@ -2,19 +2,29 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <sstream>
 
+#include "fem/case_model.hpp"
 #include "fem/case_runner.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/procedure/procedure_registry.hpp"
 #include "vibe_core/procedure/stitch.hpp"
 #include "vibe_core/program/error.hpp"
+#include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/solver/implicit_stepper.hpp"
 #include "vibe_core/suture/technique.hpp"
 
 namespace vibe::benchmarks {
-
 namespace {
+
+/// One method of pulling.
+struct PullWay {
+  const char* method;   ///< tissue.model
+  const char* pulling;  ///< suture.cinch_model
+  int particles;        ///< suture.group_particles
+  double strain_limit;  ///< suture.strain_limit
+};
 
 constexpr double kDepth = 10e-3;  // of the box that closes the plate, as shape matching requires [m]
 
@@ -77,52 +87,62 @@ std::shared_ptr<const Model> makeModel(const CaseModel& plate, const PullWay& wa
   return model;
 }
 
-}  // namespace
+/// The plate of a case in the simulator, with one set of two bites at the spots of the cinch in the case.
+class PulledPlate {
+ public:
+  PulledPlate(const CaseModel& plate, const PullWay& way)
+      : simulation_(makeModel(plate, way), SimulationSettings::study(1)) {
+    const FemCase& c = plate.benchCase();
+    Suture& suture = simulation_.editState().procedure.sutures.emplace_back();
+    for (const std::string& spot : {c.cinch->first, c.cinch->second})
+      suture.bites.push_back(biteAt(plate.spot(spot), c.thickness));
+    suture.length = {apart()};
+    suture.tension = {0};
+    suture.technique = static_cast<std::uint8_t>(Technique::Other);
+    suture.stage = Suture::Stage::Cinching;
+    if (const auto& cinch = simulation_.model().cinch) cinch->begin(simulation_.model(), state(), suture);
+  }
 
-PulledPlate::PulledPlate(const CaseModel& plate, const PullWay& way)
-    : simulation_(makeModel(plate, way), SimulationSettings::study(1)) {
-  const FemCase& c = plate.benchCase();
-  Suture& suture = simulation_.editState().procedure.sutures.emplace_back();
-  for (const std::string& spot : {c.cinch->first, c.cinch->second})
-    suture.bites.push_back(biteAt(plate.spot(spot), c.thickness));
-  suture.length = {apart()};
-  suture.tension = {0};
-  suture.technique = static_cast<std::uint8_t>(Technique::Other);
-  suture.stage = Suture::Stage::Cinching;
-  if (const auto& cinch = simulation_.model().cinch) cinch->begin(simulation_.model(), state(), suture);
-}
+  /// Runs a frame in which the cinch draws, unless the strain of the wall has reached the limit.
+  /// @return  false if it has
+  bool draw() {
+    const SutureScene& scene = *simulation_.model().scene.suture;
+    const double amount = scene.cinch_speed * simulation_.model().scene.step_period;
+    const auto& cinch = simulation_.model().cinch;
+    const double drawn = cinch ? cinch->draw(simulation_.model(), state(), amount, set()) : drawThread(amount, set());
+    step();
+    return drawn > 0;
+  }
 
-bool PulledPlate::draw() {
-  const SutureScene& scene = *simulation_.model().scene.suture;
-  const double amount = scene.cinch_speed * simulation_.model().scene.step_period;
-  const auto& cinch = simulation_.model().cinch;
-  const double drawn = cinch ? cinch->draw(simulation_.model(), state(), amount, set()) : drawThread(amount, set());
-  step();
-  return drawn > 0;
-}
+  void step() { simulation_.step(StepInput{}); }
 
-void PulledPlate::step() {
-  simulation_.step(StepInput{});
-}
+  double milliseconds() const { return 1e3 * simulation_.timer().last_cpu; }  ///< CPU time of the last frame
 
-double PulledPlate::apart() const {
-  return (bitePosition(set().bites[0], state().x, state().y, state().z) -
-          bitePosition(set().bites[1], state().x, state().y, state().z))
-      .norm();
-}
+  /// distance of the bites [m]
+  double apart() const {
+    return (bitePosition(set().bites[0], state().x, state().y, state().z) -
+            bitePosition(set().bites[1], state().x, state().y, state().z))
+        .norm();
+  }
 
-double PulledPlate::tension() const {
-  return set().tension.front();
-}
+  /// [N]
+  double tension() const { return set().tension.front(); }
 
-MotionView PulledPlate::motion() {
-  State& state = simulation_.editState();
-  return {{state.x.data(), state.y.data(), state.z.data()},
-          {state.vx.data(), state.vy.data(), state.vz.data()},
-          {state.ax.data(), state.ay.data(), state.az.data()}};
-}
+  MotionView motion() {
+    State& state = simulation_.editState();
+    return {{state.x.data(), state.y.data(), state.z.data()},
+            {state.vx.data(), state.vy.data(), state.vz.data()},
+            {state.ax.data(), state.ay.data(), state.az.data()}};
+  }
 
-namespace {
+  const State& state() const { return simulation_.state(); }
+
+ private:
+  Suture& set() { return simulation_.editState().procedure.sutures.front(); }
+  const Suture& set() const { return state().procedure.sutures.front(); }
+
+  Simulation simulation_;
+};
 
 constexpr int kAll = 1000;
 constexpr double kFrame = 1.0 / 60, kSpeed = 15e-3;  // of the cinch [s], [m/s]

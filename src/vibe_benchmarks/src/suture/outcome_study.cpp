@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
+#include "output/result_row.hpp"
 #include "suture/suture_session.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
@@ -188,23 +188,22 @@ std::vector<OutcomeTrial> outcomeTrials(const Scene& scene, bool quick) {
 }
 
 void printOutcome(const OutcomeRow& row, std::ostream& out) {
-  char line[400];
   const OrganMeasures &a = row.before.organ, &b = row.after.organ;
-  std::snprintf(line, sizeof line,
-                "%-14s %-2s %6d | volume %5.0f mL %6.2f %% less | length %5.2f %% | curvature %6.2f %% | area %6.2f %% "
-                "least %5.1f "
-                "%% | "
-                "strain %4.1f to %4.1f %% | stress %4.1f to %4.1f kPa | %4.2f N least %4.2f | drawn %4.0f mm | %2.0f "
-                "s, %.2f %% | "
-                "%d of %d, %d torn, %d broken, %d loose%s\n",
-                row.trial.name.c_str(), toString(row.trial.pattern), row.trial.particles, 1e6 * a.volume,
-                percentLess(a.volume, b.volume), percentLess(a.length, b.length),
-                percentLess(a.greater_curvature, b.greater_curvature), percentLess(a.mean_area, b.mean_area),
-                percentLess(a.min_area, b.min_area), 100 * row.before.mean_strain, 100 * row.after.mean_strain,
-                1e-3 * row.before.mean_stress, 1e-3 * row.after.mean_stress, row.mean_tension, row.min_tension,
-                1e3 * row.drawn, row.settled, 100 * row.change, row.recognised, kOutcomeSets, row.torn_out, row.broken,
-                row.loose, row.crossed ? ", walls CROSS" : "");
-  out << line << std::flush;
+  printTo(out,
+          "%-14s %-2s %6d | volume %5.0f mL %6.2f %% less | length %5.2f %% | curvature %6.2f %% | area %6.2f %% "
+          "least %5.1f "
+          "%% | "
+          "strain %4.1f to %4.1f %% | stress %4.1f to %4.1f kPa | %4.2f N least %4.2f | drawn %4.0f mm | %2.0f "
+          "s, %.2f %% | "
+          "%d of %d, %d torn, %d broken, %d loose%s\n",
+          row.trial.name.c_str(), toString(row.trial.pattern), row.trial.particles, 1e6 * a.volume,
+          percentLess(a.volume, b.volume), percentLess(a.length, b.length),
+          percentLess(a.greater_curvature, b.greater_curvature), percentLess(a.mean_area, b.mean_area),
+          percentLess(a.min_area, b.min_area), 100 * row.before.mean_strain, 100 * row.after.mean_strain,
+          1e-3 * row.before.mean_stress, 1e-3 * row.after.mean_stress, row.mean_tension, row.min_tension,
+          1e3 * row.drawn, row.settled, 100 * row.change, row.recognised, kOutcomeSets, row.torn_out, row.broken,
+          row.loose, row.crossed ? ", walls CROSS" : "");
+  out << std::flush;
 }
 
 void writeOutcomes(const std::vector<OutcomeRow>& rows, std::ostream& out) {
@@ -212,7 +211,6 @@ void writeOutcomes(const std::vector<OutcomeRow>& rows, std::ostream& out) {
          "length_before,length,curvature_before,curvature,area_before,area,least_area_before,least_area,strain_before,"
          "strain,stress_before,stress,mean_tension,least_tension,drawn,settled,change,recognised,torn_out,broken,loose,"
          "crossed\n";
-  char text[40];
   for (const OutcomeRow& row : rows) {
     const OutcomeTrial& trial = row.trial;
     const OrganMeasures &a = row.before.organ, &b = row.after.organ;
@@ -241,8 +239,7 @@ void writeOutcomes(const std::vector<OutcomeRow>& rows, std::ostream& out) {
                                row.drawn,
                                row.settled,
                                row.change}) {
-      std::snprintf(text, sizeof text, ",%.6g", value);
-      out << text;
+      printTo(out, ",%.6g", value);
     }
     out << ',' << row.recognised << ',' << row.torn_out << ',' << row.broken << ',' << row.loose << ','
         << (row.crossed ? 1 : 0) << '\n';

@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -101,6 +102,18 @@ std::vector<YamlField> YamlSource::map(const YamlField& field) const {
   }
   int merges = 0;
   collect(field, merges, fields);
+  return fields;
+}
+
+std::vector<YamlField> YamlSource::map(const YamlField& field, const std::vector<std::string>& known,
+                                       const std::vector<std::string>& required) const {
+  std::vector<YamlField> fields = map(field);
+  for (const YamlField& entry : fields)
+    if (std::find(known.begin(), known.end(), entry.key) == known.end())
+      fail(entry, "is not a known key; " + suggestKey(entry.key, known));
+  for (const std::string& key : required)
+    if (std::none_of(fields.begin(), fields.end(), [&](const YamlField& entry) { return entry.key == key; }))
+      fail(field, "lacks the key '" + key + "'; add it below");
   return fields;
 }
 

@@ -7,10 +7,7 @@
 #include <memory>
 
 #include "firmware_peer.hpp"
-#include "hostile_scenario.hpp"
 #include "lockstep.hpp"
-#include "passive_scenario.hpp"
-#include "release_scenario.hpp"
 
 // Runs the firmware of the haptic device in lock-step with a simulated motor and a hand.
 
@@ -18,13 +15,8 @@ using namespace vibe_firmware;
 
 namespace {
 
-template <typename T>
-std::unique_ptr<Scenario> make() {
-  return std::make_unique<T>();
-}
-
 const std::map<std::string, std::function<std::unique_ptr<Scenario>()>> kScenarios = {
-    {"hostile", make<HostileScenario>}, {"passive", make<PassiveScenario>}, {"release", make<ReleaseScenario>}};
+    {"hostile", hostileScenario}, {"passive", passiveScenario}, {"release", releaseScenario}};
 
 struct Options {
   std::string scenario;

@@ -1,5 +1,3 @@
-#include "passive_scenario.hpp"
-
 #include <cmath>
 #include <ostream>
 
@@ -27,29 +25,50 @@ AxisParameters strongest(float stiffness) {
   return {stiffness, kShare * maxDamping(config, stiffness), 0, 0, config.torque_limit};
 }
 
+/// A hand that is stronger than the motors moves both axes to and fro, from 1 Hz up to 100 Hz, against a stiff spring
+/// with damping and against a damper, both nearly as strong as the firmware accepts. The axes start at rest in the
+/// equilibrium: they must never have given more energy than they have received.
+class PassiveScenario : public Scenario {
+ public:
+  std::uint32_t ticks() const override { return 20000; }
+
+  void command(std::uint32_t tick, CosimRequest& request) override {
+    if (tick % 100 == 1) setParameters({kParameterNumber, {strongest(kStiffness), strongest(0)}}, request);
+  }
+
+  HandAction hand(std::uint32_t tick, int axis, const AxisPlant&) override {
+    HandAction action;
+    action.holds = true;
+    const double duration = 1e-3 * ticks();
+    action.position = kAmplitude[axis] * std::sin(chirp(1e-3 * (tick + 1), duration));
+    return action;
+  }
+
+  void observe(const Period& period) override {
+    energy_[static_cast<std::size_t>(period.axis)].add(period.torque, period.after - period.before);
+  }
+  void receive(const CosimReply& reply) override { reports_.receive(reply); }
+
+  bool judge(std::ostream& out) const override {
+    bool good = reports_.parametersInForce(kParameterNumber);
+    if (!good) out << "the firmware has refused or cut the parameters\n";
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
+      out << "axis " << axis << ", most energy given since the start, and at the end [J]: " << energy_[axis].fromStart()
+          << " " << energy_[axis].final() << "\n";
+      good = good && energy_[axis].fromStart() <= kBound;
+    }
+    return good;
+  }
+
+ private:
+  ReportWatch reports_;
+  std::array<PortEnergy, kAxisCount> energy_{PortEnergy{AxisConfig{}}, PortEnergy{AxisConfig{}}};
+};
+
 }  // namespace
 
-void PassiveScenario::command(std::uint32_t tick, CosimRequest& request) {
-  if (tick % 100 == 1) setParameters({kParameterNumber, {strongest(kStiffness), strongest(0)}}, request);
-}
-
-HandAction PassiveScenario::hand(std::uint32_t tick, int axis, const AxisPlant&) {
-  HandAction action;
-  action.holds = true;
-  const double duration = 1e-3 * ticks();
-  action.position = kAmplitude[axis] * std::sin(chirp(1e-3 * (tick + 1), duration));
-  return action;
-}
-
-bool PassiveScenario::judge(std::ostream& out) const {
-  bool good = reports_.parametersInForce(kParameterNumber);
-  if (!good) out << "the firmware has refused or cut the parameters\n";
-  for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
-    out << "axis " << axis << ", most energy given since the start, and at the end [J]: " << energy_[axis].fromStart()
-        << " " << energy_[axis].final() << "\n";
-    good = good && energy_[axis].fromStart() <= kBound;
-  }
-  return good;
+std::unique_ptr<Scenario> passiveScenario() {
+  return std::make_unique<PassiveScenario>();
 }
 
 }  // namespace vibe_firmware

@@ -1,9 +1,8 @@
-#include "release_scenario.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <ostream>
+#include <vector>
 
 #include "scenario.hpp"
 
@@ -74,63 +73,85 @@ Error difference(const std::vector<double>& measured, double scale, const std::f
   return error;
 }
 
+/// The hand moves both axes away from the equilibrium, waits and lets go. The plant has no dry friction, so that the
+/// motion can be compared with theory:
+///
+/// - second order: J x'' + (B + b) x' + K x = 0, the device as it is meant to be;
+/// - sampled: the same with torque held for 1 ms and the velocity filter, solved exactly from tick to tick. What is
+/// left
+///   is the encoder, the PWM and the firmware's arithmetic.
+class ReleaseScenario : public Scenario {
+ public:
+  std::uint32_t ticks() const override { return 2400; }
+
+  std::array<PlantConfig, kAxisCount> plants() const override {
+    PlantConfig plant;
+    plant.inertia = kInertia;
+    plant.coulomb_friction = 0;
+    return {plant, plant};
+  }
+
+  void command(std::uint32_t tick, CosimRequest& request) override {
+    if (tick % 100 == 1) setParameters({kParameterNumber, {kAxes[0].parameters, kAxes[1].parameters}}, request);
+  }
+
+  HandAction hand(std::uint32_t tick, int axis, const AxisPlant&) override {
+    HandAction action;
+    action.holds = tick < kRelease;
+    action.position = kAxes[axis].displacement * std::min(1.0, static_cast<double>(tick) / kArrival);
+    return action;
+  }
+
+  void observe(const Period& period) override {
+    if (period.tick >= kRelease) positions_[static_cast<std::size_t>(period.axis)].push_back(period.before);
+  }
+
+  void receive(const CosimReply& reply) override { reports_.receive(reply); }
+
+  bool judge(std::ostream& out) const override {
+    bool good = reports_.parametersInForce(kParameterNumber);
+    if (!good) out << "the firmware has refused or cut the parameters\n";
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
+      const AxisParameters& parameters = kAxes[axis].parameters;
+      const std::vector<double> exact = sampled(parameters, positions_[axis].size());
+      const double scale = kAxes[axis].displacement;
+      const Error order = difference(positions_[axis], scale, [&](std::size_t i) {
+        return secondOrder(parameters, kPeriod * static_cast<double>(i));
+      });
+      const Error samples = difference(positions_[axis], scale, [&](std::size_t i) { return exact[i]; });
+      out << "axis " << axis << ", second order, rms and largest error [% of the displacement]: " << 100 * order.rms
+          << " " << 100 * order.largest << "\n"
+          << "axis " << axis << ", sampled, rms and largest error [% of the displacement]: " << 100 * samples.rms << " "
+          << 100 * samples.largest << "\n";
+      good = good && order.rms < kSecondOrderBound && samples.rms < kSampledBound;
+    }
+    return good;
+  }
+
+  bool writeTable(std::ostream& out) const override {
+    out << "time,axis 0,second order 0,sampled 0,axis 1,second order 1,sampled 1\n";
+    const std::size_t count = positions_[0].size();
+    const std::vector<double> exact[] = {sampled(kAxes[0].parameters, count), sampled(kAxes[1].parameters, count)};
+    for (std::size_t i = 0; i < count; ++i) {
+      const double time = kPeriod * static_cast<double>(i);
+      out << time;
+      for (std::size_t axis = 0; axis < kAxisCount; ++axis)
+        out << "," << positions_[axis][i] / kAxes[axis].displacement << "," << secondOrder(kAxes[axis].parameters, time)
+            << "," << exact[axis][i];
+      out << "\n";
+    }
+    return true;
+  }
+
+ private:
+  ReportWatch reports_;
+  std::array<std::vector<double>, kAxisCount> positions_;  // after the release, one per tick
+};
+
 }  // namespace
 
-std::array<PlantConfig, kAxisCount> ReleaseScenario::plants() const {
-  PlantConfig plant;
-  plant.inertia = kInertia;
-  plant.coulomb_friction = 0;
-  return {plant, plant};
-}
-
-void ReleaseScenario::command(std::uint32_t tick, CosimRequest& request) {
-  if (tick % 100 == 1) setParameters({kParameterNumber, {kAxes[0].parameters, kAxes[1].parameters}}, request);
-}
-
-HandAction ReleaseScenario::hand(std::uint32_t tick, int axis, const AxisPlant&) {
-  HandAction action;
-  action.holds = tick < kRelease;
-  action.position = kAxes[axis].displacement * std::min(1.0, static_cast<double>(tick) / kArrival);
-  return action;
-}
-
-void ReleaseScenario::observe(const Period& period) {
-  if (period.tick >= kRelease) positions_[static_cast<std::size_t>(period.axis)].push_back(period.before);
-}
-
-bool ReleaseScenario::judge(std::ostream& out) const {
-  bool good = reports_.parametersInForce(kParameterNumber);
-  if (!good) out << "the firmware has refused or cut the parameters\n";
-  for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
-    const AxisParameters& parameters = kAxes[axis].parameters;
-    const std::vector<double> exact = sampled(parameters, positions_[axis].size());
-    const double scale = kAxes[axis].displacement;
-    const Error order = difference(positions_[axis], scale, [&](std::size_t i) {
-      return secondOrder(parameters, kPeriod * static_cast<double>(i));
-    });
-    const Error samples = difference(positions_[axis], scale, [&](std::size_t i) { return exact[i]; });
-    out << "axis " << axis << ", second order, rms and largest error [% of the displacement]: " << 100 * order.rms
-        << " " << 100 * order.largest << "\n"
-        << "axis " << axis << ", sampled, rms and largest error [% of the displacement]: " << 100 * samples.rms << " "
-        << 100 * samples.largest << "\n";
-    good = good && order.rms < kSecondOrderBound && samples.rms < kSampledBound;
-  }
-  return good;
-}
-
-bool ReleaseScenario::writeTable(std::ostream& out) const {
-  out << "time,axis 0,second order 0,sampled 0,axis 1,second order 1,sampled 1\n";
-  const std::size_t count = positions_[0].size();
-  const std::vector<double> exact[] = {sampled(kAxes[0].parameters, count), sampled(kAxes[1].parameters, count)};
-  for (std::size_t i = 0; i < count; ++i) {
-    const double time = kPeriod * static_cast<double>(i);
-    out << time;
-    for (std::size_t axis = 0; axis < kAxisCount; ++axis)
-      out << "," << positions_[axis][i] / kAxes[axis].displacement << "," << secondOrder(kAxes[axis].parameters, time)
-          << "," << exact[axis][i];
-    out << "\n";
-  }
-  return true;
+std::unique_ptr<Scenario> releaseScenario() {
+  return std::make_unique<ReleaseScenario>();
 }
 
 }  // namespace vibe_firmware

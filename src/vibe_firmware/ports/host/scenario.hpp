@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <iosfwd>
+#include <memory>
 #include <string>
 
 #include "axis_plant.hpp"
@@ -106,5 +107,9 @@ class Scenario {
   /// table
   virtual bool writeTable(std::ostream&) const { return false; }
 };
+
+std::unique_ptr<Scenario> hostileScenario();  ///< see HostileScenario
+std::unique_ptr<Scenario> passiveScenario();  ///< see PassiveScenario
+std::unique_ptr<Scenario> releaseScenario();  ///< see ReleaseScenario
 
 }  // namespace vibe_firmware

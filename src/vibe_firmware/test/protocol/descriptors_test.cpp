@@ -8,10 +8,10 @@ namespace vibe_firmware::descriptors_test {
 namespace {
 
 HidItems haptic() {
-  return {kHapticReportDescriptor, sizeof kHapticReportDescriptor};
+  return {kHapticReportDescriptor.data(), sizeof kHapticReportDescriptor};
 }
 HidItems input() {
-  return {kInputReportDescriptor, sizeof kInputReportDescriptor};
+  return {kInputReportDescriptor.data(), sizeof kInputReportDescriptor};
 }
 
 TEST(ReportDescriptors, DeclareTheSizesThatArePacked) {
@@ -58,7 +58,7 @@ TEST(ReportDescriptors, AxesAndButtonsLieWhereTheyArePacked) {
 }
 
 TEST(ReportDescriptors, ReaderOfTheTestRejectsDamagedOnes) {
-  EXPECT_THROW(HidItems(kHapticReportDescriptor, sizeof kHapticReportDescriptor - 1), std::runtime_error);
+  EXPECT_THROW(HidItems(kHapticReportDescriptor.data(), sizeof kHapticReportDescriptor - 1), std::runtime_error);
   const std::uint8_t cut[] = {0x26, 0xFF};
   EXPECT_THROW(HidItems(cut, sizeof cut), std::runtime_error);
 }

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "vibe_core/scene/words.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
 namespace vibe::hardware {
@@ -71,13 +70,7 @@ class ArmReader {
   Fields mapOf(const YamlField& field, const std::vector<std::string>& known,
                const std::vector<std::string>& required) const {
     Fields fields;
-    for (const YamlField& entry : source_.map(field)) {
-      if (std::find(known.begin(), known.end(), entry.key) == known.end())
-        source_.fail(entry, "is not a known key; " + suggestKey(entry.key, known));
-      fields.emplace(entry.key, entry);
-    }
-    for (const std::string& key : required)
-      if (fields.count(key) == 0) source_.fail(field, "lacks the key '" + key + "'; add it below");
+    for (const YamlField& entry : source_.map(field, known, required)) fields.emplace(entry.key, entry);
     return fields;
   }
 

@@ -6,38 +6,9 @@
 #include <vector>
 
 #include "vibe_core/files/files.hpp"
-#include "vibe_core/scene/words.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
 namespace vibe::hardware {
-
-/// Reads a Calibration from YAML. Every mistake ends in an Error "file:line: key: what is wrong; remedy".
-class CalibrationReader {
- public:
-  explicit CalibrationReader(YamlSource source) : source_(std::move(source)) {}
-  Calibration read();
-
- private:
-  YamlSource source_;
-  Calibration calibration_;
-
-  /// Fields of a map of which each key must be one of `keys` and each of the `required` must be there.
-  std::vector<YamlField> mapOf(const YamlField& field, const std::vector<std::string>& keys,
-                               const std::vector<std::string>& required) const;
-  void readDevices(const YamlField& field);
-  DeviceSelection readDevice(const YamlField& field) const;
-  void readJoints(const YamlField& field);
-  JointCalibration readJoint(const YamlField& field, int joint) const;
-  void readLimits(const YamlField& field, int joint, double& lower, double& upper) const;
-  void readHoming(const YamlField& field);
-  void readButtons(const YamlField& field);
-  DeviceButton readButton(const YamlField& field) const;
-  void readSuturingDevice(const YamlField& field);
-  ButtonDrive readDrive(const YamlField& field, int joint) const;
-  void checkAxesOnce(const YamlField& field) const;
-  void checkHome(const YamlField& field, int joint, double home) const;
-};
-
 namespace {
 
 const std::vector<std::string> kDeviceNames{"haptic", "input"};
@@ -83,168 +54,162 @@ bool parseId(const std::string& text, DeviceSelection& selection) {
 
 }  // namespace
 
-std::vector<YamlField> CalibrationReader::mapOf(const YamlField& field, const std::vector<std::string>& keys,
-                                                const std::vector<std::string>& required) const {
-  std::vector<YamlField> fields = source_.map(field);
-  for (const YamlField& entry : fields) {
-    if (std::find(keys.begin(), keys.end(), entry.key) == keys.end()) {
-      source_.fail(entry, "is not a known key; " + suggestKey(entry.key, keys));
+/// Reads a Calibration from YAML. Every mistake ends in an Error "file:line: key: what is wrong; remedy".
+class CalibrationReader {
+ public:
+  explicit CalibrationReader(YamlSource source) : source_(std::move(source)) {}
+
+  Calibration read() {
+    const std::vector<YamlField> fields = source_.map(
+        source_.root(), {"devices", "joints", "homing", "buttons", "suturing_device"}, {"devices", "joints"});
+    // homing needs the joints, wherever they stand in the file
+    for (const YamlField& field : fields) {
+      if (field.key == "devices") readDevices(field);
+      if (field.key == "joints") readJoints(field);
+      if (field.key == "buttons") readButtons(field);
+      if (field.key == "suturing_device") readSuturingDevice(field);
+    }
+    for (const YamlField& field : fields) {
+      if (field.key == "homing") readHoming(field);
+    }
+    return calibration_;
+  }
+
+ private:
+  YamlSource source_;
+  Calibration calibration_;
+
+  void readDevices(const YamlField& field) {
+    for (const YamlField& entry : source_.map(field, kDeviceNames, kDeviceNames)) {
+      calibration_.devices[static_cast<std::size_t>(indexOf(kDeviceNames, entry.key))] = readDevice(entry);
     }
   }
-  for (const std::string& key : required) {
-    const auto is_it = [&key](const YamlField& entry) { return entry.key == key; };
-    if (std::none_of(fields.begin(), fields.end(), is_it)) {
-      source_.fail(field, "lacks the key '" + key + "'; add it below");
+
+  DeviceSelection readDevice(const YamlField& field) const {
+    DeviceSelection selection;
+    for (const YamlField& entry : source_.map(field, {"id", "serial"}, {"id"})) {
+      const std::string text = source_.text(entry);
+      if (entry.key == "serial") selection.serial = text;
+      if (entry.key == "id" && !parseId(text, selection)) {
+        source_.fail(entry, "'" + text.substr(0, 40) +
+                                "' is not a USB id; write vendor and product as lsusb shows them, such as 1209:0001");
+      }
     }
+    return selection;
   }
-  return fields;
-}
 
-Calibration CalibrationReader::read() {
-  const std::vector<YamlField> fields =
-      mapOf(source_.root(), {"devices", "joints", "homing", "buttons", "suturing_device"}, {"devices", "joints"});
-  // homing needs the joints, wherever they stand in the file
-  for (const YamlField& field : fields) {
-    if (field.key == "devices") readDevices(field);
-    if (field.key == "joints") readJoints(field);
-    if (field.key == "buttons") readButtons(field);
-    if (field.key == "suturing_device") readSuturingDevice(field);
-  }
-  for (const YamlField& field : fields) {
-    if (field.key == "homing") readHoming(field);
-  }
-  return calibration_;
-}
-
-void CalibrationReader::readDevices(const YamlField& field) {
-  for (const YamlField& entry : mapOf(field, kDeviceNames, kDeviceNames)) {
-    calibration_.devices[static_cast<std::size_t>(indexOf(kDeviceNames, entry.key))] = readDevice(entry);
-  }
-}
-
-DeviceSelection CalibrationReader::readDevice(const YamlField& field) const {
-  DeviceSelection selection;
-  for (const YamlField& entry : mapOf(field, {"id", "serial"}, {"id"})) {
-    const std::string text = source_.text(entry);
-    if (entry.key == "serial") selection.serial = text;
-    if (entry.key == "id" && !parseId(text, selection)) {
-      source_.fail(entry, "'" + text.substr(0, 40) +
-                              "' is not a USB id; write vendor and product as lsusb shows them, such as 1209:0001");
-    }
-  }
-  return selection;
-}
-
-void CalibrationReader::readJoints(const YamlField& field) {
-  const std::vector<std::string> names = jointNames(0, kScopeJointCount);
-  for (const YamlField& entry : mapOf(field, names, names)) {
-    const int joint = indexOf(names, entry.key);
-    calibration_.joints[static_cast<std::size_t>(joint)] = readJoint(entry, joint);
-  }
-  checkAxesOnce(field);
-}
-
-JointCalibration CalibrationReader::readJoint(const YamlField& field, int joint) const {
-  JointCalibration result;
-  double direction = 1;
-  const std::vector<std::string> keys{"device", "axis", "scale", "direction", "offset", "limits"};
-  for (const YamlField& entry : mapOf(field, keys, {"device", "axis", "scale", "limits"})) {
-    if (entry.key == "device")
-      result.device = static_cast<DeviceKind>(indexOf(kDeviceNames, source_.choice(entry, kDeviceNames)));
-    if (entry.key == "axis") result.axis = static_cast<int>(source_.integer(entry, 0, vibe_firmware::kAxisCount - 1));
-    if (entry.key == "scale") result.scale.scale = source_.quantity(entry, scaleUnitOf(joint), kMinScale, kMaxScale);
-    if (entry.key == "direction") direction = source_.choice(entry, {"1", "-1"}) == "1" ? 1 : -1;
-    if (entry.key == "offset") {
-      result.scale.offset = source_.quantity(entry, unitOf(joint), -largestPosition(joint), largestPosition(joint));
-    }
-    if (entry.key == "limits") readLimits(entry, joint, result.lower, result.upper);
-  }
-  result.scale.scale *= direction;
-  return result;
-}
-
-void CalibrationReader::readLimits(const YamlField& field, int joint, double& lower, double& upper) const {
-  const double largest = largestPosition(joint);
-  const std::vector<double> limits = source_.quantities(field, 2, unitOf(joint), -largest, largest);
-  if (limits[0] >= limits[1]) source_.fail(field, "does not have its lower end first; write [lower, upper]");
-  lower = limits[0];
-  upper = limits[1];
-}
-
-void CalibrationReader::checkAxesOnce(const YamlField& field) const {
-  for (std::size_t a = 0; a < calibration_.joints.size(); ++a) {
-    for (std::size_t b = 0; b < a; ++b) {
-      const JointCalibration &one = calibration_.joints[a], &other = calibration_.joints[b];
-      if (one.device != other.device || one.axis != other.axis) continue;
-      source_.fail(field, std::string(kJointNames[b]) + " and " + kJointNames[a] + " are both measured by axis " +
-                              std::to_string(one.axis) + " of the " + deviceName(one.device) +
-                              "; give each joint an axis of its own");
-    }
-  }
-}
-
-void CalibrationReader::readHoming(const YamlField& field) {
-  for (const YamlField& entry : mapOf(field, {"button", "positions"}, {"button", "positions"})) {
-    if (entry.key == "button") calibration_.homing = readButton(entry);
-    if (entry.key != "positions") continue;
+  void readJoints(const YamlField& field) {
     const std::vector<std::string> names = jointNames(0, kScopeJointCount);
-    for (const YamlField& position : mapOf(entry, names, {})) {
-      const int joint = indexOf(names, position.key);
-      const double largest = largestPosition(joint);
-      const double home = source_.quantity(position, unitOf(joint), -largest, largest);
-      checkHome(position, joint, home);
-      calibration_.joints[static_cast<std::size_t>(joint)].home = home;
+    for (const YamlField& entry : source_.map(field, names, names)) {
+      const int joint = indexOf(names, entry.key);
+      calibration_.joints[static_cast<std::size_t>(joint)] = readJoint(entry, joint);
+    }
+    checkAxesOnce(field);
+  }
+
+  JointCalibration readJoint(const YamlField& field, int joint) const {
+    JointCalibration result;
+    double direction = 1;
+    const std::vector<std::string> keys{"device", "axis", "scale", "direction", "offset", "limits"};
+    for (const YamlField& entry : source_.map(field, keys, {"device", "axis", "scale", "limits"})) {
+      if (entry.key == "device")
+        result.device = static_cast<DeviceKind>(indexOf(kDeviceNames, source_.choice(entry, kDeviceNames)));
+      if (entry.key == "axis") result.axis = static_cast<int>(source_.integer(entry, 0, vibe_firmware::kAxisCount - 1));
+      if (entry.key == "scale") result.scale.scale = source_.quantity(entry, scaleUnitOf(joint), kMinScale, kMaxScale);
+      if (entry.key == "direction") direction = source_.choice(entry, {"1", "-1"}) == "1" ? 1 : -1;
+      if (entry.key == "offset") {
+        result.scale.offset = source_.quantity(entry, unitOf(joint), -largestPosition(joint), largestPosition(joint));
+      }
+      if (entry.key == "limits") readLimits(entry, joint, result.lower, result.upper);
+    }
+    result.scale.scale *= direction;
+    return result;
+  }
+
+  void readLimits(const YamlField& field, int joint, double& lower, double& upper) const {
+    const double largest = largestPosition(joint);
+    const std::vector<double> limits = source_.quantities(field, 2, unitOf(joint), -largest, largest);
+    if (limits[0] >= limits[1]) source_.fail(field, "does not have its lower end first; write [lower, upper]");
+    lower = limits[0];
+    upper = limits[1];
+  }
+
+  void readHoming(const YamlField& field) {
+    for (const YamlField& entry : source_.map(field, {"button", "positions"}, {"button", "positions"})) {
+      if (entry.key == "button") calibration_.homing = readButton(entry);
+      if (entry.key != "positions") continue;
+      const std::vector<std::string> names = jointNames(0, kScopeJointCount);
+      for (const YamlField& position : source_.map(entry, names)) {
+        const int joint = indexOf(names, position.key);
+        const double largest = largestPosition(joint);
+        const double home = source_.quantity(position, unitOf(joint), -largest, largest);
+        checkHome(position, joint, home);
+        calibration_.joints[static_cast<std::size_t>(joint)].home = home;
+      }
     }
   }
-}
 
-void CalibrationReader::checkHome(const YamlField& field, int joint, double home) const {
-  const JointCalibration& calibration = calibration_.joints[static_cast<std::size_t>(joint)];
-  if (home >= calibration.lower && home <= calibration.upper) return;
-  source_.fail(field, "is outside the limits of the joint, " + showQuantity(calibration.lower, unitOf(joint)) + " to " +
-                          showQuantity(calibration.upper, unitOf(joint)) + "; write a position between them");
-}
+  void readButtons(const YamlField& field) {
+    const std::vector<std::string> names(kButtonNames.begin(), kButtonNames.end());
+    for (const YamlField& entry : source_.map(field, names)) {
+      calibration_.buttons[static_cast<std::size_t>(indexOf(names, entry.key))] = readButton(entry);
+    }
+  }
 
-void CalibrationReader::readButtons(const YamlField& field) {
-  const std::vector<std::string> names(kButtonNames.begin(), kButtonNames.end());
-  for (const YamlField& entry : mapOf(field, names, {})) {
-    calibration_.buttons[static_cast<std::size_t>(indexOf(names, entry.key))] = readButton(entry);
+  DeviceButton readButton(const YamlField& field) const {
+    DeviceButton button;
+    for (const YamlField& entry : source_.map(field, {"device", "bit"}, {"device", "bit"})) {
+      if (entry.key == "device")
+        button.device = static_cast<DeviceKind>(indexOf(kDeviceNames, source_.choice(entry, kDeviceNames)));
+      if (entry.key == "bit") button.bit = static_cast<int>(source_.integer(entry, 0, kDeviceButtons - 1));
+    }
+    return button;
   }
-}
 
-DeviceButton CalibrationReader::readButton(const YamlField& field) const {
-  DeviceButton button;
-  for (const YamlField& entry : mapOf(field, {"device", "bit"}, {"device", "bit"})) {
-    if (entry.key == "device")
-      button.device = static_cast<DeviceKind>(indexOf(kDeviceNames, source_.choice(entry, kDeviceNames)));
-    if (entry.key == "bit") button.bit = static_cast<int>(source_.integer(entry, 0, kDeviceButtons - 1));
+  void readSuturingDevice(const YamlField& field) {
+    const std::vector<std::string> names = jointNames(kScopeJointCount, kJointCount);
+    calibration_.suturing_device.emplace();
+    for (const YamlField& entry : source_.map(field, names, names)) {
+      const int index = indexOf(names, entry.key);
+      (*calibration_.suturing_device)[static_cast<std::size_t>(index)] = readDrive(entry, kScopeJointCount + index);
+    }
   }
-  return button;
-}
 
-void CalibrationReader::readSuturingDevice(const YamlField& field) {
-  const std::vector<std::string> names = jointNames(kScopeJointCount, kJointCount);
-  calibration_.suturing_device.emplace();
-  for (const YamlField& entry : mapOf(field, names, names)) {
-    const int index = indexOf(names, entry.key);
-    (*calibration_.suturing_device)[static_cast<std::size_t>(index)] = readDrive(entry, kScopeJointCount + index);
+  ButtonDrive readDrive(const YamlField& field, int joint) const {
+    ButtonDrive drive;
+    const std::vector<std::string> keys{"forward", "backward", "speed", "limits"};
+    for (const YamlField& entry : source_.map(field, keys, keys)) {
+      if (entry.key == "forward") drive.forward = readButton(entry);
+      if (entry.key == "backward") drive.backward = readButton(entry);
+      if (entry.key == "speed") drive.speed = source_.quantity(entry, speedUnitOf(joint), 1e-6, largestPosition(joint));
+      if (entry.key == "limits") readLimits(entry, joint, drive.lower, drive.upper);
+    }
+    if (drive.lower > 0 || drive.upper < 0) {
+      source_.fail(field, "has limits without 0, where the joint begins; write limits on both sides of 0 or at it");
+    }
+    return drive;
   }
-}
 
-ButtonDrive CalibrationReader::readDrive(const YamlField& field, int joint) const {
-  ButtonDrive drive;
-  const std::vector<std::string> keys{"forward", "backward", "speed", "limits"};
-  for (const YamlField& entry : mapOf(field, keys, keys)) {
-    if (entry.key == "forward") drive.forward = readButton(entry);
-    if (entry.key == "backward") drive.backward = readButton(entry);
-    if (entry.key == "speed") drive.speed = source_.quantity(entry, speedUnitOf(joint), 1e-6, largestPosition(joint));
-    if (entry.key == "limits") readLimits(entry, joint, drive.lower, drive.upper);
+  void checkAxesOnce(const YamlField& field) const {
+    for (std::size_t a = 0; a < calibration_.joints.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        const JointCalibration &one = calibration_.joints[a], &other = calibration_.joints[b];
+        if (one.device != other.device || one.axis != other.axis) continue;
+        source_.fail(field, std::string(kJointNames[b]) + " and " + kJointNames[a] + " are both measured by axis " +
+                                std::to_string(one.axis) + " of the " + deviceName(one.device) +
+                                "; give each joint an axis of its own");
+      }
+    }
   }
-  if (drive.lower > 0 || drive.upper < 0) {
-    source_.fail(field, "has limits without 0, where the joint begins; write limits on both sides of 0 or at it");
+
+  void checkHome(const YamlField& field, int joint, double home) const {
+    const JointCalibration& calibration = calibration_.joints[static_cast<std::size_t>(joint)];
+    if (home >= calibration.lower && home <= calibration.upper) return;
+    source_.fail(field, "is outside the limits of the joint, " + showQuantity(calibration.lower, unitOf(joint)) +
+                            " to " + showQuantity(calibration.upper, unitOf(joint)) +
+                            "; write a position between them");
   }
-  return drive;
-}
+};
 
 Calibration Calibration::parse(const std::string& yaml, const std::string& place) {
   return CalibrationReader(YamlSource::parse(yaml, place, {})).read();

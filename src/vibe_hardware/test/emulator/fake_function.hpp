@@ -18,7 +18,7 @@ class FakeFunction final : public vibe_firmware::HidFunction {
     return {configuration_.data(), configuration_.size()};
   }
   vibe_firmware::Bytes reportDescriptor() const override {
-    return {vibe_firmware::kHapticReportDescriptor, sizeof vibe_firmware::kHapticReportDescriptor};
+    return {vibe_firmware::kHapticReportDescriptor.data(), sizeof vibe_firmware::kHapticReportDescriptor};
   }
   vibe_firmware::Bytes string(std::uint8_t index) const override {
     const std::string* text = index == 1 ? &maker_ : index == 2 ? &name_ : index == 3 ? &serial_ : nullptr;

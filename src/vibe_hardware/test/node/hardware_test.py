@@ -235,7 +235,7 @@ class HardwareTest(unittest.TestCase):
         topics = {topic for topic, nodes in published if "/hardware_node" in nodes} - {"/rosout"}
         running = {topic if topic == "/diagnostics" else topic[1:]: types[topic] for topic in topics}
         self.assertEqual(rows_of(text, "Topics of the devices"), running)
-        with open(os.path.join(HERE, "../../node/hardware_node.cpp"), encoding="utf-8") as code:
+        with open(os.path.join(HERE, "../../node/hardware_node_main.cpp"), encoding="utf-8") as code:
             parameters = set(re.findall(r'reader\.read\("(\w+)"', code.read()))
         self.assertEqual(set(rows_of(text, "hardware_node")), parameters)
 

@@ -1,4 +1,4 @@
-#include "driving/scope_sender.hpp"
+#include "vibe_operator/driving/scope_sender.hpp"
 
 #include <ros/this_node.h>
 
@@ -84,10 +84,10 @@ void ScopeSender::displace(int joint, double by) {
   drive_.displace(joint, by);
 }
 
-ScopeSender::View ScopeSender::view() const {
+DriveView ScopeSender::view() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   heard_ = steadySeconds();
-  View view;
+  DriveView view;
   view.driving = driving_;
   view.trouble = trouble_;
   view.keys_down = drive_.keysDown();

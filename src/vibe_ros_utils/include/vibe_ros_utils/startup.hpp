@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,14 @@ void waitForStop();
 /// @return whether there is a master; false: a signal was noted
 /// @throws Error when none has answered in time
 bool waitForMaster(double patience);
+
+/// The main() of a node: init(), waiting for the master, and what the node does. What these throw is said on the
+/// standard error, after the name of the program.
+/// @return the status of the program: 0, or 2 after an error
+int runNode(int argc, char** argv, const std::string& name, const std::function<void()>& run);
+
+/// The same with initWithGoodbye(), and ros::shutdown() when `run` has returned.
+int runNodeWithGoodbye(int argc, char** argv, const std::string& name, const std::function<void()>& run);
 
 /// Whether the command line has --help or -h.
 bool asksForHelp(int argc, const char* const* argv);

@@ -1,27 +1,17 @@
 #pragma once
 #include <QImage>
-#include <array>
 #include <limits>
-#include <set>
 #include <string>
 
 #include "vibe_operator/drive/drive_keys.hpp"
-#include "vibe_operator/drive/scope_drive.hpp"
+#include "vibe_operator/driving/scope_sender.hpp"
 
 namespace vibe::rviz_plugins {
 
 /// What the overlay of the tool 'Drive scope' shows.
-struct DriveHud {
-  std::set<int> keys_down;  ///< Qt::Key; their caps light up
-  operating::DriveGear gear = operating::DriveGear::Normal;
-  operating::Joints joints{};  ///< NaN: unknown
-  operating::JointLimits limits{};
-  std::array<bool, 6> buttons{};                               ///< in the order of scope/buttons
-  double force = std::numeric_limits<double>::quiet_NaN();     ///< of the tissue on the tool [N]; NaN: unknown
+struct DriveHud : operating::DriveView {
   double pressure = std::numeric_limits<double>::quiet_NaN();  ///< gauge [Pa]; NaN: unknown
   std::string tissue, needle, bites;  ///< what the tool does, where the needle is, how many bites: a few words each
-  std::string trouble;                ///< why nothing moves; empty if all is well
-  operating::FirstStep step;          ///< shown if there is no trouble
 };
 
 // Images with transparent parts. `scale` 1 suits a view of 640 x 480 pixels.

@@ -135,62 +135,76 @@ QString comparison(const vibe_msgs::ReplayStatus& status) {
 
 }  // namespace
 
-ReplayPanel::ReplayPanel(QWidget* parent)
-    : rviz::Panel(parent),
-      slider_(new ReplaySlider([this](double time, bool exact) { command(status_.playing, time, exact); })),
-      play_(new QPushButton("Play")),
-      rate_(new QComboBox),
-      time_(new QLabel("no recording")),
-      state_(wrappingLabel()) {
-  auto* grid = new QGridLayout(this);
-  grid->addWidget(play_, 0, 0);
-  grid->addWidget(rate_, 0, 1);
-  grid->addWidget(time_, 0, 2);
-  grid->addWidget(slider_, 1, 0, 1, 3);
-  grid->addWidget(state_, 2, 0, 1, 3);
-  grid->setColumnStretch(2, 1);
-  grid->setRowStretch(3, 1);
-  play_->setObjectName("play");
-  time_->setObjectName("time");
-  state_->setObjectName("state");
-  rate_->setToolTip("Speed, compared with the session.");
-  for (const double rate : {0.1, 0.25, 0.5, 1.0, 2.0, 4.0}) rate_->addItem(QString("x %1").arg(rate), rate);
-  rate_->setCurrentIndex(3);
-  setEnabled(false);
-  QObject::connect(play_, &QPushButton::clicked, this, [this] { command(!status_.playing, kStay, true); });
-  QObject::connect(rate_, QOverload<int>::of(&QComboBox::activated), this,
-                   [this] { command(status_.playing, kStay, true); });
-}
+/// Plays, pauses and scrubs a recording that vibe_player has open.
+class ReplayPanel : public rviz::Panel {
+  Q_OBJECT
+ public:
+  explicit ReplayPanel(QWidget* parent = nullptr)
+      : rviz::Panel(parent),
+        slider_(new ReplaySlider([this](double time, bool exact) { command(status_.playing, time, exact); })),
+        play_(new QPushButton("Play")),
+        rate_(new QComboBox),
+        time_(new QLabel("no recording")),
+        state_(wrappingLabel()) {
+    auto* grid = new QGridLayout(this);
+    grid->addWidget(play_, 0, 0);
+    grid->addWidget(rate_, 0, 1);
+    grid->addWidget(time_, 0, 2);
+    grid->addWidget(slider_, 1, 0, 1, 3);
+    grid->addWidget(state_, 2, 0, 1, 3);
+    grid->setColumnStretch(2, 1);
+    grid->setRowStretch(3, 1);
+    play_->setObjectName("play");
+    time_->setObjectName("time");
+    state_->setObjectName("state");
+    rate_->setToolTip("Speed, compared with the session.");
+    for (const double rate : {0.1, 0.25, 0.5, 1.0, 2.0, 4.0}) rate_->addItem(QString("x %1").arg(rate), rate);
+    rate_->setCurrentIndex(3);
+    setEnabled(false);
+    QObject::connect(play_, &QPushButton::clicked, this, [this] { command(!status_.playing, kStay, true); });
+    QObject::connect(rate_, QOverload<int>::of(&QComboBox::activated), this,
+                     [this] { command(status_.playing, kStay, true); });
+  }
 
-void ReplayPanel::onInitialize() {
-  ros::NodeHandle handle;
-  commands_ = handle.advertise<vibe_msgs::ReplayCommand>("replay/command", 10);
-  statuses_ = handle.subscribe("replay/status", 10, &ReplayPanel::display, this);
-}
+  void onInitialize() override {
+    ros::NodeHandle handle;
+    commands_ = handle.advertise<vibe_msgs::ReplayCommand>("replay/command", 10);
+    statuses_ = handle.subscribe("replay/status", 10, &ReplayPanel::display, this);
+  }
 
-double ReplayPanel::rate() const {
-  return rate_->currentData().toDouble();
-}
+ private:
+  ReplaySlider* slider_;
+  QPushButton* play_;
+  QComboBox* rate_;
+  QLabel *time_, *state_;
+  ros::Publisher commands_;
+  ros::Subscriber statuses_;
+  vibe_msgs::ReplayStatus status_;
 
-void ReplayPanel::command(bool play, double seek, bool exact) {
-  vibe_msgs::ReplayCommand message;
-  message.play = play;
-  message.rate = rate();
-  message.seek = seek;
-  message.exact = exact;
-  commands_.publish(message);
-}
+  void display(const vibe_msgs::ReplayStatus& status) {
+    status_ = status;
+    setEnabled(true);
+    play_->setText(status.playing ? "Pause" : "Play");
+    time_->setText(minutes(status.time) + " of " + minutes(status.duration));
+    slider_->display(status.time, status.duration, marksOf(status));
+    const QString name = QFileInfo(QString::fromStdString(status.file)).fileName();
+    state_->setText(name + comparison(status));
+  }
 
-void ReplayPanel::display(const vibe_msgs::ReplayStatus& status) {
-  status_ = status;
-  setEnabled(true);
-  play_->setText(status.playing ? "Pause" : "Play");
-  time_->setText(minutes(status.time) + " of " + minutes(status.duration));
-  slider_->display(status.time, status.duration, marksOf(status));
-  const QString name = QFileInfo(QString::fromStdString(status.file)).fileName();
-  state_->setText(name + comparison(status));
-}
+  void command(bool play, double seek, bool exact) {
+    vibe_msgs::ReplayCommand message;
+    message.play = play;
+    message.rate = rate();
+    message.seek = seek;
+    message.exact = exact;
+    commands_.publish(message);
+  }
+
+  double rate() const { return rate_->currentData().toDouble(); }
+};
 
 }  // namespace vibe::rviz_plugins
 
 PLUGINLIB_EXPORT_CLASS(vibe::rviz_plugins::ReplayPanel, rviz::Panel)
+
+#include "replay_panel.moc"

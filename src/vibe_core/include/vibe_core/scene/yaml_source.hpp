@@ -46,6 +46,9 @@ class YamlSource {
   /// Fields of a map in the order of the file, merge keys resolved; a null value is an empty map.
   /// @throws Error if it is no map or has a key twice
   std::vector<YamlField> map(const YamlField& field) const;
+  /// The same of a map of which each key must be one of `known` and each of the `required` must be there.
+  std::vector<YamlField> map(const YamlField& field, const std::vector<std::string>& known,
+                             const std::vector<std::string>& required = {}) const;
   /// Items of a list; their path is "field[0]" and so on.
   std::vector<YamlField> list(const YamlField& field) const;
 

@@ -13,6 +13,11 @@ struct Bytes {
   const std::uint8_t* data = nullptr;  ///< null only if there are none
   std::size_t size = 0;                ///< how many
 };
+/// Of a constant that lasts. @tparam Array  std::array of bytes
+template <typename Array>
+constexpr Bytes bytesOf(const Array& bytes) {
+  return {bytes.data(), bytes.size()};
+}
 
 /// A HID device as its USB stack, an emulator or a test sees it: descriptors, and reports that are got and set. Never
 /// called from the control interrupt; an implementation that shares state with it must protect that itself.

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vibe_firmware/core/sample.hpp"
@@ -63,55 +65,87 @@ class EmulatedEncoder {
   std::int32_t last_ = 0;
 };
 
+/// A device with the firmware in it: encoders at its axes, and its USB side.
+/// @tparam Firmware  vibe_firmware::HapticFunction or InputFunction
+/// @tparam Config    of that firmware
+template <typename Firmware, typename Config>
+class FirmwareDevice : public EmulatedDevice {
+ public:
+  bool nextReport(std::uint8_t (&bytes)[vibe_firmware::kInputReportSize]) override {
+    return firmware_->nextReport(bytes);
+  }
+  vibe_firmware::HidFunction& function() override { return *firmware_; }
+  void restart() override {
+    firmware_ = std::make_unique<Firmware>(config_, serial_.c_str());
+    ticks_ = 0;
+  }
+
+  const Firmware& firmware() const { return *firmware_; }  ///< until restart()
+
+ protected:
+  FirmwareDevice(const Config& config, std::string serial)
+      : config_(config), serial_(std::move(serial)), firmware_(std::make_unique<Firmware>(config_, serial_.c_str())) {
+    for (const vibe_firmware::AxisConfig& axis : config.axes)
+      encoders_.emplace_back(static_cast<std::int32_t>(std::lround(axis.counts_per_turn)), config.counter_bits);
+  }
+
+  /// What the firmware reads in the next millisecond. @param counts  where the encoders are now
+  vibe_firmware::HapticSample sample(const std::array<std::int32_t, vibe_firmware::kAxisCount>& counts,
+                                     std::uint16_t buttons) {
+    vibe_firmware::HapticSample sample;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      const vibe_firmware::EncoderSample read = encoders_[i].sample(counts[i]);
+      sample.counter[i] = read.counter;
+      sample.index[i] = read.index;
+      sample.index_counter[i] = read.index_counter;
+    }
+    sample.buttons = buttons;
+    sample.time_us = 1000 * ticks_++;
+    return sample;
+  }
+
+  const Config config_;
+  const std::string serial_;
+  std::vector<EmulatedEncoder> encoders_;
+  std::unique_ptr<Firmware> firmware_;
+
+ private:
+  std::uint32_t ticks_ = 0;
+};
+
 /// The haptic device: two axes with motors, the firmware, and a hand that holds them.
-class EmulatedHaptic : public EmulatedDevice {
+class EmulatedHaptic : public FirmwareDevice<vibe_firmware::HapticFunction, vibe_firmware::HapticConfig> {
  public:
   using Plants = std::array<AxisPlant, vibe_firmware::kAxisCount>;  ///< by axis of the device
 
   /// @param config  of the firmware. The encoder steps of the plants have to be those of its axes.
-  EmulatedHaptic(const vibe_firmware::HapticConfig& config, const Plants& plants, std::string serial);
+  EmulatedHaptic(const vibe_firmware::HapticConfig& config, const Plants& plants, std::string serial)
+      : FirmwareDevice(config, std::move(serial)), plants_(plants) {}
 
   void tick(const DeviceMotion& motion) override;
-  bool nextReport(std::uint8_t (&bytes)[vibe_firmware::kInputReportSize]) override;
-  vibe_firmware::HidFunction& function() override { return *firmware_; }
   void restart() override;
 
   const AxisPlant& plant(std::size_t axis) const { return plants_[axis]; }  ///< constant mechanics; axis 0 or 1
   /// Its motion after the last tick; axis 0 or 1.
   const AxisPlantState& axis(std::size_t axis) const { return axes_[axis]; }
-  const vibe_firmware::HapticFunction& firmware() const { return *firmware_; }  ///< until restart()
   /// Torques that the firmware asked for in the last tick [N m].
   const std::array<float, vibe_firmware::kAxisCount>& torques() const { return torques_; }
 
  private:
-  vibe_firmware::HapticConfig config_;
   Plants plants_;
-  std::string serial_;
   std::array<AxisPlantState, vibe_firmware::kAxisCount> axes_{};
-  std::vector<EmulatedEncoder> encoders_;
-  std::unique_ptr<vibe_firmware::HapticFunction> firmware_;
   std::array<float, vibe_firmware::kAxisCount> torques_{};
-  std::uint32_t ticks_ = 0;
 };
 
 /// The input device: two wheels and buttons. It has no motors, so the wheels are where the hand wants them to be.
-class EmulatedInput : public EmulatedDevice {
+class EmulatedInput : public FirmwareDevice<vibe_firmware::InputFunction, vibe_firmware::InputConfig> {
  public:
   /// @param config  of the firmware: resolution of the wheels, period of the reports
   /// @param serial  that it states on USB
-  EmulatedInput(const vibe_firmware::InputConfig& config, std::string serial);
+  EmulatedInput(const vibe_firmware::InputConfig& config, std::string serial)
+      : FirmwareDevice(config, std::move(serial)) {}
 
   void tick(const DeviceMotion& motion) override;
-  bool nextReport(std::uint8_t (&bytes)[vibe_firmware::kInputReportSize]) override;
-  vibe_firmware::HidFunction& function() override { return *firmware_; }
-  void restart() override;
-
- private:
-  vibe_firmware::InputConfig config_;
-  std::string serial_;
-  std::vector<EmulatedEncoder> encoders_;
-  std::unique_ptr<vibe_firmware::InputFunction> firmware_;
-  std::uint32_t ticks_ = 0;
 };
 
 }  // namespace vibe::hardware

@@ -1,29 +1,13 @@
 #pragma once
 
-#include <array>
-#include <memory>
-#include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include <vibe_msgs/ProcedureState.h>
-
-#include "vibe_operator/drive/scope_drive.hpp"
+#include "vibe_operator/driving/button_sender.hpp"
+#include "vibe_operator/driving/scope_sender.hpp"
 
 namespace vibe::operating {
-
-/// What to show to a person who drives.
-struct DriveView {
-  bool driving = false;                ///< joints are being published
-  std::string trouble;                 ///< why nothing moves, or no button works, in one sentence; empty if all is well
-  FirstStep step;                      ///< the next thing to do; without a simulator number 0
-  std::set<int> keys_down;             ///< that drive, by their numbers
-  DriveGear gear = DriveGear::Normal;  ///< of the keys
-  Joints joints{};                     ///< NaN: unknown
-  JointLimits limits{};                ///< by DriveJoint; all 0 before they are known
-  std::array<bool, 6> buttons{};       ///< in the order of scope/buttons
-  double force = 0;                    ///< of the tissue on the tool [N]; NaN: unknown
-  vibe_msgs::ProcedureState::ConstPtr state;  ///< null: not come yet
-};
 
 /// Drives the scope and the suturing device with keys: publishes scope/servo_jp and
 /// suturing_device/input/joint_states in a thread of its own, and scope/buttons while nobody else presses them. The
@@ -33,18 +17,16 @@ class ManualDrive {
  public:
   /// @param name  of the part of the program that presses buttons
   explicit ManualDrive(const std::string& name);
-  ~ManualDrive();
-  ManualDrive(const ManualDrive&) = delete;
-  ManualDrive& operator=(const ManualDrive&) = delete;
 
   /// Begins where the joints of the simulator are.
   /// @param name_space  of the simulator; empty: that of the node. An invalid one is told as trouble.
   void start(const std::string& name_space);
   /// Releases everything and gives the buttons back; call tick() until isSilent().
   void stop();
-  bool isSilent() const;  ///< stopped, and the buttons are given back; joints may still brake
+  /// Stopped, and the buttons are given back; joints may still brake.
+  bool isSilent() const { return !active_ && !buttons_.closing(); }
 
-  void setSpeeds(const DriveSpeeds& speeds);  ///< of keys and mouse, from now on
+  void setSpeeds(const DriveSpeeds& speeds) { sender_.setSpeeds(speeds); }  ///< of keys and mouse, from now on
   /// See ScopeDrive::keyDown(). @param key  see drive_keys.hpp
   void keyDown(int key);
   /// See ScopeDrive::keyUp(). @param key  see drive_keys.hpp
@@ -52,7 +34,7 @@ class ManualDrive {
   /// All keys come up, as when the window loses the focus; moving joints brake.
   void releaseAll();
   /// See ScopeDrive::displace() [m] or [rad].
-  void displace(int joint, double by);
+  void displace(int joint, double by) { sender_.displace(joint, by); }
 
   /// Ten times a second.
   void tick();
@@ -60,8 +42,13 @@ class ManualDrive {
   DriveView view() const;  ///< as of now
 
  private:
-  class Parts;
-  std::unique_ptr<Parts> parts_;
+  void passButtons();
+
+  ScopeSender sender_;
+  ButtonSender buttons_;
+  bool active_ = false;
+  std::vector<std::pair<int, bool>> changes_;  // of keys, not passed on yet
+  std::string name_space_trouble_;
 };
 
 }  // namespace vibe::operating

@@ -7,9 +7,11 @@
 #include <sensor_msgs/JointState.h>
 #include <vibe_msgs/ProcedureState.h>
 
-#include <memory>
+#include <array>
+#include <limits>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,20 @@
 #include "vibe_operator/messages/session_watch.hpp"
 
 namespace vibe::operating {
+
+/// What to show to a person who drives.
+struct DriveView {
+  bool driving = false;                ///< joints are being published
+  std::string trouble;                 ///< why nothing moves, or no button works, in one sentence; empty if all is well
+  FirstStep step;                      ///< the next thing to do; without a simulator number 0
+  std::set<int> keys_down;             ///< that drive, by their numbers
+  DriveGear gear = DriveGear::Normal;  ///< of the keys
+  Joints joints{};                     ///< NaN: unknown
+  JointLimits limits{};                ///< by DriveJoint; all 0 before they are known
+  std::array<bool, 6> buttons{};       ///< in the order of scope/buttons
+  double force = std::numeric_limits<double>::quiet_NaN();  ///< of the tissue on the tool [N]; NaN: unknown
+  vibe_msgs::ProcedureState::ConstPtr state;                ///< null: not come yet
+};
 
 /// Publishes the joints of a ScopeDrive on scope/servo_jp and suturing_device/input/joint_states, 60 times a second in
 /// a thread of its own, so that slow drawing does not make the motion rough. It begins where the simulator's joints are
@@ -38,19 +54,9 @@ class ScopeSender {
   void releaseAll();
   void displace(int joint, double by);
 
-  /// What to show.
-  struct View {
-    bool driving = false;  ///< joints are being published
-    std::string trouble;   ///< why they are not, in one sentence
-    std::set<int> keys_down;
-    DriveGear gear = DriveGear::Normal;
-    Joints joints{};
-    JointLimits limits{};
-    vibe_msgs::ProcedureState::ConstPtr state;  ///< null: not come yet
-    double force = 0;                           ///< of the tissue on the tool [N]; NaN: unknown
-  };
   /// Ten times a second: after a second without it the program hangs, and keys of joints count as let go.
-  View view() const;
+  /// @return without `step` and `buttons`, and with what keeps the joints from moving as trouble
+  DriveView view() const;
 
  private:
   mutable std::mutex mutex_;  // of everything below except queue, spinner and timer
