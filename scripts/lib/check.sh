@@ -109,21 +109,6 @@ nobodyLeft() {
   done
 }
 
-# begins MARK FILE PATTERN COMMAND...: with VIBE_TEST_MARK=MARK, in the background, its output in FILE; returns once a line of
-# that matches. Sets session_pid.
-begins() {
-  # bash starts background jobs deaf to SIGINT; the user's terminal does not
-  VIBE_TEST_MARK=$1 /usr/bin/python3 -c 'import os, signal, sys
-signal.signal(signal.SIGINT, signal.SIG_DFL)
-os.execv(sys.argv[1], sys.argv[1:])' "${@:4}" >"$2" 2>&1 &
-  session_pid=$!
-  local deadline=$((SECONDS + 120))
-  until grep -qsE -- "$3" "$2"; do
-    kill -0 "$session_pid" && [ "$SECONDS" -lt "$deadline" ] || { cat "$2"; return 1; }
-    sleep 0.2
-  done
-}
-
 # ends STATUS FILE: what was begun ends so; shows its output
 ends() {
   local status=0
