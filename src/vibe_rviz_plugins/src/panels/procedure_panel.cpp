@@ -219,56 +219,44 @@ void ProcedureWidget::displayStatus(double now) {
   status_->setVisible(!sentence.empty());
 }
 
-/// ProcedureWidget as a panel of rviz, below a button for what the main view shows. Keeps the namespace in rviz's
-/// configuration.
-class ProcedurePanel : public rviz::Panel {
-  Q_OBJECT
- public:
-  explicit ProcedurePanel(QWidget* parent = nullptr)
-      : rviz::Panel(parent), endoscope_(new QPushButton("Endoscope's picture")), widget_(new ProcedureWidget) {
-    endoscope_->setCheckable(true);
-    endoscope_->setToolTip("Looks through the endoscope instead of at the organ from outside.");
-    connect(endoscope_, &QPushButton::clicked, this, &ProcedurePanel::lookThroughEndoscope);
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->addWidget(endoscope_);
-    column->addWidget(widget_);
-    widget_->onNamespaceChanged([this] { Q_EMIT configChanged(); });
-  }
+ProcedurePanel::ProcedurePanel(QWidget* parent)
+    : rviz::Panel(parent), endoscope_(new QPushButton("Endoscope's picture")), widget_(new ProcedureWidget) {
+  endoscope_->setCheckable(true);
+  endoscope_->setToolTip("Looks through the endoscope instead of at the organ from outside.");
+  connect(endoscope_, &QPushButton::clicked, this, &ProcedurePanel::lookThroughEndoscope);
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->addWidget(endoscope_);
+  column->addWidget(widget_);
+  widget_->onNamespaceChanged([this] { Q_EMIT configChanged(); });
+}
 
-  void onInitialize() override {
-    widget_->start();
-    rviz::ViewManager* views = vis_manager_->getViewManager();
-    connect(views, &rviz::ViewManager::currentChanged, this,
-            [this, views] { endoscope_->setChecked(views->getCurrent()->getClassId() == kEndoscopeView); });
-  }
+void ProcedurePanel::onInitialize() {
+  widget_->start();
+  rviz::ViewManager* views = vis_manager_->getViewManager();
+  connect(views, &rviz::ViewManager::currentChanged, this,
+          [this, views] { endoscope_->setChecked(views->getCurrent()->getClassId() == kEndoscopeView); });
+}
 
-  void load(const rviz::Config& config) override {
-    rviz::Panel::load(config);
-    QString name;
-    if (config.mapGetString("Namespace", &name)) widget_->setNamespace(name);
-  }
+/// A saved view, so that it is where the configuration has it, else one of that kind.
+void ProcedurePanel::lookThroughEndoscope(bool on) {
+  rviz::ViewManager& views = *vis_manager_->getViewManager();
+  for (int k = 0; k < views.getNumViews(); ++k)
+    if ((views.getViewAt(k)->getClassId() == kEndoscopeView) == on) return views.setCurrentFrom(views.getViewAt(k));
+  views.setCurrentViewControllerType(on ? kEndoscopeView : "rviz/Orbit");
+}
 
-  void save(rviz::Config config) const override {
-    rviz::Panel::save(config);
-    config.mapSetValue("Namespace", widget_->nameSpace());
-  }
+void ProcedurePanel::load(const rviz::Config& config) {
+  rviz::Panel::load(config);
+  QString name;
+  if (config.mapGetString("Namespace", &name)) widget_->setNamespace(name);
+}
 
- private:
-  /// A saved view, so that it is where the configuration has it, else one of that kind.
-  void lookThroughEndoscope(bool on) {
-    rviz::ViewManager& views = *vis_manager_->getViewManager();
-    for (int k = 0; k < views.getNumViews(); ++k)
-      if ((views.getViewAt(k)->getClassId() == kEndoscopeView) == on) return views.setCurrentFrom(views.getViewAt(k));
-    views.setCurrentViewControllerType(on ? kEndoscopeView : "rviz/Orbit");
-  }
-
-  QPushButton* endoscope_;
-  ProcedureWidget* widget_;
-};
+void ProcedurePanel::save(rviz::Config config) const {
+  rviz::Panel::save(config);
+  config.mapSetValue("Namespace", widget_->nameSpace());
+}
 
 }  // namespace vibe::rviz_plugins
 
 PLUGINLIB_EXPORT_CLASS(vibe::rviz_plugins::ProcedurePanel, rviz::Panel)
-
-#include "procedure_panel.moc"

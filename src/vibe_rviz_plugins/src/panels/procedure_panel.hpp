@@ -79,4 +79,22 @@ class ProcedureWidget : public QWidget {
   void displayStatus(double now);
 };
 
+/// ProcedureWidget as a panel of rviz, below a button for what the main view shows. Keeps the namespace in rviz's
+/// configuration.
+class ProcedurePanel : public rviz::Panel {
+  Q_OBJECT
+ public:
+  explicit ProcedurePanel(QWidget* parent = nullptr);
+
+  void onInitialize() override;
+  void load(const rviz::Config& config) override;
+  void save(rviz::Config config) const override;
+
+ private:
+  void lookThroughEndoscope(bool on);
+
+  QPushButton* endoscope_;
+  ProcedureWidget* widget_;
+};
+
 }  // namespace vibe::rviz_plugins
