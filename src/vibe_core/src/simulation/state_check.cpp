@@ -144,7 +144,7 @@ std::string solverDamage(const State& s, std::size_t particle_count) {
   return damage.empty() ? basisDamage(s.impedance.next, particle_count) : damage;
 }
 
-bool isFinite(const KeptContact& contact) {
+bool hasNumbers(const KeptContact& contact) {
   return std::isfinite(contact.clearance) && contact.force.allFinite() && contact.place.allFinite() &&
          contact.normal.allFinite() && contact.tool_point.allFinite();
 }
@@ -152,7 +152,7 @@ bool isFinite(const KeptContact& contact) {
 std::string holdDamage(const State& state, const Model& model) {
   const int shapes = model.tool ? static_cast<int>(model.tool->shapes().size()) : 0;
   for (const KeptContact& contact : state.hold.contacts) {
-    if (contact.shape < 0 || contact.shape >= shapes || contact.node[0] < 0 || !isFinite(contact))
+    if (contact.shape < 0 || contact.shape >= shapes || contact.node[0] < 0 || !hasNumbers(contact))
       return "it keeps a contact that cannot be";
     for (const int node : contact.node)
       if (node >= model.particle_count) return "it keeps a contact of a particle that does not exist";

@@ -138,7 +138,7 @@ Catenary hang(const Eigen::Vector3d& first, const Eigen::Vector3d& last, double 
               const Eigen::Vector3d& gravity_direction) {
   const Eigen::Vector3d between = last - first;
   checkCatenary(first.allFinite() && last.allFinite() && between.allFinite(), "an end that is not a finite position",
-                "checkCatenary what holds the thread");
+                "check what holds the thread");
   checkCatenary(std::isfinite(length) && length >= 0, "a length that is not a number from 0 on", "give metres");
   checkCatenary(std::isfinite(weight_per_length) && weight_per_length >= 0, "a weight that is not a number from 0 on",
                 "give newtons per metre");

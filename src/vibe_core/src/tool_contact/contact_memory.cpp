@@ -13,7 +13,7 @@ SurfacePoint pointOf(const KeptContact& contact) {
 }
 
 // Nearest points of one triangle are one point that moves.
-auto keyOf(const KeptContact& contact) {
+auto identityOf(const KeptContact& contact) {
   return std::make_tuple(contact.node, contact.nearest ? std::array<double, 3>{} : contact.weight, contact.shape,
                          contact.nearest);
 }
@@ -59,7 +59,7 @@ void ContactMemory::findNear(const std::vector<KeptContact>& kept, const ToolPos
     const Eigen::Isometry3d& link = poses.start[linkOf(kept[k].shape)];
     near_[k] = (link.inverse() * positionOf(pointOf(kept[k]), state) - kept[k].place).norm() < radius ? 1 : 0;
   }
-  std::sort(order_.begin(), order_.end(), [&](int a, int b) { return keyOf(kept[a]) < keyOf(kept[b]); });
+  std::sort(order_.begin(), order_.end(), [&](int a, int b) { return identityOf(kept[a]) < identityOf(kept[b]); });
 }
 
 // @returns which of those that were kept is the same contact, -1: none
@@ -67,10 +67,10 @@ int ContactMemory::match(const std::vector<KeptContact>& kept, const SurfaceCont
   KeptContact same;
   same.node = contact.point.node, same.weight = contact.point.weight;
   same.shape = contact.shape, same.nearest = contact.nearest;
-  const auto key = keyOf(same);
-  const auto at =
-      std::lower_bound(order_.begin(), order_.end(), key, [&](int k, const auto& to) { return keyOf(kept[k]) < to; });
-  return at != order_.end() && keyOf(kept[*at]) == key ? *at : -1;
+  const auto identity = identityOf(same);
+  const auto at = std::lower_bound(order_.begin(), order_.end(), identity,
+                                   [&](int k, const auto& to) { return identityOf(kept[k]) < to; });
+  return at != order_.end() && identityOf(kept[*at]) == identity ? *at : -1;
 }
 
 void ContactMemory::keep(const KeptContact& contact, const ToolPoses& poses) {

@@ -150,8 +150,8 @@ TEST(Fields, TheListNamesFieldsAndTheirTypes) {
 /// version in state_fields.hpp, so that older files are refused by name, then put the new
 /// values here.
 TEST(Fields, AnotherListOfFieldsHasAnotherVersion) {
-  EXPECT_EQ(kStateVersion, 9U);
-  EXPECT_EQ(fieldFingerprint<State>(), 5519211231017454545U) << fieldList<State>();
+  EXPECT_EQ(kStateVersion, 10U);
+  EXPECT_EQ(fieldFingerprint<State>(), 12059549483445847767U) << fieldList<State>();
   EXPECT_EQ(kStepInputVersion, 3U);
   EXPECT_EQ(fieldFingerprint<StepInput>(), 3494105037122736828U) << fieldList<StepInput>();
 }

@@ -188,7 +188,7 @@ TEST_F(SnapshotFile, OfAnotherVersionIsRejectedByName) {
     return "";
   };
   const std::string present(1, bytes[7]);
-  EXPECT_EQ(present, std::to_string(kStateVersion));
+  EXPECT_EQ(present, std::string(1, static_cast<char>('A' + kStateVersion - 10)));
   EXPECT_EQ(errorOf(7, bytes[7]), "") << "what is not changed is read";
   const std::string older = errorOf(7, '4');
   EXPECT_NE(older.find("is of version 4"), std::string::npos) << older;

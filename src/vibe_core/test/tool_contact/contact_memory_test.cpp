@@ -107,8 +107,8 @@ TEST(ContactMemory, ANearestPointIsOnePointThatMoves) {
 /// A scope that is held against the wall of a coarse stomach.
 struct Press {
   Press() : model(makeModel()), state(initialState(*model, 1)), workspace(std::make_unique<Workspace>(*model)) {
-    for (int k = 1; k <= 60; ++k) {
-      input.joints = {k / 60.0 * 0.068, k / 60.0 * -0.23, k / 60.0 * 1.55, k / 60.0 * 1.34};
+    for (int k = 1; k <= 90; ++k) {
+      input.joints = {k / 90.0 * 0.29, k / 90.0 * 2.75, k / 90.0 * -0.69, k / 90.0 * -0.89};
       advance();
     }
   }
@@ -130,8 +130,8 @@ struct Press {
 TEST(ContactMemory, BeginsWithAHandThatHoldsAndEndsWithItsMotion) {
   Press press;
   EXPECT_EQ(press.state.hold.steps, 0);
-  for (int k = 0; k < 40; ++k) press.advance();
-  EXPECT_GT(press.state.hold.contacts.size(), 0U);
+  for (int k = 0; k < 200 && press.state.hold.contacts.empty(); ++k) press.advance();
+  ASSERT_FALSE(press.state.hold.contacts.empty());
   const State kept = press.state;
   press.advance();
   const std::uint64_t after = hash(press.state);

@@ -46,9 +46,11 @@ constexpr std::uint8_t kGamepad[] = {
     0x09, 0x01,           0x95, kInputReportSize - 1 - kGamepadBytes,
     0x81, 0x02,  //   rest of the input report
 };
+/// The feature report with which the host sets a device.
 constexpr std::uint8_t kParameters[] = {
     0x85, kParameterReportId, 0x09, 0x02, 0x95, kParameterReportSize - 1, 0xB1, 0x02,  //   feature: parameters
 };
+/// The feature reports that the host only reads, and the end.
 constexpr std::uint8_t kOtherFeatures[] = {
     0x85, kStatusReportId,   0x09, 0x03, 0x95, kStatusReportSize - 1, 0xB1, 0x02,  //   feature: status
     0x85, kAxisReportId,     0x09, 0x04, 0x95, kAxisReportSize - 1,   0xB1, 0x02,  //   feature: axis 0
@@ -56,6 +58,7 @@ constexpr std::uint8_t kOtherFeatures[] = {
     0xC0,                                                                          // end of the collection
 };
 
+/// Parts of a descriptor in a row.
 template <std::size_t... kSizes>
 constexpr std::array<std::uint8_t, (kSizes + ...)> joined(const std::uint8_t (&... parts)[kSizes]) {
   std::array<std::uint8_t, (kSizes + ...)> all{};

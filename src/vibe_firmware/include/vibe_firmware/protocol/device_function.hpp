@@ -76,9 +76,10 @@ class DeviceFunction : public HidFunction {
   bool setReport(ReportType, std::uint8_t, const std::uint8_t*, std::size_t) override { return false; }
 
  protected:
+  /// What the host asks for.
   struct Descriptors {
-    Bytes device, configuration, report;
-    const char* product;
+    Bytes device, configuration, report;  ///< of USB and HID
+    const char* product;                  ///< name of the device
   };
   DeviceFunction(const Config& config, const Descriptors& descriptors, const char* serial)
       : config_(config), descriptors_(descriptors), serial_(serial) {

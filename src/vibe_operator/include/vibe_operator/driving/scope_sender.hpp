@@ -40,6 +40,7 @@ struct DriveView {
 /// Functions may be called from any thread; changes of buttons are reported in the thread of the call.
 class ScopeSender {
  public:
+  /// @param button_changed  called where a key presses or releases a button
   explicit ScopeSender(ScopeDrive::ButtonChange button_changed);
   ~ScopeSender();
 
@@ -48,11 +49,11 @@ class ScopeSender {
   /// Releases all keys; falls silent when the joints have come to rest.
   void stop();
 
-  void setSpeeds(const DriveSpeeds& speeds);
-  void keyDown(int key);
-  void keyUp(int key);
-  void releaseAll();
-  void displace(int joint, double by);
+  void setSpeeds(const DriveSpeeds& speeds);  ///< see ScopeDrive, as for what follows
+  void keyDown(int key);                      ///< its motion begins
+  void keyUp(int key);                        ///< its motion ends
+  void releaseAll();                          ///< as if no key were down
+  void displace(int joint, double by);        ///< at once [m], [rad]
 
   /// Ten times a second: after a second without it the program hangs, and keys of joints count as let go.
   /// @return without `step` and `buttons`, and with what keeps the joints from moving as trouble
