@@ -131,7 +131,7 @@ VIBE_REAL(stopped_part, 0.1, "", "share of its way below which a joint counts as
           "a joint that makes a tenth of its way pushes on")
 
 VIBE_POLICY_SECTION("Rest, loss and recovery")
-VIBE_REAL(hold_time, 0.5, "s", "time for which the hand holds all joints still until it counts as holding",
+VIBE_REAL(hold_time, 0.75, "s", "time for which the hand holds all joints still until it counts as holding",
           "design choice: longer than a pause within a motion, shorter than a look at the wall")
 VIBE_REAL(hold_tolerance, 5e-8, "m", "move below which a step ends while the hand holds, instead of StepSettings::tolerance",
           "3 um/s at 60 Hz, below what counts as rest, and above rounding in single precision")
