@@ -23,6 +23,7 @@ async function tryRecording() {
     await page.click('#control');
     await until(() => page.evaluate(() => window.vibe.drive.driving), 'control');
     if ((await shown('play')) === 'Pause') await page.click('#play');
+    await until(async () => (await shown('play')) === 'Play', 'a pause'); // one that plays on would leave where it was sent
     const duration = await page.$eval('#seek', (element) => Number(element.max));
     expect((await shown('trouble')) === '', await shown('trouble')); // control was asked for
     for (const share of [0.8, 0.2]) {
