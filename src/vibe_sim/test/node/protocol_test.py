@@ -143,14 +143,18 @@ class ProtocolTest(unittest.TestCase):
         simulator = self.start_simulator(fast="false")
         self.start_trainee()
         rospy.wait_for_service("reset", 20)
-        self.assertIsNotNone(self.results.waits_for(lambda m: m.step == 60, 20))
-        first = [m.joints for m in self.applied.messages][:60]
+        first = self.inputs_of_a_second(simulator)
         self.applied.clear()
         self.assertTrue(rospy.ServiceProxy("reset", Reset)(0, True).success)
-        self.assertIsNotNone(self.applied.waits_for(lambda m: m.step == 59, 20), simulator.output())
-        again = {m.step: m.joints for m in self.applied.messages if m.step < 60}
-        # the first step after a reset may have had its input before
-        self.assertEqual([again[k] for k in range(1, 60)], first[1:])
+        again = self.inputs_of_a_second(simulator)
+        # the first step after a reset may have had its input before, and a recorder may have missed those before it joined
+        common = sorted(set(first) & set(again) - {0})
+        self.assertGreater(len(common), 30)
+        self.assertEqual([again[k] for k in common], [first[k] for k in common])
+
+    def inputs_of_a_second(self, simulator):
+        self.assertIsNotNone(self.applied.waits_for(lambda m: m.step == 59, 60), simulator.output())
+        return {m.step: m.joints for m in self.applied.messages if m.step < 60}
 
     def test_it_can_end_the_node_when_its_goals_have_ended(self):
         self.start_simulator()
