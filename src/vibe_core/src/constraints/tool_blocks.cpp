@@ -86,8 +86,8 @@ class ToolContactBlock : public ConstraintBlock {
 
   static double keptWay(const StepContext& context) {
     const StepPolicy& policy = stepPolicy();
-    const double grown = 1 + policy.touch_kept_growth * context.state.hold.steps * context.step;
-    return std::min(grown * policy.touch_kept, policy.touch_kept_most);
+    const double held = context.state.hold.steps * context.step - policy.hold_time;
+    return std::min((1 + policy.touch_kept_growth * held) * policy.touch_kept, policy.touch_kept_most);
   }
 
   void keepContacts(const StepContext& context, const BodyLoads& loads) const {

@@ -197,6 +197,7 @@ void ImplicitStep::recover() {
   fresh.elastic_energy = -1;
   fresh.recovery_steps = state_.solver.recovery_steps - 1;
   state_.solver = fresh;
+  state_.hold = {};
   watch_.leadToRest();
   if (tool_) tool_->recoverAround();
   for (const auto& block : scratch_.blocks) block->recover(context_);

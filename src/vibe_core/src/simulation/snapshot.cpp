@@ -20,6 +20,9 @@ constexpr std::uint64_t kMaxGrowth = 1 << 16;  // items; memory grows only with 
 constexpr char kMagic[7] = {'v', 'i', 'b', 'e', 's', 'n', 'p'};
 // In one character: 1 to 9, then from A on.
 constexpr char kVersion = static_cast<char>(kStateVersion < 10 ? '0' + kStateVersion : 'A' + kStateVersion - 10);
+int numberOf(char version) {
+  return version <= '9' ? version - '0' : version - 'A' + 10;
+}
 static_assert(kVersion <= 'Z', "the version is one character in the first eight bytes");
 
 class Writer {
@@ -108,19 +111,20 @@ void writeHeader(const Model& model, Writer& writer) {
   writer.block(&scene, 1);
 }
 
-void readHeader(const Model& model, const std::string& file, OtherScene other, Reader& reader) {
+// @returns whether the snapshot is of this very scene
+bool readHeader(const Model& model, const std::string& file, OtherScene other, Reader& reader) {
   char magic[sizeof kMagic] = {}, version = 0;
   reader.block(magic, sizeof magic);
   reader.block(&version, 1);
   if (std::memcmp(magic, kMagic, sizeof kMagic) != 0 || version < '1' || version > 'Z')
     throw Error("'" + file + "' is not a snapshot; check the path.");
   if (version != kVersion)
-    throw Error("Snapshot '" + file + "' is of version " + version + ", but this build reads version " + kVersion +
-                "; save it again with this build.");
+    throw Error("Snapshot '" + file + "' is of version " + std::to_string(numberOf(version)) +
+                ", but this build reads version " + std::to_string(kStateVersion) + "; save it again with this build.");
   std::uint64_t fields = 0, shape = 0, scene = 0;
   reader.block(&fields, 1);
   if (fields != fieldFingerprint<State>())
-    throw Error("Snapshot '" + file + "' is of version " + version +
+    throw Error("Snapshot '" + file + "' is of version " + std::to_string(numberOf(version)) +
                 " but has other fields than this build; save it again with this build.");
   reader.block(&shape, 1);
   reader.block(&scene, 1);
@@ -129,13 +133,13 @@ void readHeader(const Model& model, const std::string& file, OtherScene other, R
   if (other == OtherScene::Refused && scene != sceneFingerprint(model))
     throw Error("Snapshot '" + file +
                 "' is of the same organ but of a scene with other values; load the scene it was saved with first, or "
-                "take it as "
-                "one of another scene.");
+                "take it as one of another scene.");
+  return scene == sceneFingerprint(model);
 }
 
 State readSnapshot(const Model& model, std::istream& in, const std::string& file, OtherScene other) {
   Reader reader(in, file);
-  readHeader(model, file, other, reader);
+  const bool same_scene = readHeader(model, file, other, reader);
   State state;
   transfer(reader, state);
   const std::string damage = findDamage(state, model);
@@ -143,6 +147,7 @@ State readSnapshot(const Model& model, std::istream& in, const std::string& file
   reader.checksum();
   if (in.peek() != std::istream::traits_type::eof())
     throw Error("Snapshot '" + file + "' is longer than a state; save it again.");
+  if (!same_scene) state.hold = {};  // tool or wall may have another thickness
   return state;
 }
 

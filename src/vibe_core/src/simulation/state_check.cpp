@@ -145,17 +145,20 @@ std::string solverDamage(const State& s, std::size_t particle_count) {
 }
 
 bool hasNumbers(const KeptContact& contact) {
-  return std::isfinite(contact.clearance) && contact.force.allFinite() && contact.place.allFinite() &&
-         contact.normal.allFinite() && contact.tool_point.allFinite();
+  const auto isNumber = [](double weight) { return std::isfinite(weight); };
+  return std::all_of(contact.weight.begin(), contact.weight.end(), isNumber) && std::isfinite(contact.clearance) &&
+         contact.force.allFinite() && contact.place.allFinite() && contact.normal.allFinite() &&
+         contact.tool_point.allFinite();
 }
 
 std::string holdDamage(const State& state, const Model& model) {
   const int shapes = model.tool ? static_cast<int>(model.tool->shapes().size()) : 0;
+  if (state.hold.steps < 0 || state.hold.steps > state.step) return "its tool is held for longer than it is there";
   for (const KeptContact& contact : state.hold.contacts) {
     if (contact.shape < 0 || contact.shape >= shapes || contact.node[0] < 0 || !hasNumbers(contact))
       return "it keeps a contact that cannot be";
     for (const int node : contact.node)
-      if (node >= model.particle_count) return "it keeps a contact of a particle that does not exist";
+      if (node < -1 || node >= model.particle_count) return "it keeps a contact of a particle that does not exist";
   }
   return "";
 }

@@ -109,21 +109,22 @@ StepOutcome StepSolve::finish() {
   return outcome;
 }
 
-// Iterations go on until they contract: otherwise stiff motions would grow from step to step.
+// Iterations go on until they contract: otherwise stiff motions would grow from step to step. Those of a tool that is
+// held go on until they arrive, and each but the last one is evaluated.
 void StepSolve::iterate(StepOutcome& outcome) {
   const StepPolicy& policy = stepPolicy();
   const double longest = fallback_ ? policy.fallback_max_move * plan_.size : std::numeric_limits<double>::max();
   const int usual = plan_.settings.iterations;
   const double tolerance = loads_.held_still ? policy.hold_tolerance : plan_.settings.tolerance;
   bool done = false;
-  while (!done && !outcome.converged && !newton_.exhausted() && std::isfinite(outcome.last_move) &&
-         (!newton_.failed() || newton_.startAgain())) {
+  while (!(done && !loads_.held_still) && !outcome.converged && !newton_.exhausted() &&
+         std::isfinite(outcome.last_move) && (!newton_.failed() || newton_.startAgain())) {
     newton_.aim();
     const bool tiny = newton_.directionLength() < std::max(tolerance, newton_.resolution());
-    outcome.last_move = newton_.iterate(longest, !tiny && outcome.iterations + 1 < usual);
+    outcome.last_move = newton_.iterate(longest, !tiny && (loads_.held_still || outcome.iterations + 1 < usual));
     // what a tool holds goes where the tool goes, and the iterations that remain find the energy again
     if (++outcome.iterations == policy.satisfy_after && !newton_.exhausted() && newton_.satisfyConstraints()) continue;
-    done = outcome.iterations >= usual && newton_.contracts() && !loads_.held_still;
+    done = outcome.iterations >= usual && newton_.contracts();
     outcome.converged = tiny;
   }
   judgeEnd(done, outcome);
@@ -138,7 +139,8 @@ void StepSolve::judgeEnd(bool done, StepOutcome& outcome) {
   const double enough = newton_.failed() ? std::max(policy.nearly_arrived * first_length,
                                                     policy.position_roundings * newton_.resolution())
                                          : policy.arrived * first_length;
-  outcome.arrived = outcome.converged || done || newton_.directionLength() < enough;
+  const double usually_enough = loads_.held_still ? plan_.settings.tolerance : 0;
+  outcome.arrived = outcome.converged || done || newton_.directionLength() < std::max(enough, usually_enough);
   outcome.residual = std::max({newton_.residual(), system_.schur.violation(), depthLeftOut(at_.z, system_)});
   outcome.evaluations = newton_.evaluations();
   continuation_.evaluations += outcome.evaluations;

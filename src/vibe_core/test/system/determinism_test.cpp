@@ -187,12 +187,11 @@ TEST_F(SnapshotFile, OfAnotherVersionIsRejectedByName) {
     }
     return "";
   };
-  const std::string present(1, bytes[7]);
-  EXPECT_EQ(present, std::string(1, static_cast<char>('A' + kStateVersion - 10)));
+  EXPECT_EQ(bytes[7], static_cast<char>('A' + kStateVersion - 10));
   EXPECT_EQ(errorOf(7, bytes[7]), "") << "what is not changed is read";
   const std::string older = errorOf(7, '4');
   EXPECT_NE(older.find("is of version 4"), std::string::npos) << older;
-  EXPECT_NE(older.find("reads version " + present), std::string::npos) << older;
+  EXPECT_NE(older.find("reads version " + std::to_string(kStateVersion)), std::string::npos) << older;
   EXPECT_NE(errorOf(8, static_cast<char>(~bytes[8])).find("other fields"), std::string::npos);
   EXPECT_NE(errorOf(0, 'V').find("is not a snapshot"), std::string::npos);
 }

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+
+#include "simulation/state_check.hpp"
 #include "tool_contact/sheet_scene.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_testing/scope_fixture.hpp"
@@ -139,6 +143,16 @@ TEST(ContactMemory, BeginsWithAHandThatHoldsAndEndsWithItsMotion) {
   press.workspace = std::make_unique<Workspace>(*press.model);
   press.advance();
   EXPECT_EQ(hash(press.state), after) << "it is all in the state";
+  const auto damaged = [&](const std::function<void(HoldMemory&)>& damage) {
+    State state = kept;
+    damage(state.hold);
+    return !findDamage(state, *press.model).empty();
+  };
+  EXPECT_FALSE(damaged([](HoldMemory&) {}));
+  EXPECT_TRUE(damaged([](HoldMemory& hold) { hold.contacts[0].node[1] = -7; }));
+  EXPECT_TRUE(damaged([](HoldMemory& hold) { hold.contacts[0].weight[2] = NAN; }));
+  EXPECT_TRUE(damaged([](HoldMemory& hold) { hold.contacts[0].shape = 99; }));
+  EXPECT_TRUE(damaged([](HoldMemory& hold) { hold.steps = -1; }));
   press.state = kept;
   press.state.hold = {};
   press.advance();
