@@ -48,9 +48,6 @@ isOrdinary() {
 # isSlowRun [PACKAGE/PROGRAM...]: the same, and tests that take minutes are wanted
 isSlowRun() { [ -n "${VIBE_SLOW_TESTS:-}" ] && isOrdinary "$@"; }
 
-# fails COMMAND...
-fails() { ! "$@"; }
-
 # hashOf FILE: that of the state with which a session has ended
 hashOf() { sed -n 's/^state hash: //p' "$1"; }
 

@@ -70,7 +70,7 @@ def motion(store):
         errors = percents(row, ("motion_error", "static_error", "force_error"))
         lines.append((method + row["setting"], digits(row["ms_p50"]), *errors))
     return table(("setting", "ms per step", "motion", "static, 0.5 s after the stop", "force"), lines), [
-        ("", row) for row in rows
+        (row["setting"], row) for row in rows
     ]
 
 
@@ -198,7 +198,9 @@ def rest(store):
         counts = (sum(row["wall"] == word for row in rows) for word in ("rests", "creeps", "trembles"))
         lines.append((whole(particles), str(len(rows)), *map(str, counts), "; ".join(worst)))
     header = ("particles", "poses", "rest", "creep", "tremble", "those that tremble most")
-    return table(header, lines), [("", rows[0]) for rows in meshes.values()]
+    return table(header, lines), [
+        (whole(particles) + " particles", rows[0]) for particles, rows in meshes.items()
+    ]
 
 
 @made_from("threads")

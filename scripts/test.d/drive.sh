@@ -167,10 +167,10 @@ staysWithTheResult() {
 check 'rviz shows how a session ended until it is closed' staysWithTheResult
 
 saysThatRvizDied() {
-  local status=0 rviz
+  local status=0 rviz deadline=$((SECONDS + 180))
   startDisplay && QT_QPA_PLATFORM=wayland start died --drive emulator --hand "$hand" && rviz=$(windowOf died) || return 1
   grep -qz '^QT_QPA_PLATFORM=xcb$' "/proc/$rviz/environ" && kill -KILL "$rviz" || return 1
-  until grep -q '^rviz died; the session goes on without it.' "$scratch/died.txt"; do kill -0 "$session_pid" || break; sleep 0.2; done
+  until grep -q '^rviz died; the session goes on without it.' "$scratch/died.txt" || [ "$SECONDS" -gt "$deadline" ]; do kill -0 "$session_pid" || break; sleep 0.2; done
   kill -INT "$session_pid"
   wait "$session_pid" || status=$?
   cat "$scratch/died.txt"

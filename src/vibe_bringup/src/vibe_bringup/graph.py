@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+import xml.parsers.expat
 import xmlrpc.client
 
 from vibe_sessions.headless import find_in_package
@@ -44,7 +45,7 @@ def answers(uri):
     """Whether there is a ROS master."""
     try:
         return xmlrpc.client.ServerProxy(uri).getPid("/vibe_scripts")[0] == 1
-    except (OSError, http.client.HTTPException, xmlrpc.client.Error):
+    except (OSError, http.client.HTTPException, xmlrpc.client.Error, xml.parsers.expat.ExpatError, TypeError, LookupError):
         return False
 
 
@@ -197,7 +198,7 @@ class Graph:
 
     def start_rviz(self, config):
         """As an X client on a Wayland desktop, too: into the window of a Wayland client OGRE cannot draw, and rviz aborts."""
-        command = [places.program("rviz", "rviz"), "-d", config]
+        command = ["rosrun", "rviz", "rviz", "-d", config]  # a session goes on without it, even where it is not installed
         if self.env.get("QT_QPA_PLATFORM", "wayland" if self.env.get("WAYLAND_DISPLAY") else "").startswith("wayland"):
             print("On this Wayland desktop rviz runs through Xwayland (QT_QPA_PLATFORM=xcb).", flush=True)
             command = ["env", "QT_QPA_PLATFORM=xcb", *command]
@@ -214,7 +215,7 @@ class Graph:
             self.set_parameter("/robot_description", urdf.read())
         # else every second step of the simulator has no tf
         self.set_parameter("/robot_state_publisher/publish_frequency", 200.0)
-        self.start_node("robot_state_publisher", "robot_state_publisher", patience=2.0)  # it has nothing to save
+        self.start_node("robot_state_publisher", "robot_state_publisher")
 
     def check_alive(self):
         dead = self.dead()

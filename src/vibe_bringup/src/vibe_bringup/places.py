@@ -40,7 +40,7 @@ def program(package, name):
 
     path = find_in_package(package, name)
     if path is None:
-        raise FileNotFoundError(errno.ENOENT, "no such program; build its package and source its workspace", package + "/" + name)
+        raise FileNotFoundError(errno.ENOENT, "no such program; install or build its package and source its workspace", package + "/" + name)
     return path
 
 
