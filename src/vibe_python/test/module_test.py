@@ -171,7 +171,8 @@ class SnapshotTest(Worlds):
                 with self.assertRaisesRegex(vibe.Error, "same organ but of a scene with other values"):
                     other.restore(wrong)
                 other.restore(wrong, other_model=True)
-                self.assertEqual(other.hash(), simulation.hash())
+                for view in ("x", "vy", "tip_pose"):
+                    np.testing.assert_array_equal(getattr(other, view), getattr(simulation, view))
             other.step()
         same = vibe.Simulation(vibe.load(geometry={"particles": 300}, seed=7, name="renamed", render_surface=True))
         same.restore(snapshot)  # control

@@ -82,8 +82,11 @@ const std::vector<EventRow>& eventRows() {
        "The arm closed over the anchor exchange, which holds the needle and can hand it back."},
       {Kind::Blocked, Detail::None, "blocked", "N",
        "The wall ({region}, {wall}) lets the tool move no further, at {value:N}; go back the way it came, or release "
-       "the "
-       "helix."}};
+       "the helix."},
+      {Kind::LeftLumen, Detail::None, "left lumen", "m",
+       "The tip of the scope is outside of the organ, with {value:mm} of the scope in, beyond or beside an open end; "
+       "draw "
+       "it back."}};
   return rows;
 }
 

@@ -20,6 +20,20 @@ Eigen::Vector3d doubledAreaVector(const SurfaceMesh& mesh, const std::array<int,
   return (mesh.vertices[triangle[1]] - a).cross(mesh.vertices[triangle[2]] - a);
 }
 
+/// Twice the area that a triangle has with the origin, seen from above; positive: p, q turn to the left.
+double doubledAreaFromAbove(const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
+  return p.x() * q.y() - p.y() * q.x();
+}
+
+/// Whether an edge passes the ray from the origin along x, seen from above: 1 to the left, -1 to the right, 0: not. An
+/// end counts as to the right, and an edge through the origin does not pass, so that triangles with common edges and
+/// vertices share the plane without gaps.
+int crossing(const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
+  if ((p.y() > 0) == (q.y() > 0)) return 0;
+  const double side = doubledAreaFromAbove(p, q);
+  return q.y() > 0 ? (side > 0 ? 1 : 0) : (side < 0 ? -1 : 0);
+}
+
 }  // namespace
 
 double enclosedVolume(const SurfaceMesh& mesh) {
@@ -34,6 +48,20 @@ double enclosedVolume(const SurfaceMesh& mesh) {
     sum += a.dot(b.cross(c));
   }
   return sum / 6.0;
+}
+
+bool isWithin(const SurfaceView& surface, const Eigen::Vector3d& point) {
+  int winding = 0;  // triangles above the point that face upwards, less those that face downwards
+  for (const auto& t : surface.triangles) {
+    const Eigen::Vector3d a = surface.position(t[0]) - point, b = surface.position(t[1]) - point,
+                          c = surface.position(t[2]) - point;
+    const int turns = crossing(a, b) + crossing(b, c) + crossing(c, a);  // 1 or -1: the point is above or below it
+    if (turns == 0) continue;
+    const double height = a.z() * doubledAreaFromAbove(b, c) + b.z() * doubledAreaFromAbove(c, a) +
+                          c.z() * doubledAreaFromAbove(a, b);  // times its area from above
+    if (turns * height > 0) winding += turns;
+  }
+  return winding > 0;
 }
 
 double surfaceArea(const SurfaceMesh& mesh) {

@@ -13,6 +13,7 @@
 #include "vibe_core/constraints/gas.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
 #include "vibe_core/events/event.hpp"
+#include "vibe_core/geometry/surface_mesh.hpp"
 #include "vibe_core/procedure/helix_grip.hpp"
 
 namespace vibe {
@@ -34,6 +35,13 @@ namespace {
 // Steps in which nothing of the tool moves on before that is an event. Design choice: shorter stops are the rule where
 // a wall has to give way first.
 constexpr int kBlockedSteps = 6;
+
+// The tip is looked for this often [s], from this insertion on [m]. Design choice: a loop over all triangles must not
+// be felt; and the end of the oesophagus follows the breath by less.
+constexpr double kLumenPeriod = 0.25, kEntered = 0.04;
+
+// A wall that is drawn over the face does not reach so far behind it [m].
+constexpr double kTipLength = 0.015;
 
 // Forces are reported in the tip's frame at the end of the step.
 void storeForces(const Model& model, const StepReport& report, const std::vector<Eigen::Isometry3d>& poses,
@@ -69,6 +77,17 @@ void reportPressure(const GasScene& gas, bool insufflator_on, State& state, Even
   const bool reached = insufflator_on && isAtSetPoint(state.pressure, gas.regulated_pressure, state.pressure_reached);
   if (reached && !state.pressure_reached) log.emit(Event::Kind::PressureReached, -1, state.pressure);
   state.pressure_reached = reached;
+}
+
+// The ends of the organ are open, so that a tip may go on outside of it, where no wall meets it.
+// @param tip  pose in world
+void reportLumen(const Model& model, const Eigen::Isometry3d& tip, State& state, EventLog log) {
+  const double insertion = state.joints[Insertion] + state.tool_displacement[Insertion];
+  const SurfaceView wall{model.organ.surface.triangles, state.x, state.y, state.z};
+  const bool left = insertion >= kEntered && !isWithin(wall, tip.translation()) &&
+                    !isWithin(wall, tip * Eigen::Vector3d(-kTipLength, 0, 0));
+  if (left && !state.lumen.left) log.emit(Event::Kind::LeftLumen, -1, insertion);
+  state.lumen.left = left;
 }
 
 // NaN or infinity anywhere makes the sum NaN. Four sums, since one would wait for every addition.
@@ -182,6 +201,9 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
     storeForces(model, report, poses.end, state);
     reportContact(report.contact_count, dt, state, log);
     reportBlocked(model, report.blocking_particle, state, log);
+    const int lumen_steps = std::max(1, static_cast<int>(std::lround(kLumenPeriod / dt)));
+    if (model.scene.scope->base_from_anatomy && state.step % lumen_steps == 0)
+      reportLumen(model, poses.end[model.tip_link], state, log);
     releaseOverloadedGrip(model, state, log);
     if (workspace.marking()) updateMarking(model, poses.end, beam, state, *workspace.marking(), log);
     updateProcedure(model, state, log);

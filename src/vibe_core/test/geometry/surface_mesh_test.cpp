@@ -37,6 +37,46 @@ TEST(SurfaceMesh, volumeIsNegativeInsideOut) {
   EXPECT_NEAR(enclosedVolume(box), -1e-3, 1e-15);
 }
 
+/// A mesh as a deformed surface.
+struct Deformed {
+  explicit Deformed(const SurfaceMesh& mesh) : triangles(mesh.triangles) {
+    for (const auto& v : mesh.vertices) x.push_back(v.x()), y.push_back(v.y()), z.push_back(v.z());
+  }
+  SurfaceView view() const { return {triangles, x, y, z}; }
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<double> x, y, z;
+};
+
+TEST(SurfaceMesh, pointsWithinASphereAreFoundAlsoStraightBelowVerticesAndEdges) {
+  const SurfaceMesh sphere = makeUvSphere(0.05, 20, 40);
+  const Deformed deformed(sphere);
+  for (const auto& v : sphere.vertices) {
+    for (const double share : {-0.9, 0.0, 0.5, 0.98})
+      EXPECT_TRUE(isWithin(deformed.view(), share * v)) << v.transpose();
+    if (v.head<2>().norm() < 0.049) {
+      EXPECT_TRUE(isWithin(deformed.view(), {v.x(), v.y(), 0.9 * v.z()})) << v.transpose();
+    }
+    EXPECT_FALSE(isWithin(deformed.view(), 1.02 * v)) << v.transpose();
+    EXPECT_FALSE(isWithin(deformed.view(), {v.x(), v.y(), -0.06})) << v.transpose();
+  }
+}
+
+TEST(SurfaceMesh, nothingIsWithinASphereThatIsInsideOut) {
+  SurfaceMesh sphere = makeUvSphere(0.05, 20, 40);
+  for (auto& t : sphere.triangles) std::swap(t[0], t[1]);
+  EXPECT_FALSE(isWithin(Deformed(sphere).view(), Eigen::Vector3d::Zero()));
+}
+
+TEST(SurfaceMesh, whereASurfaceOverlapsItselfIsWithin) {
+  SurfaceMesh two = makeBox(0.1, 0.1, 0.1);
+  const SurfaceMesh other = makeBox(0.1, 0.1, 0.1);
+  for (const auto& v : other.vertices) two.vertices.emplace_back(v + Eigen::Vector3d(0.05, 0.02, 0.03));
+  for (const auto& t : other.triangles) two.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  EXPECT_TRUE(isWithin(Deformed(two).view(), {0.02, 0.01, 0.01}));  // in both
+  EXPECT_TRUE(isWithin(Deformed(two).view(), {0.08, 0.05, 0.06}));  // in one
+  EXPECT_FALSE(isWithin(Deformed(two).view(), {-0.02, 0.06, 0.01}));
+}
+
 TEST(SurfaceMesh, vertexAreasSumToTheArea) {
   const SurfaceMesh sphere = makeUvSphere(0.05, 11, 17);
   const auto areas = vertexAreas(sphere);

@@ -151,7 +151,7 @@ TEST(Fields, TheListNamesFieldsAndTheirTypes) {
 /// values here.
 TEST(Fields, AnotherListOfFieldsHasAnotherVersion) {
   EXPECT_EQ(kStateVersion, 10U);
-  EXPECT_EQ(fieldFingerprint<State>(), 12059549483445847767U) << fieldList<State>();
+  EXPECT_EQ(fieldFingerprint<State>(), 1183408962930763535U) << fieldList<State>();
   EXPECT_EQ(kStepInputVersion, 3U);
   EXPECT_EQ(fieldFingerprint<StepInput>(), 3494105037122736828U) << fieldList<StepInput>();
 }

@@ -257,6 +257,28 @@ TEST(HardStomach, UnderABentScopeThatIsHeldTheWallComesToRest) {
   EXPECT_LT(speed, 1e-4) << "m/s; where the bending section's force loads the tip's joints, too: 0.4";
 }
 
+// Beside the oesophagus no wall meets a scope that was bent before it was in.
+TEST(HardStomach, ATipThatLeavesTheOrganIsAnEventOnceUntilItIsBack) {
+  Scene scene = stomachScene();
+  scene.geometry.particles = 500;
+  for (const double bend : {0.0, 2.5}) {
+    Stomach stomach(scene);
+    const auto drive = [&stomach](double insertion, double tip) {
+      StepInput input;
+      input.joints[Insertion] = insertion, input.joints[TipUpDown] = tip;
+      stomach.run(1.5, input);
+      return std::count_if(stomach.events.begin(), stomach.events.end(),
+                           [](const Event& event) { return event.kind == Event::Kind::LeftLumen; });
+    };
+    const int times = bend > 0 ? 1 : 0;
+    EXPECT_EQ(drive(0.0, bend), 0) << "it has not entered";
+    EXPECT_EQ(drive(0.08, bend), times);
+    EXPECT_EQ(drive(0.085, bend), times) << "it is still outside";
+    EXPECT_EQ(drive(0.0, 0), times) << "it is drawn back";
+    EXPECT_EQ(drive(0.08, 0), times) << "it is inside";
+  }
+}
+
 TEST(HardStomach, AThousandfoldGravityAndThenNone) {
   Scene heavy = stomachScene();
   heavy.gravity = GravityScene{{-9810, 0, 0}};

@@ -20,7 +20,7 @@ struct Kind {
 };
 
 // by number of kind
-constexpr std::array<Kind, 33> kKinds = {{
+constexpr std::array<Kind, 34> kKinds = {{
     {"Grab", EventSeverity::Note},
     {"Grab missed", EventSeverity::Warning},
     {"Release", EventSeverity::Note},
@@ -54,8 +54,9 @@ constexpr std::array<Kind, 33> kKinds = {{
     {"Pierced", EventSeverity::Note},
     {"Arm closed", EventSeverity::Note},
     {"Blocked", EventSeverity::Warning},
+    {"Left lumen", EventSeverity::Warning},
 }};
-static_assert(Event::BLOCKED == kKinds.size() - 1);
+static_assert(Event::LEFT_LUMEN == kKinds.size() - 1);
 static_assert(Event::REJECTED == 9 && Event::BITE == 14 && Event::BLEEDING_OVERDUE == 21 && Event::TEAR_OUT == 27);
 
 }  // namespace

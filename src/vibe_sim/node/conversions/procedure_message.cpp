@@ -14,28 +14,26 @@ namespace {
 
 // The numbers on the wire are those of the library.
 using Wire = vibe_msgs::ProcedureEvent;
-static_assert(same(Event::Kind::Grab, Wire::GRAB) && same(Event::Kind::GrabMissed, Wire::GRAB_MISSED) &&
-              same(Event::Kind::Release, Wire::RELEASE) && same(Event::Kind::Slip, Wire::SLIP) &&
-              same(Event::Kind::ContactBegin, Wire::CONTACT_BEGIN) &&
-              same(Event::Kind::ContactEnd, Wire::CONTACT_END) &&
-              same(Event::Kind::PressureReached, Wire::PRESSURE_REACHED) && same(Event::Kind::Warning, Wire::WARNING) &&
-              same(Event::Kind::Recovery, Wire::RECOVERY) && same(Event::Kind::Rejected, Wire::REJECTED) &&
-              same(Event::Kind::Mark, Wire::MARK) && same(Event::Kind::Burn, Wire::BURN) &&
-              same(Event::Kind::DeepBurn, Wire::DEEP_BURN) && same(Event::Kind::HelixTurned, Wire::HELIX_TURNED) &&
-              same(Event::Kind::Bite, Wire::BITE) && same(Event::Kind::BiteMissed, Wire::BITE_MISSED) &&
-              same(Event::Kind::BiteWithdrawn, Wire::BITE_WITHDRAWN) &&
-              same(Event::Kind::NeedleExchanged, Wire::NEEDLE_EXCHANGED) &&
-              same(Event::Kind::BleedingMild, Wire::BLEEDING_MILD) &&
-              same(Event::Kind::BleedingBrisk, Wire::BLEEDING_BRISK) &&
-              same(Event::Kind::BleedingStopped, Wire::BLEEDING_STOPPED) &&
-              same(Event::Kind::BleedingOverdue, Wire::BLEEDING_OVERDUE) &&
-              same(Event::Kind::TechniqueFound, Wire::TECHNIQUE_FOUND) &&
-              same(Event::Kind::TTagDropped, Wire::T_TAG_DROPPED) &&
-              same(Event::Kind::CinchPulling, Wire::CINCH_PULLING) && same(Event::Kind::Cinched, Wire::CINCHED) &&
-              same(Event::Kind::CinchLoose, Wire::CINCH_LOOSE) && same(Event::Kind::TearOut, Wire::TEAR_OUT) &&
-              same(Event::Kind::ThreadBroke, Wire::THREAD_BROKE) &&
-              same(Event::Kind::PhaseChanged, Wire::PHASE_CHANGED) && same(Event::Kind::Pierced, Wire::PIERCED) &&
-              same(Event::Kind::ArmClosed, Wire::ARM_CLOSED) && same(Event::Kind::Blocked, Wire::BLOCKED));
+static_assert(
+    same(Event::Kind::Grab, Wire::GRAB) && same(Event::Kind::GrabMissed, Wire::GRAB_MISSED) &&
+    same(Event::Kind::Release, Wire::RELEASE) && same(Event::Kind::Slip, Wire::SLIP) &&
+    same(Event::Kind::ContactBegin, Wire::CONTACT_BEGIN) && same(Event::Kind::ContactEnd, Wire::CONTACT_END) &&
+    same(Event::Kind::PressureReached, Wire::PRESSURE_REACHED) && same(Event::Kind::Warning, Wire::WARNING) &&
+    same(Event::Kind::Recovery, Wire::RECOVERY) && same(Event::Kind::Rejected, Wire::REJECTED) &&
+    same(Event::Kind::Mark, Wire::MARK) && same(Event::Kind::Burn, Wire::BURN) &&
+    same(Event::Kind::DeepBurn, Wire::DEEP_BURN) && same(Event::Kind::HelixTurned, Wire::HELIX_TURNED) &&
+    same(Event::Kind::Bite, Wire::BITE) && same(Event::Kind::BiteMissed, Wire::BITE_MISSED) &&
+    same(Event::Kind::BiteWithdrawn, Wire::BITE_WITHDRAWN) &&
+    same(Event::Kind::NeedleExchanged, Wire::NEEDLE_EXCHANGED) &&
+    same(Event::Kind::BleedingMild, Wire::BLEEDING_MILD) && same(Event::Kind::BleedingBrisk, Wire::BLEEDING_BRISK) &&
+    same(Event::Kind::BleedingStopped, Wire::BLEEDING_STOPPED) &&
+    same(Event::Kind::BleedingOverdue, Wire::BLEEDING_OVERDUE) &&
+    same(Event::Kind::TechniqueFound, Wire::TECHNIQUE_FOUND) && same(Event::Kind::TTagDropped, Wire::T_TAG_DROPPED) &&
+    same(Event::Kind::CinchPulling, Wire::CINCH_PULLING) && same(Event::Kind::Cinched, Wire::CINCHED) &&
+    same(Event::Kind::CinchLoose, Wire::CINCH_LOOSE) && same(Event::Kind::TearOut, Wire::TEAR_OUT) &&
+    same(Event::Kind::ThreadBroke, Wire::THREAD_BROKE) && same(Event::Kind::PhaseChanged, Wire::PHASE_CHANGED) &&
+    same(Event::Kind::Pierced, Wire::PIERCED) && same(Event::Kind::ArmClosed, Wire::ARM_CLOSED) &&
+    same(Event::Kind::Blocked, Wire::BLOCKED) && same(Event::Kind::LeftLumen, Wire::LEFT_LUMEN));
 
 /// Particles whose grade is this or worse.
 std::uint32_t countGrades(const std::vector<std::uint8_t>& grades, BurnGrade min) {

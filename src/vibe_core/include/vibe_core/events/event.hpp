@@ -94,8 +94,9 @@ struct Event {
     PhaseChanged = 29,  ///< value: Phase
     Pierced = 30,       ///< the arm closed and the needle went into the wall; value: depth below the mucosa [m]
     ArmClosed = 31,     ///< the arm closed without a needle, over the exchange that holds it
-    Blocked = 32  ///< the wall lets no joint move on; particle: nearest to what stops it, value: force on the tool [N];
-                  ///< region, wall
+    Blocked = 32,   ///< the wall lets no joint move on; particle: nearest to what stops it, value: force on the tool
+                    ///< [N]; region, wall
+    LeftLumen = 33  ///< the tip is outside of the organ, which it has left by an end; value: insertion [m]
   };
 
   // Members that the kind does not name keep their defaults.
@@ -111,7 +112,7 @@ struct Event {
   double amount = 0;           ///< a second number, see Kind, EventDetail and RejectReason [m] or a ratio
   int suture = -1, bite = -1;  ///< numbers from 0; -1: none
 };
-constexpr int kEventKindCount = 33;  ///< values of Event::Kind
+constexpr int kEventKindCount = 34;  ///< values of Event::Kind
 
 static_assert(std::is_trivially_copyable_v<Event>, "an event carries facts; describe() forms the text");
 

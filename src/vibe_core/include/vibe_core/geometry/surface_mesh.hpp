@@ -37,6 +37,11 @@ struct SurfaceView {
   Eigen::Vector3d position(int vertex) const { return {x[vertex], y[vertex], z[vertex]}; }
 };
 
+/// Whether a point is within a closed surface, which may have folds that cross each other: the surface winds about it
+/// at least once. Cost: a loop over the triangles, some 3 ns each.
+/// @param point  not on the surface, where either answer may come [m]
+bool isWithin(const SurfaceView& surface, const Eigen::Vector3d& point);
+
 /// A finer surface for rendering, bound linearly to the particles. The position of render vertex v is
 ///   sum over k in [offsets[v], offsets[v+1]) of weights[k] * x[particles[k]],
 /// where the weights of a vertex sum to 1. The surface therefore follows every affine motion of the particles exactly.

@@ -80,6 +80,11 @@ struct MotionState {
   double muscle_work = 0;  ///< done by contraction waves on the tissue, a sum like those of EnergyAccount [J]
 };
 
+/// Where the tip of the scope was when it was last looked for.
+struct LumenState {
+  bool left = false;  ///< outside of the organ, after it has entered
+};
+
 /// Everything that changes. A snapshot is a copy; equal states have equal futures. Every member of it, and of the
 /// structs in it, is in a table of state_fields.hpp, from which hash, snapshot and comparison follow.
 struct State {
@@ -125,6 +130,7 @@ struct State {
   PullSpring pull;     ///< pulls the tissue from outside
   MotionState motion;  ///< of the organ by itself
   HoldMemory hold;     ///< of a hand that holds still; it counts in the hash as `motion` does
+  LumenState lumen;    ///< where the tip is; it counts in the hash as `motion` does
 
   ProcedureState procedure;  ///< marks, needle, sutures and bleeding
 

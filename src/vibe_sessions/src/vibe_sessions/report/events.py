@@ -35,6 +35,7 @@ KINDS = {
     30: ("PIERCED", "wall pierced", NOTE),
     31: ("ARM_CLOSED", "arm closed", NOTE),
     32: ("BLOCKED", "tool blocked", CAUTION),
+    33: ("LEFT_LUMEN", "tip outside the organ", CAUTION),
 }
 PHASES = ("inspect", "mark", "suture", "pull", "done")
 # what the timeline leaves out: it has the phases on its own line, and contacts are too many
