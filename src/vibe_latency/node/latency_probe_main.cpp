@@ -15,8 +15,7 @@ constexpr char kHelp[] =
     "Usage: rosrun vibe_latency latency_probe _folder:=DIR [_PARAMETER:=VALUE]...\n"
     "Parameters: folder, joint, device, state, screen; see docs/latency.md.\n";
 
-constexpr double kMasterPatience = 10;  // [s]
-constexpr double kFlushPeriod = 0.5;    // [s]
+constexpr double kFlushPeriod = 0.5;  // [s]
 
 void run() {
   ros::NodeHandle handle;
@@ -38,18 +37,5 @@ void run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    vibe::ros_utils::initWithGoodbye(argc, argv, "latency_probe");
-    if (vibe::ros_utils::asksForHelp(argc, argv)) {
-      std::fputs(kHelp, stdout);
-      return 0;
-    }
-    if (!vibe::ros_utils::waitForMaster(kMasterPatience)) return 1;
-    run();
-    ros::shutdown();
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "latency_probe: %s\n", error.what());
-    return 2;
-  }
+  return vibe::ros_utils::runNodeWithGoodbye(argc, argv, "latency_probe", run, kHelp);
 }

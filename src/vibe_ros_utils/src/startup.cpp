@@ -109,18 +109,27 @@ int runOrFail(const char* program, const std::function<void()>& run) {
   }
 }
 
+bool helped(int argc, const char* const* argv, const char* help) {
+  if (help == nullptr || !asksForHelp(argc, argv)) return false;
+  std::fputs(help, stdout);
+  return true;
+}
+
 }  // namespace
 
-int runNode(int argc, char** argv, const std::string& name, const std::function<void()>& run) {
+int runNode(int argc, char** argv, const std::string& name, const std::function<void()>& run, const char* help) {
   return runOrFail(argv[0], [&] {
+    if (helped(argc, argv, help)) return;
     init(argc, argv, name);
     waitForMaster(kPatience);
     run();
   });
 }
 
-int runNodeWithGoodbye(int argc, char** argv, const std::string& name, const std::function<void()>& run) {
+int runNodeWithGoodbye(int argc, char** argv, const std::string& name, const std::function<void()>& run,
+                       const char* help) {
   return runOrFail(argv[0], [&] {
+    if (helped(argc, argv, help)) return;
     initWithGoodbye(argc, argv, name);
     if (!waitForMaster(kPatience)) return;
     run();

@@ -33,11 +33,14 @@ bool waitForMaster(double patience);
 
 /// The main() of a node: init(), waiting for the master, and what the node does. What these throw is said on the
 /// standard error, after the name of the program.
+/// @param help  printed instead, where the command line asks for it; null: there is none
 /// @return the status of the program: 0, or 2 after an error
-int runNode(int argc, char** argv, const std::string& name, const std::function<void()>& run);
+int runNode(int argc, char** argv, const std::string& name, const std::function<void()>& run,
+            const char* help = nullptr);
 
 /// The same with initWithGoodbye(), and ros::shutdown() when `run` has returned.
-int runNodeWithGoodbye(int argc, char** argv, const std::string& name, const std::function<void()>& run);
+int runNodeWithGoodbye(int argc, char** argv, const std::string& name, const std::function<void()>& run,
+                       const char* help = nullptr);
 
 /// Whether the command line has --help or -h.
 bool asksForHelp(int argc, const char* const* argv);

@@ -21,9 +21,7 @@ namespace sim = vibe::sim;
 namespace {
 
 constexpr int kFailure = 1;
-constexpr int kUsage = 2;
-constexpr double kMasterPatience = 10;  // [s]
-constexpr double kDelivery = 1.0;       // for listeners to receive what was sent last [s]
+constexpr double kDelivery = 1.0;  // for listeners to receive what was sent last [s]
 
 constexpr char kHelp[] =
     "sim_node: the simulator as a ROS node.\n"
@@ -94,18 +92,8 @@ int run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    vibe::ros_utils::initWithGoodbye(argc, argv, "sim_node");
-    if (vibe::ros_utils::asksForHelp(argc, argv)) {
-      std::fputs(kHelp, stdout);
-      return 0;
-    }
-    if (!vibe::ros_utils::waitForMaster(kMasterPatience)) return kFailure;
-    const int result = run();
-    ros::shutdown();
-    return result;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "sim_node: %s\n", error.what());
-    return kUsage;
-  }
+  int result = 0;
+  const int failure = vibe::ros_utils::runNodeWithGoodbye(
+      argc, argv, "sim_node", [&] { result = run(); }, kHelp);
+  return failure != 0 ? failure : result;
 }

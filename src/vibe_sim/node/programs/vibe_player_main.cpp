@@ -1,5 +1,3 @@
-#include <cstdio>
-
 #include <ros/ros.h>
 
 #include "replay/player.hpp"
@@ -11,10 +9,7 @@
 
 namespace {
 
-constexpr int kFailure = 1;
-constexpr int kUsage = 2;
-constexpr double kMasterPatience = 10;  // [s]
-constexpr double kIdle = 0.002;         // [s]
+constexpr double kIdle = 0.002;  // [s]
 
 constexpr char kHelp[] =
     "vibe_player: plays a recording into the graph.\n"
@@ -48,18 +43,5 @@ void play() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    vibe::ros_utils::initWithGoodbye(argc, argv, "vibe_player");
-    if (vibe::ros_utils::asksForHelp(argc, argv)) {
-      std::fputs(kHelp, stdout);
-      return 0;
-    }
-    if (!vibe::ros_utils::waitForMaster(kMasterPatience)) return kFailure;
-    play();
-    ros::shutdown();
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "vibe_player: %s\n", error.what());
-    return kUsage;
-  }
+  return vibe::ros_utils::runNodeWithGoodbye(argc, argv, "vibe_player", play, kHelp);
 }

@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <limits>
 
 #include <ros/ros.h>
@@ -15,11 +14,10 @@
 
 namespace {
 
-constexpr double kMasterPatience = 10;  // [s]
 constexpr char kHelp[] =
     "vibe_trainee: plays a trainee script, or performs the goals of a protocol and of other nodes.\n"
     "Usage: rosrun vibe_sim vibe_trainee [_script:=FILE] [_skill:=expert|novice] [_seed:=N] [_lockstep:=BOOL]\n"
-    "       [_exit_when_done:=BOOL]; see docs/interfaces.md.";
+    "       [_exit_when_done:=BOOL]; see docs/interfaces.md.\n";
 
 struct Parameters {
   std::string script;
@@ -66,27 +64,15 @@ void performGoals(const vibe::Protocol& protocol, const Parameters& parameters) 
   ros::spin();
 }
 
+void run() {
+  const Parameters parameters = readParameters();
+  if (parameters.script.empty()) return performGoals(noProtocol(parameters), parameters);
+  if (vibe::isProtocol(parameters.script)) return performGoals(vibe::Protocol::load(parameters.script), parameters);
+  playScript(parameters);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    vibe::ros_utils::init(argc, argv, "vibe_trainee");
-    if (vibe::ros_utils::asksForHelp(argc, argv)) {
-      std::puts(kHelp);
-      return 0;
-    }
-    vibe::ros_utils::waitForMaster(kMasterPatience);
-    const Parameters parameters = readParameters();
-    if (parameters.script.empty()) {
-      performGoals(noProtocol(parameters), parameters);
-    } else if (vibe::isProtocol(parameters.script)) {
-      performGoals(vibe::Protocol::load(parameters.script), parameters);
-    } else {
-      playScript(parameters);
-    }
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "vibe_trainee: %s\n", error.what());
-    return 2;
-  }
+  return vibe::ros_utils::runNode(argc, argv, "vibe_trainee", run, kHelp);
 }
