@@ -14,12 +14,21 @@ import measured_policy
 
 SESSION_TEXT = "first_session.txt"  # what the first session printed, which first_run.md shows
 STOMACH = "package://vibe_core/scenes/stomach.yaml"
+PATIENT = ("geometry: {{particles: 1000, shape: {}, volume: {} L, fundus_width: {}, antrum_angle: {} deg}}\n"
+           "tissue: {{young_modulus: {} kPa, thickness: {{cardia: {} mm, fundus: {} mm, body: {} mm, antrum: {} mm, "
+           "pylorus: {} mm}}}}\n")
 SCENES = {  # variants of the default scene: a text that follows its line, or (line to remove, None)
     "rigid": ("  compliance: {}", None),
     "small": (None, "geometry: {particles: 1000}\n"),
     "fine": (None, "geometry: {particles: 16000}\n"),
     "coarse": (None, "geometry: {particles: 900}\ngas: {flow_limit: 30 L/min}\n"),
     "shape_matching": (None, "tissue: {model: shape_matching, young_modulus: 100 kPa, self_contact: false}\n"),
+    # of vibe_population --seed 1, by number: four small ones, of them a soft and a thin one, and one that is stiff
+    "population_33": (None, PATIENT.format("sthenic", 0.5467, 1.009, -5.667, 65.29, 2.119, 2.119, 2.506, 2.904, 2.904)),
+    "population_69": (None, PATIENT.format("j", 0.5701, 0.934, -7.571, 33.97, 2.373, 2.373, 2.807, 3.253, 3.253)),
+    "population_73": (None, PATIENT.format("j", 0.5637, 1.0676, -5.686, 126.22, 1.31, 1.31, 1.55, 1.796, 1.796)),
+    "population_25": (None, PATIENT.format("steer_horn", 0.6055, 1.045, 3.606, 99.26, 1.75, 1.75, 2.07, 2.399, 2.399)),
+    "population_12": (None, PATIENT.format("steer_horn", 0.967, 1.0087, -4.878, 427.33, 1.29, 1.29, 1.526, 1.769, 1.769)),
 }
 ORGANS = ("stomach", "stomach_small", "stomach_large", "stomach_j", "stomach_steer_horn", "stomach_8mmhg",
           "stomach_12mmhg")
@@ -110,6 +119,8 @@ def organ_parts(meshes):
     script = ("--script", "package://vibe_core/trainees/expert.yaml")
     for name in ORGANS:
         yield Part(name, ("vibe_headless", "--scene", f"package://vibe_core/scenes/{name}.yaml", *script), 12)
+    for name in (scene for scene in SCENES if scene.startswith("population_")):
+        yield Part(name, ("vibe_headless", "--scene", "{" + name + "}", *script), 2)
     for mesh in meshes:
         name = "imported_" + os.path.splitext(os.path.basename(mesh))[0]
         yield Part(name, ("vibe_headless", "--scene", STOMACH, "--mesh", mesh, *script), 12)

@@ -12,6 +12,7 @@ ORGANS = {
     "stomach_small": "`stomach_small`, 0.85 times the size",
     "stomach_large": "`stomach_large`, 1.15 times the size",
 }
+POPULATION = "population_"
 PLANNED_SETS, PLANNED_BITES = 6, 42  # of trainees/expert.yaml
 CHANGES = {
     "as_cinched": "nothing",
@@ -89,7 +90,10 @@ def outcomes_area(store):
 
 
 def organ_name(row):
-    return ORGANS.get(row["part"], f"`{row['part']}`")
+    name = row["part"]
+    if name.startswith(POPULATION):
+        return f"population, number {name[len(POPULATION):]}, {whole(row['particles'])} particles"
+    return ORGANS.get(name, f"`{name}`")
 
 
 def set_times(row):

@@ -88,7 +88,7 @@ TEST(Sutures, APlanLiesWhereItSays) {
   for (const double along : {0.25, 0.5, 0.75}) {
     const Eigen::Vector3d middle = placeOf(plan.at(along * plan.length(), 0), wall);
     for (const double across : {-0.02, 0.02}) {
-      const WallSpot spot = plan.at(along * plan.length(), across);
+      const WallPoint spot = plan.at(along * plan.length(), across);
       EXPECT_NEAR(spot.weight.sum(), 1, 1e-12);
       EXPECT_GT(spot.weight.minCoeff(), -1e-9);
       const Eigen::Vector3d away = placeOf(spot, wall) - middle;
@@ -98,7 +98,7 @@ TEST(Sutures, APlanLiesWhereItSays) {
   }
   // distal first
   const auto alongAxis = [&](double along) {
-    const WallSpot spot = plan.at(along, 0);
+    const WallPoint spot = plan.at(along, 0);
     return biteAround(*model, wall, spot.triangle, placeOf(spot, wall), 4e-3).along;
   };
   EXPECT_GT(alongAxis(0), alongAxis(plan.length()) + 0.3);

@@ -79,7 +79,7 @@ ContactCase ContactStates::prepare(const std::string& name) {
 }
 
 // A state with a free hand at a place of the wall that has not taken hold yet.
-ContactCase ContactStates::byHand(const State& state, const WallSpot& spot) const {
+ContactCase ContactStates::byHand(const State& state, const WallPoint& spot) const {
   ContactCase one;
   const SurfaceView wall{model_->organ.surface.triangles, state.x, state.y, state.z};
   const Eigen::Vector3d place = placeOf(spot, wall);

@@ -32,7 +32,7 @@ class ContactStates {
   ContactCase pressed() const;
   ContactCase wound() const;
   ContactCase cinch(int sets_before) const;
-  ContactCase byHand(const State& state, const WallSpot& spot) const;
+  ContactCase byHand(const State& state, const WallPoint& spot) const;
 
   std::shared_ptr<const Model> model_;
   std::string urdf_;

@@ -47,9 +47,9 @@ class HardCases {
   HardCase setOverSet() const;
   HardCase pressureSteps() const;
   HardCase sleeve() const;
-  std::vector<std::vector<WallSpot>> sleeveSets() const;
-  void addSet(const std::vector<WallSpot>& spots, const StepInput& hold, HardCase& hard) const;
-  std::vector<std::vector<WallSpot>> setsOf(int sets, int bites, double half_width, double share) const;
+  std::vector<std::vector<WallPoint>> sleeveSets() const;
+  void addSet(const std::vector<WallPoint>& spots, const StepInput& hold, HardCase& hard) const;
+  std::vector<std::vector<WallPoint>> setsOf(int sets, int bites, double half_width, double share) const;
 
   std::shared_ptr<const Model> model_;
   std::string urdf_;

@@ -24,13 +24,13 @@ StepInput pressing(Button button, StepInput input) {
   return input;
 }
 
-double distanceOf(const WallSpot& a, const WallSpot& b, const SurfaceView& wall) {
+double distanceOf(const WallPoint& a, const WallPoint& b, const SurfaceView& wall) {
   return (placeOf(a, wall) - placeOf(b, wall)).norm();
 }
 
 /// Two places of the greater curvature at a distance, as far as the organ is long enough.
-std::vector<WallSpot> spotsApart(const WallPlan& plan, const SurfaceView& wall, double distance) {
-  std::vector<WallSpot> spots{plan.at(0.02 * plan.length(), 0), {}};
+std::vector<WallPoint> spotsApart(const WallPlan& plan, const SurfaceView& wall, double distance) {
+  std::vector<WallPoint> spots{plan.at(0.02 * plan.length(), 0), {}};
   for (double along = 0.04; along <= 0.98; along += 0.01) {
     spots[1] = plan.at(along * plan.length(), 0);
     if (distanceOf(spots[0], spots[1], wall) >= distance) break;
@@ -40,7 +40,7 @@ std::vector<WallSpot> spotsApart(const WallPlan& plan, const SurfaceView& wall, 
 
 }  // namespace
 
-std::vector<std::vector<WallSpot>> HardCases::setsOf(int sets, int bites, double half_width, double share) const {
+std::vector<std::vector<WallPoint>> HardCases::setsOf(int sets, int bites, double half_width, double share) const {
   SetLayout layout;
   layout.sets = sets;
   layout.bites = bites;
@@ -51,7 +51,7 @@ std::vector<std::vector<WallSpot>> HardCases::setsOf(int sets, int bites, double
 }
 
 // Bites, T-tag, cinch, and a second without.
-void HardCases::addSet(const std::vector<WallSpot>& spots, const StepInput& hold, HardCase& hard) const {
+void HardCases::addSet(const std::vector<WallPoint>& spots, const StepInput& hold, HardCase& hard) const {
   const double step = model_->scene.step_period;
   hard.phases.push_back(still("tag", step, pressing(TTag, hold)));
   hard.phases.back().prepare = [spots](Simulation& simulation) {

@@ -212,11 +212,11 @@ HardCase HardCases::jump(std::uint64_t seed) const {
 }
 
 // In the middle of the body, where it is widest.
-std::vector<std::vector<WallSpot>> HardCases::sleeveSets() const {
+std::vector<std::vector<WallPoint>> HardCases::sleeveSets() const {
   const SurfaceView wall{model_->organ.surface.triangles, settled_.x, settled_.y, settled_.z};
   const WallPlan plan(model_->organ, wall);
   const double length = brief_ ? kSleeveLength : kSleeveLength / 2;
-  std::vector<std::vector<WallSpot>> sets;
+  std::vector<std::vector<WallPoint>> sets;
   for (const int k : brief_ ? std::vector<int>{0} : std::vector<int>{-1, 0, 1}) {
     const double from = 0.5 + 2 * k * length - length / 2;
     sets.emplace_back();

@@ -66,9 +66,9 @@ std::shared_ptr<const Model> modelFor(Scene scene, const OutcomeTrial& trial, do
   return buildModel(scene, readTextFile(resolveAddress(scene.scope->urdf), "URDF"));
 }
 
-std::vector<WallSpot> placesOf(const OutcomeTrial& trial, double along, const AnatomicalMap& map) {
+std::vector<WallPoint> placesOf(const OutcomeTrial& trial, double along, const AnatomicalMap& map) {
   const WallPoint centre = map.at(along, 0);
-  std::vector<WallSpot> places;
+  std::vector<WallPoint> places;
   for (const Eigen::Vector2d& place : suturePattern(trial.pattern, kOutcomeBites, kOutcomeLength, kOutcomeWidth)) {
     const WallPoint point = map.walk(centre, place.x(), place.y());
     places.push_back({point.triangle, point.weight});
@@ -76,12 +76,12 @@ std::vector<WallSpot> placesOf(const OutcomeTrial& trial, double along, const An
   return places;
 }
 
-std::vector<std::vector<WallSpot>> planSleeve(const OutcomeTrial& trial, const SutureSession& session) {
+std::vector<std::vector<WallPoint>> planSleeve(const OutcomeTrial& trial, const SutureSession& session) {
   const SurfaceView wall = session.wall();
   std::vector<Eigen::Vector3d> vertices;
   for (int v = 0; v < session.model().particle_count; ++v) vertices.push_back(wall.position(v));
   const AnatomicalMap map(session.model().organ, vertices);
-  std::vector<std::vector<WallSpot>> sets;
+  std::vector<std::vector<WallPoint>> sets;
   for (int k = 0; k < kOutcomeSets; ++k)
     sets.push_back(placesOf(trial, kOutcomeFrom + (kOutcomeTo - kOutcomeFrom) * k / (kOutcomeSets - 1), map));
   return sets;

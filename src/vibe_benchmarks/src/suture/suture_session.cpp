@@ -28,10 +28,10 @@ double maxSpeed(const State& state) {
   return max;
 }
 
-Suture sutureThrough(const Model& model, const SurfaceView& wall, const std::vector<WallSpot>& spots, double time) {
+Suture sutureThrough(const Model& model, const SurfaceView& wall, const std::vector<WallPoint>& spots, double time) {
   Suture suture;
   suture.begin = time;
-  for (const WallSpot& spot : spots) {
+  for (const WallPoint& spot : spots) {
     suture.bites.push_back(
         biteAround(model, wall, spot.triangle, placeOf(spot, wall), model.scene.suture->bite_radius));
     suture.bites.back().depth = suture.bites.back().thickness;
@@ -118,18 +118,18 @@ void SutureSession::count(std::size_t first_event, SewnSet& set) const {
   }
 }
 
-void SutureSession::tag(const std::vector<WallSpot>& spots) {
+void SutureSession::tag(const std::vector<WallPoint>& spots) {
   SewnSet unused;
   tag(spots, unused);
 }
 
-void SutureSession::tag(const std::vector<WallSpot>& spots, SewnSet& set) {
+void SutureSession::tag(const std::vector<WallPoint>& spots, SewnSet& set) {
   simulation_.editState().procedure.sutures.push_back(sutureThrough(model(), wall(), spots, state().time));
   press(TTag, true, set.pulling, set);
   press(TTag, false, set.pulling, set);
 }
 
-SewnSet SutureSession::sew(const std::vector<WallSpot>& spots, double after, std::optional<double> drawn) {
+SewnSet SutureSession::sew(const std::vector<WallPoint>& spots, double after, std::optional<double> drawn) {
   SewnSet set;
   const std::size_t first_event = events_.size();
   tag(spots, set);

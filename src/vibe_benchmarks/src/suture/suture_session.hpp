@@ -50,10 +50,10 @@ class SutureSession {
   bool calmDown(double longest);
 
   /// The beginning of sew(): takes the bites and drops the T-tag.
-  void tag(const std::vector<WallSpot>& spots);
+  void tag(const std::vector<WallPoint>& spots);
   /// @param after  time to continue after the release of the cinch [s]
   /// @param drawn  thread at most that the cinch draws; empty: until its tension is reached [m]
-  SewnSet sew(const std::vector<WallSpot>& spots, double after = 1, std::optional<double> drawn = {});
+  SewnSet sew(const std::vector<WallPoint>& spots, double after = 1, std::optional<double> drawn = {});
 
   /// Steps with the insufflator on for this time [s].
   void run(double duration);
@@ -67,7 +67,7 @@ class SutureSession {
 
  private:
   void step();
-  void tag(const std::vector<WallSpot>& spots, SewnSet& set);
+  void tag(const std::vector<WallPoint>& spots, SewnSet& set);
   void press(Button button, bool down, StepCosts& costs, SewnSet& set);
   void pull(SewnSet& set, std::optional<double> drawn);
   void count(std::size_t first_event, SewnSet& set) const;
@@ -80,7 +80,7 @@ class SutureSession {
 
 /// A set with these bites through the whole wall, not tagged yet, as the needle would take them.
 /// @param time  of the bites [s]
-Suture sutureThrough(const Model& model, const SurfaceView& wall, const std::vector<WallSpot>& spots, double time);
+Suture sutureThrough(const Model& model, const SurfaceView& wall, const std::vector<WallPoint>& spots, double time);
 
 /// Fastest particle [m/s].
 double maxSpeed(const State& state);

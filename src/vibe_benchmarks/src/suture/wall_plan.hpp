@@ -4,27 +4,22 @@
 
 #include <Eigen/Core>
 
+#include "vibe_core/geometry/anatomical_map.hpp"
 #include "vibe_core/geometry/organ.hpp"
-#include "vibe_core/geometry/stomach_axis.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
-#include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe::benchmarks {
 
-/// A material point of the wall.
-struct WallSpot {
-  int triangle = -1;
-  Eigen::Vector3d weight = Eigen::Vector3d::Zero();  ///< of its corners, sum 1
-};
 /// Its current position [m].
-Eigen::Vector3d placeOf(const WallSpot& spot, const SurfaceView& wall);
+Eigen::Vector3d placeOf(const WallPoint& point, const SurfaceView& wall);
 
 /// Finds points on the body of a stomach from their distances to the greater curvature and to its distal end, measured
-/// along the wall in its shape when the plan is made, like marks that an endoscopist sets before the first bite.
+/// along the wall in its shape when the plan is made, like marks that an endoscopist sets before the first bite. They
+/// are those of its anatomical coordinates, whatever its mesh.
 class WallPlan {
  public:
-  /// @param wall  current positions of the organ's vertices; used only here and in at()
-  /// @throws Error if the body of the organ has no greater curvature
+  /// @param wall  current positions of the organ's vertices
+  /// @throws Error as AnatomicalMap
   WallPlan(const Organ& organ, const SurfaceView& wall);
 
   /// Length of the greater curvature of the body [m].
@@ -33,16 +28,11 @@ class WallPlan {
   /// @param along   from the distal end of the body, towards the fundus, in [0, length()] [m]
   /// @param across  from the greater curvature, negative: towards the anterior wall [m]
   /// @throws Error if across reaches the lesser curvature
-  WallSpot at(double along, double across) const;
+  WallPoint at(double along, double across) const;
 
  private:
-  WallSpot spotAt(double axis_length, double angle) const;
-  double axisLengthAt(double along) const;
-
-  StomachAxis axis_;
-  TriangleTree rest_;
-  SurfaceView wall_;
-  std::vector<double> curve_axis_;    // place along the axis of samples of the greater curvature, distal first [m]
+  AnatomicalMap map_;
+  std::vector<double> curve_axis_;    // place along the axis of samples of the greater curvature, distal first
   std::vector<double> curve_length_;  // from the distal end along the wall [m]
 };
 
@@ -62,6 +52,6 @@ struct SetLayout {
 std::vector<Eigen::Vector2d> bitesOfU(int bites);
 
 /// The bites of every set.
-std::vector<std::vector<WallSpot>> planSets(const WallPlan& plan, const SetLayout& layout);
+std::vector<std::vector<WallPoint>> planSets(const WallPlan& plan, const SetLayout& layout);
 
 }  // namespace vibe::benchmarks

@@ -10,6 +10,7 @@
 
 #include "geometry/regions.hpp"
 #include "vibe_core/geometry/stomach_axis.hpp"
+#include "vibe_core/geometry/surface_mesh.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
 #include "vibe_core/program/error.hpp"
 
@@ -24,6 +25,8 @@ constexpr double kFarAround = 0.35;     // and around the axis: the opening of a
 constexpr double kApex = 0.05;          // along the axis: nearer to the apex, angles are not told apart
 constexpr double kStalled = 0.2;        // of a stride: less is no progress; design choice
 constexpr double kAlongWeight = 2.0;    // of the distance along the axis beside that around it; design choice
+constexpr int kAxisVertices = 3500;  // at least, of the surface whose axis is found: 60 sections of as many; measured
+constexpr int kHalvings = 16;        // of the way on which a border of two regions is looked for
 
 Eigen::Vector3d weightsIn(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                           const Eigen::Vector3d& c) {
@@ -45,6 +48,27 @@ Organ inShape(const Organ& organ, const std::vector<Eigen::Vector3d>& vertices) 
   present.landmarks.fundus = vertices[static_cast<std::size_t>(apex)];
   present.surface.vertices = vertices;
   return present;
+}
+
+// With its surface divided by Loop's scheme, the old vertices first: sections of the axis are means of vertices, and on
+// a coarse surface they would depend on where the few vertices are. A new vertex is of an end if most of its weight is.
+Organ divided(const Organ& coarse) {
+  const RenderSurface finer = makeLoopSubdivision(coarse.surface);
+  Organ organ;
+  organ.landmarks = coarse.landmarks, organ.entry = coarse.entry;
+  organ.surface = {renderPositions(finer, coarse.surface.vertices), finer.triangles};
+  for (std::size_t v = 0; v + 1 < finer.offsets.size(); ++v) {
+    std::array<double, 3> weight{};  // by End
+    for (int k = finer.offsets[v]; k < finer.offsets[v + 1]; ++k)
+      weight[static_cast<std::size_t>(coarse.end[finer.particles[k]])] += finer.weights[k];
+    organ.end.push_back(static_cast<End>(std::max_element(weight.begin(), weight.end()) - weight.begin()));
+  }
+  return organ;
+}
+
+StomachAxis axisOf(Organ organ) {
+  while (organ.surface.vertices.size() < kAxisVertices) organ = divided(organ);
+  return findAxis(organ);
 }
 
 double turned(double angle) {
@@ -126,7 +150,7 @@ AnatomicalMap::AnatomicalMap(const Organ& organ, std::vector<Eigen::Vector3d> ve
     throw Error(
         "The organ has no oesophagus or no duodenum, so it has no anatomical coordinates; give its landmarks in "
         "geometry.landmarks.");
-  const StomachAxis axis = findAxis(inShape(organ, vertices_));
+  const StomachAxis axis = axisOf(inShape(organ, vertices_));
   axis_length_ = axis.length();
   for (std::size_t v = 0; v < count; ++v) {
     along_.push_back(axis.lengthAt(static_cast<int>(v)) / axis_length_);
@@ -137,21 +161,42 @@ AnatomicalMap::AnatomicalMap(const Organ& organ, std::vector<Eigen::Vector3d> ve
 }
 
 void AnatomicalMap::findRegions(const Organ& organ) {
-  constexpr std::pair<double, double> kNothing{1, 0};
-  const auto extentOf = [&](int region, double widest) {
-    std::pair<double, double> extent = kNothing;
-    for (std::size_t v = 0; v < along_.size(); ++v) {
-      if (static_cast<int>(organ.region[v]) != region || end_[v] || std::abs(around_[v]) > widest) continue;
-      extent.first = std::min(extent.first, along_[v]);
-      extent.second = std::max(extent.second, along_[v]);
-    }
-    return extent;
-  };
-  for (int r = 0; r < kRegionCount; ++r) {
-    auto& extent = extent_[static_cast<std::size_t>(r)];
-    extent = extentOf(r, M_PI / 4);
-    if (extent.first > extent.second) extent = extentOf(r, M_PI);
+  extent_.fill({1, 0});
+  for (std::size_t v = 0; v < along_.size(); ++v) {
+    auto& extent = extent_[static_cast<std::size_t>(organ.region[v])];
+    if (!end_[v]) extent = {std::min(extent.first, along_[v]), std::max(extent.second, along_[v])};
   }
+  // The others end on the greater curvature where their definitions say, not at the last vertex before: labelStomach()
+  const TriangleTree rest(organ.surface);
+  const double incisura = alongLandmark(organ.landmarks.incisura, rest);
+  const double pylorus = alongLandmark(organ.landmarks.pylorus, rest);
+  const double dome = alongAtHeight(organ.landmarks.oesophagus.z(), incisura, organ.surface.vertices);
+  const double canal = beginOfCanal(incisura * axis_length_, pylorus * axis_length_) / axis_length_;
+  const auto set = [this](Region region, double begin, double end) {
+    auto& extent = extent_[static_cast<std::size_t>(region)];
+    if (extent.first <= extent.second) extent = {begin, end};
+  };
+  set(Region::Fundus, 0, dome);
+  set(Region::Body, dome, incisura);
+  set(Region::Antrum, incisura, canal);
+  set(Region::Pylorus, canal, extent_[static_cast<std::size_t>(Region::Pylorus)].second);
+}
+
+double AnatomicalMap::alongLandmark(const Eigen::Vector3d& landmark, const TriangleTree& rest) const {
+  const TriangleTree::Hit hit = rest.closest(landmark);
+  const auto& v = triangles_[static_cast<std::size_t>(hit.triangle)];
+  const auto& corner = rest.mesh().vertices;
+  return along(nearestIn(hit.triangle, hit.point, corner[v[0]], corner[v[1]], corner[v[2]]));
+}
+
+// The greater curvature descends from the apex to the incisura; `rest` is what the height is measured in.
+double AnatomicalMap::alongAtHeight(double height, double incisura, const std::vector<Eigen::Vector3d>& rest) const {
+  double above = 0, below = incisura;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (above + below);
+    (positionOf(at(middle, 0), triangles_, rest).z() > height ? above : below) = middle;
+  }
+  return above;
 }
 
 double AnatomicalMap::alongIn(Region region, double share) const {
@@ -190,32 +235,21 @@ WallPoint AnatomicalMap::at(double along, double around) const {
   if (!(along >= 0 && along <= 1) || !std::isfinite(around))
     throw Error("There is no place at " + placeText(along, around) +
                 "; along goes from 0 (apex of the fundus) to 100 % (duodenal end).");
-  // the nearest vertex, in units of the circumference at half the axis' length, then the best point of its triangles
-  const auto missOf = [&](double a, double r) {
-    const double da = kAlongWeight * (a - along), dr = turned(r - around) / (2 * M_PI);
-    return da * da + dr * dr;
-  };
-  int best = 0;
+  // the nearest point of all triangles, in units of the circumference at half the axis' length
+  const Eigen::Vector3d wanted(kAlongWeight * along, 0, 0);
+  WallPoint point;
   double min = std::numeric_limits<double>::infinity();
-  for (std::size_t v = 0; v < vertices_.size(); ++v) {
-    if (end_[v]) continue;
-    const double miss = missOf(along_[v], around_[v]);
-    if (miss < min) min = miss, best = static_cast<int>(v);
-  }
-  WallPoint point{triangles_at_[best].front(), Eigen::Vector3d::Zero()};
-  const auto weightsOf = [&](int t) {
-    const auto& v = triangles_[static_cast<std::size_t>(t)];
-    const auto flat = [&](int corner) {
-      return Eigen::Vector3d(kAlongWeight * along_[corner], turned(around_[corner] - around) / (2 * M_PI), 0);
-    };
-    const Eigen::Vector3d a = flat(v[0]), b = flat(v[1]), c = flat(v[2]);
-    return weightsIn(closestPointOnTriangle({kAlongWeight * along, 0, 0}, a, b, c), a, b, c);
-  };
-  min = std::numeric_limits<double>::infinity();
-  for (int t : triangles_at_[best]) {
-    const WallPoint candidate{t, weightsOf(t)};
-    const double miss = missOf(this->along(candidate), this->around(candidate));
-    if (miss < min) min = miss, point = candidate;
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const auto& v = triangles_[t];
+    if (inEnd(static_cast<int>(t))) continue;
+    std::array<Eigen::Vector3d, 3> flat;
+    for (std::size_t k = 0; k < 3; ++k)
+      flat[k] = {kAlongWeight * along_[v[k]], turned(around_[v[k]] - around) / (2 * M_PI), 0};
+    const auto [least, most] = std::minmax({flat[0].y(), flat[1].y(), flat[2].y()});
+    if (most - least > 0.5) continue;  // behind the axis, where angles are cut
+    const Eigen::Vector3d nearest = closestPointOnTriangle(wanted, flat[0], flat[1], flat[2]);
+    const double miss = (nearest - wanted).squaredNorm();
+    if (miss < min) min = miss, point = {static_cast<int>(t), weightsIn(nearest, flat[0], flat[1], flat[2])};
   }
   const bool beside = along > kApex && std::abs(turned(this->around(point) - around)) > kFarAround;
   if (beside || std::abs(this->along(point) - along) > kFarAlong)

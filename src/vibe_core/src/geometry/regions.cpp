@@ -74,6 +74,10 @@ Wall wallAtAngle(double angle) {
   return angle > 0 ? Wall::GreaterCurvature : Wall::LesserCurvature;
 }
 
+double beginOfCanal(double incisura, double pylorus) {
+  return pylorus - std::min(kPyloricCanal, 0.5 * (pylorus - incisura));
+}
+
 StomachAxis findAxis(const Organ& organ) {
   const int apex = landmarkVertex(organ.surface, organ.landmarks.fundus, "fundus");
   const auto from_gullet = edgeDistances(organ.surface, verticesOf(organ, End::Oesophagus));
@@ -89,7 +93,7 @@ void labelStomach(Organ& organ) {
   landmarkVertex(mesh, organ.landmarks.oesophagus, "oesophagus");
   const double incisura = axis.lengthAt(landmarkVertex(mesh, organ.landmarks.incisura, "incisura"));
   const double pylorus = axis.lengthAt(landmarkVertex(mesh, organ.landmarks.pylorus, "pylorus"));
-  const double canal = pylorus - std::min(kPyloricCanal, 0.5 * (pylorus - incisura));
+  const double canal = beginOfCanal(incisura, pylorus);
   const auto from_gullet = edgeDistances(mesh, verticesOf(organ, End::Oesophagus));
   const double cardia = gulletLength(organ) + kCardiaReach;
 

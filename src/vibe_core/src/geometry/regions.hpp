@@ -22,6 +22,9 @@ Wall wallAtAngle(double angle);
 /// @throws Error if a landmark is farther than 4 cm from the surface (wrong frame or unit).
 void labelStomach(Organ& organ);
 
+/// Where the pylorus begins, between two landmarks along the axis [m].
+double beginOfCanal(double incisura, double pylorus);
+
 /// Thickness per vertex from the thickness per region, with gradual transitions over about 2 cm [m].
 std::vector<double> thicknessFromRegions(const SurfaceMesh& mesh, const std::vector<Region>& region,
                                          const std::array<double, kRegionCount>& thickness);

@@ -1,6 +1,7 @@
 #include "vibe_core/trainee/trainee.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <deque>
 #include <set>
 #include <utility>
@@ -12,6 +13,7 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 #include <boost/coroutine2/coroutine.hpp>
+#include <boost/coroutine2/protected_fixedsize_stack.hpp>
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic pop
 #endif
@@ -33,6 +35,9 @@ std::shared_ptr<const Model> withScope(std::shared_ptr<const Model> model) {
 }
 
 constexpr const char* kCancelled = "cancelled";
+// Of the coroutine [bytes]: factors of the axis' equations keep up to 0.4 MB there (EIGEN_STACK_ALLOCATION_LIMIT); the
+// default of 128 KB is too little for 16,000 particles. What is not used takes no memory.
+constexpr std::size_t kStack = 4 << 20;
 
 /// Leaves the actions of a goal that is given up.
 struct Cancelled {};
@@ -112,7 +117,8 @@ struct Trainee::Impl {
       (*body)();
       return;
     }
-    body = std::make_unique<Coroutine::pull_type>([this](Coroutine::push_type& sink) {
+    boost::coroutines2::protected_fixedsize_stack stack(kStack);
+    body = std::make_unique<Coroutine::pull_type>(stack, [this](Coroutine::push_type& sink) {
       pause = &sink;
       pursue();
     });
