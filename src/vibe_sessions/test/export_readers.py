@@ -1,12 +1,18 @@
 """What the readers of others find in exports. Called by scripts/test.d/export.sh with a name of a class, in an environment with
 the packages of readers.txt."""
 
+import contextlib
+import ctypes
 import dataclasses
 import glob
+import io
 import json
 import os
 import pathlib
 import random
+import re
+import shutil
+import signal
 import unittest
 
 import numpy
@@ -15,8 +21,10 @@ import genpy
 from export_lerobot_test import EpisodesTest
 from export_ros2_test import TYPES
 from export_test import ExportTest
+from killed import killed
 from random_messages import content, random_message
 
+from vibe_sessions.export import main as export
 from vibe_sessions.export import ros2_package
 
 
@@ -155,8 +163,6 @@ class LerobotReader(EpisodesTest):
     def test_rows_are_those_of_the_episodes(self):
         from pyarrow import parquet
 
-        from vibe_sessions.export import main as export
-
         folder = os.path.dirname(self.write())
         contents = []
         for place in ("/a", "/b"):
@@ -170,6 +176,79 @@ class LerobotReader(EpisodesTest):
             table = parquet.read_table(folder + "/a/lerobot/data/chunk-000/file-{:03d}.parquet".format(number)).to_pydict()
             for name, rows in episode.columns().items():
                 numpy.testing.assert_array_equal(numpy.array(table[name]).reshape(rows.shape), rows)
+
+    def files(self, folder):
+        """(bytes, time of the last change) by path."""
+        paths = [path for path in pathlib.Path(folder).rglob("*") if path.is_file()]
+        return {str(path.relative_to(folder)): (path.read_bytes(), path.stat().st_mtime_ns) for path in paths}
+
+    def test_a_kill_at_any_moment_keeps_finished_episodes(self):
+        first, second = self.write(), os.path.join(self.folder, "second", "session.bag")
+        self.add_pictures()
+        os.mkdir(os.path.dirname(second))
+        shutil.copy(first, second)
+
+        def make(place):
+            return export.main([first, second, "--to", "lerobot", "--output", os.path.join(self.folder, place)])
+
+        self.assertEqual(make("whole"), 0)
+        wanted = {path: data for path, (data, _) in self.files(self.folder + "/whole").items()}
+        self.assertEqual(len([path for path in wanted if path.endswith(".mp4")]), 8)
+        at, status, kept = 0, None, set()
+        while status != 0:
+            at += 23
+            shutil.rmtree(self.folder + "/out", ignore_errors=True)
+            status = killed(at, lambda: make("out"))
+            self.assertIn(status, (0, -signal.SIGKILL))
+            part = self.files(self.folder + "/out/.lerobot.part")
+            finished = json.loads(part["meta/info.json"][0])["total_episodes"] if "export.json" in part else 0
+            self.assertEqual(make("out"), 0)
+            found = self.files(self.folder + "/out")
+            self.assertEqual({path: data for path, (data, _) in found.items()}, wanted)
+            for path, (_, changed) in part.items():
+                if path.endswith((".mp4", ".parquet")) and re.search("file-(...)", path) and int(re.search("file-(...)", path)[1]) < finished:
+                    self.assertEqual(found["lerobot/" + path][1], changed, path)
+            kept.add(finished)
+        self.assertLessEqual(set(range(8)), kept)
+
+    def test_pictures_of_the_recording_are_its_video(self):
+        import av
+
+        self.write()
+        self.add_pictures()
+        self.assertEqual(export.main([self.path, "--to", "lerobot", "--output", self.folder + "/out"]), 0)
+        with av.open(self.folder + "/out/lerobot/videos/observation.images.endoscope/chunk-000/file-001.mp4") as video:
+            shown = [frame.to_ndarray(format="rgb24").shape for frame in video.decode(video=0)]
+        self.assertEqual(shown, [(16, 32, 3)] * len(self.episodes()[1][0].times))
+        plain = os.path.join(self.folder, "plain", "session.bag")
+        os.mkdir(os.path.dirname(plain))
+        pictured, self.path = self.path, plain
+        self.write()
+        with contextlib.redirect_stderr(io.StringIO()) as said:
+            self.assertEqual(export.main([pictured, plain, "--to", "lerobot", "--output", self.folder + "/mixed"]), 2)
+        self.assertIn("has no pictures of the endoscope, unlike the first recording; export them apart", said.getvalue())
+
+
+class GltfReader(ExportTest):
+    def test_assimp_finds_every_frame(self):
+        import pyassimp
+
+        self.make()
+        with rosbag.Bag(self.bag, "a") as bag:
+            cloud = next(message for _, message, _ in bag.read_messages(topics=["/tissue/particles"]))
+            points = numpy.frombuffer(cloud.data, "<f4").reshape(-1, 4).copy()
+            points[:, 2] += 0.01
+            cloud.data, cloud.header.stamp = points.tobytes(), genpy.Time(4)
+            bag.write("/tissue/particles", cloud, cloud.header.stamp)
+        self.exports(to="gltf")
+        with pyassimp.load(self.output + "/a/gltf/wall.glb") as scene:
+            wall = scene.meshes[0].contents
+            self.assertEqual(wall.mNumAnimMeshes, 1)
+            self.assertEqual(scene.meshes[0].faces.ravel().tolist(), list(self.messages("tissue/topology")[0].triangles))
+            for found, cloud in zip((wall, wall.mAnimMeshes[0].contents), self.messages("tissue/particles")):
+                vertices = ctypes.cast(found.mVertices, ctypes.POINTER(ctypes.c_float))
+                wanted = numpy.frombuffer(cloud.data, "<f4").reshape(-1, 4)[:, :3]
+                numpy.testing.assert_allclose(numpy.ctypeslib.as_array(vertices, (found.mNumVertices, 3)), wanted, atol=1e-8)
 
 
 if __name__ == "__main__":
