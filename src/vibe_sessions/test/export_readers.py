@@ -23,9 +23,13 @@ from export_ros2_test import TYPES
 from export_test import ExportTest
 from killed import killed
 from random_messages import content, random_message
+from sensor_msgs.msg import Image
 
 from vibe_sessions.export import main as export
 from vibe_sessions.export import ros2_package
+from vibe_sessions.export.definitions import fields_of, parts_of
+from vibe_sessions.headless import call, find_program
+from vibe_sessions.imports.session import write_commands
 
 
 def content2(message):
@@ -103,6 +107,48 @@ class McapReaders(ExportTest):
             file.write(bytes([byte[0] ^ 1]))
         with self.assertRaises((CRCValidationError, zstandard.ZstdError)):
             self.with_mcap()
+
+
+class FoxgloveLayout(ExportTest):
+    """Against a recording of the simulator with every topic, and a picture."""
+
+    DRAWN = {"sensor_msgs/msg/PointCloud2", "geometry_msgs/msg/PoseStamped"}  # by the panel 3D itself
+
+    def setUp(self):
+        super().setUp()
+        scene = pathlib.Path(__file__).parents[1] / "regressions/scenes/coarse_stomach.yaml"
+        write_commands(self.folder + "/commands.bag", str(scene), 1 / 60, numpy.zeros((5, 7)), numpy.zeros((5, 6), numpy.uint8))
+        replay = find_program("vibe_sim", "vibe_replay")
+        call(["--record", self.folder + "/new.bag", self.folder + "/commands.bag"], program=replay)
+        call(["--fill", self.bag, self.folder + "/new.bag"], program=replay, accepted=(0, 3))
+        with rosbag.Bag(self.bag, "a") as bag:
+            bag.write("/endoscope/image_raw", Image(height=1, width=1, encoding="rgb8", step=3, data=b"abc"), genpy.Time(1))
+
+    def test_all_that_it_shows_is_there(self):
+        from mcap.reader import make_reader
+
+        self.exports(to="mcap")
+        with open(self.output + "/a/mcap/foxglove.json", encoding="utf-8") as file:
+            layout = json.load(file)
+        with open(self.output + "/a/mcap/session.mcap", "rb") as file:
+            summary = make_reader(file).get_summary()
+        kinds = {channel.topic: summary.schemas[channel.schema_id] for channel in summary.channels.values()}
+        panels = layout["configById"]
+        self.assertEqual(sorted(panels), sorted(re.findall('"([^"]*!.*?)"', json.dumps(layout["layout"]))))
+        for topic, about in panels["3D!organ"]["topics"].items():
+            self.assertIn(kinds[topic].name, self.DRAWN, topic)
+            if "colorField" in about:
+                self.assertIn(about["colorField"], [field.name for field in self.messages(topic.strip("/"))[0].fields])
+        self.assertEqual(kinds[panels["Image!picture"]["imageMode"]["imageTopic"]].name, "sensor_msgs/msg/Image")
+        for path in (path["value"] for panel in panels.values() for path in panel.get("paths", ())):
+            topic, *names = path.split(".")
+            kind = kinds[topic].name.replace("/msg/", "/")
+            parts = parts_of(kind, kinds[topic].data.decode())
+            for name in names:
+                kind = fields_of(kind, parts[kind], arrays=True)[name.partition("[")[0]][0]
+                self.assertEqual(kind.endswith("]"), name.endswith("]"), path)
+                kind = kind.partition("[")[0]
+            self.assertIn(kind, ("float64", "string"), path)
 
 
 class Ros2Package(unittest.TestCase):

@@ -1,9 +1,10 @@
-"""Writes MCAP files (https://mcap.dev/spec) of ROS 2 messages, in chunks that are compressed with zstd."""
+"""Writes MCAP files (https://mcap.dev/spec) of ROS 2 messages, in chunks that are compressed with zstd; and a layout for Foxglove."""
 
 import ctypes
 import ctypes.util
 import functools
 import os
+import shutil
 import struct
 import zlib
 
@@ -13,6 +14,7 @@ from .definitions import ros2_definition
 MAGIC = b"\x89MCAP0\r\n"
 HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, CHUNK_INDEX = range(1, 9)
 STATISTICS, DATA_END = 0x0B, 0x0F
+LAYOUT = "foxglove.json"
 CHUNK_SIZE = 1 << 20  # before compression [bytes]
 LEVEL = 1  # of zstd: 2 % larger than level 3 in half its time, and smaller than bzip2 of the recorder
 
@@ -46,6 +48,7 @@ class Mcap:
     def __init__(self, folder, source, files):
         self.connections = source.chosen
         self._file = files.enter_context(open(os.path.join(folder, "session.mcap"), "wb"))
+        shutil.copy(os.path.join(os.path.dirname(__file__), LAYOUT), folder)
         self._checksum = 0  # of all before the summary
         self._schemas, self._channels, self._chunks = {}, {}, []  # records; schemas by type and definition, channels by number
         self._encoders = {}  # by channel
