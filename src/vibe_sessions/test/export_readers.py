@@ -20,7 +20,7 @@ import rosbag
 import genpy
 from export_lerobot_test import EpisodesTest
 from export_ros2_test import TYPES
-from export_test import ExportTest
+from export_test import ExportTest, InterruptedTest
 from killed import killed
 from random_messages import content, random_message
 from sensor_msgs.msg import Image
@@ -170,7 +170,9 @@ class Ros2Package(unittest.TestCase):
             self.assertEqual(len(types), len([each for each in files if each.startswith("msg/")]) + 2 * len([each for each in files if each.startswith("srv/")]))
 
 
-class ParquetReader(ExportTest):
+class ParquetReader(InterruptedTest):
+    FORMATS = "csv,parquet"
+
     def test_same_as_csv(self):
         from pyarrow import parquet
 

@@ -292,7 +292,7 @@ class InterruptedTest(ExportTest):
         self.exports(to=self.FORMATS)
         self.assertEqual(tree(self.output), wanted)
         times = {path: os.stat(os.path.join(self.output, path)).st_mtime_ns for path in wanted}
-        self.assertEqual(self.exports(to=self.FORMATS).count("complete, kept"), 4)
+        self.assertEqual(self.exports(to=self.FORMATS).count("complete, kept"), len(self.FORMATS.split(",")))
         self.assertEqual({path: os.stat(os.path.join(self.output, path)).st_mtime_ns for path in wanted}, times)
         self.refuses("other options; remove it", "--rate", "5")
 
@@ -333,7 +333,7 @@ class InterruptedTest(ExportTest):
             self.assertEqual(tree(self.output), wanted)
             self.assertEqual(sorted(os.listdir(self.output + "/a")), formats)
             self.assertEqual({path: os.stat(os.path.join(self.output, path)).st_mtime_ns for path in left}, times)
-        self.assertGreater(at, 60)
+        self.assertGreater(at, 12 * len(formats))
 
     def test_what_a_killed_export_has_repeated_is_not_repeated_again(self):
         self.make(duration=0.5)

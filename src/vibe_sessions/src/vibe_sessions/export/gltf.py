@@ -25,8 +25,9 @@ def tube():
     angles = 2 * numpy.pi * numpy.arange(SIDES) / SIDES
     ring = numpy.stack([0 * angles, RADIUS * numpy.cos(angles), RADIUS * numpy.sin(angles)], axis=1)
     this, following = numpy.arange(SIDES), (numpy.arange(SIDES) + 1) % SIDES
-    sides = [[this + SIDES, following, this], [this + SIDES, following + SIDES, following], [0 * this, this, following]]
-    return numpy.concatenate([ring, ring - [LENGTH, 0, 0]]), numpy.concatenate([numpy.stack(each, axis=1) for each in sides])
+    sides = [[this + SIDES, following, this], [this + SIDES, following + SIDES, following]]
+    tip = [[0, k, k + 1] for k in range(1, SIDES - 1)]
+    return numpy.concatenate([ring, ring - [LENGTH, 0, 0]]), numpy.concatenate([*(numpy.stack(each, axis=1) for each in sides), tip])
 
 
 class Gltf(Wall):

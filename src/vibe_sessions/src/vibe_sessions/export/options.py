@@ -77,4 +77,5 @@ def check(arguments, fail):
         fail("--rate of lerobot must be a whole number, not {:g}".format(arguments.rate))
     for name in sorted({"parquet", "lerobot"} & set(arguments.to)):
         if importlib.util.find_spec("pyarrow") is None:
-            fail("--to {} needs the Python package pyarrow, which is not there; install it with pip, or leave {} out".format(name, name))
+            fail("--to {} needs the Python package pyarrow, which is not there; in a sourced shell `pip install --target tools 'pyarrow<24' av` and "
+                 "`PYTHONPATH=$PYTHONPATH:tools rosrun vibe_sessions export` give it, or leave {} out".format(name, name))  # fmt: skip
