@@ -5,6 +5,6 @@ setup(
     **generate_distutils_setup(
         packages=["vibe_sessions", "vibe_sessions.export", "vibe_sessions.imports", "vibe_sessions.published", "vibe_sessions.report"],
         package_dir={"": "src"},
-        package_data={"vibe_sessions.published": ["*.md"], "vibe_sessions.report": ["templates/*"]},
+        package_data={"vibe_sessions.export": ["*.json"], "vibe_sessions.published": ["*.md"], "vibe_sessions.report": ["templates/*"]},
     )
 )

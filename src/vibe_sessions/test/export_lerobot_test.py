@@ -1,5 +1,6 @@
 """Episodes of a recording: which steps are rows of which goal, and how a goal ended."""
 
+import io
 import os
 import unittest
 
@@ -8,16 +9,31 @@ import numpy
 import rosbag
 from geometry_msgs.msg import PoseStamped, Vector3, WrenchStamped
 from in_folder import InFolder
-from sensor_msgs.msg import JointState
+from PIL import Image as Picture
+from sensor_msgs.msg import CompressedImage, Image, JointState
 from vibe_msgs.msg import GoalProgress, ProcedureEvent, StepInput, StepResult, ToolContact, ToolContacts, TraineeProgress
 
 from vibe_sessions.export.lerobot import JOINTS, NAMES, Reader
+from vibe_sessions.export.pictures import Recorded, topic_of
 from vibe_sessions.export.source import Source
 from vibe_sessions.report.bag_file import BagError
 
 RATE = 60
 GOALS = [(1, 0.5, GoalProgress.REACHED), (2, 1.2, GoalProgress.REACHED), (3, 1.6, GoalProgress.FAILED), (4, 9, None)]  # until [s]
 SLIP = 0.9  # [s]
+
+
+def picture(number, encoding, height=16, width=32):
+    """In rows with two bytes at their end that belong to no pixel, or as a PNG."""
+    pixels = numpy.zeros((height, width, 3), numpy.uint8)
+    pixels[0, 0] = number, 2 * number % 256, 7
+    if encoding == "png":
+        file = io.BytesIO()
+        Picture.fromarray(pixels).save(file, "png")
+        return CompressedImage(format="png", data=file.getvalue())
+    order = {"rgb8": [0, 1, 2], "bgr8": [2, 1, 0], "bgra8": [2, 1, 0, 0], "mono8": [0], "16UC1": [0, 1]}[encoding]
+    rows = numpy.pad(pixels[..., order].reshape(height, -1), ((0, 0), (0, 2)))
+    return Image(height=height, width=width, encoding=encoding, step=rows.shape[1], data=rows.tobytes())
 
 
 class EpisodesTest(InFolder):
@@ -40,6 +56,13 @@ class EpisodesTest(InFolder):
                 run = 2 if reset is not None and step >= reset else 1
                 joints = [-(seconds + k) for k in range(7)]
                 self.put("applied_input", StepInput(step=step, run=run, joints=joints, buttons=bytes([0, 1, 0, 0, 0, step % 2])), seconds)
+        return self.path
+
+    def add_pictures(self, topic="endoscope/image_raw", encoding="rgb8", rate=RATE, until=3.0):
+        """Their first pixel has the number of the picture in red, and twice that in green."""
+        with rosbag.Bag(self.path, "a") as self.bag:
+            for number in range(int(until * rate)):
+                self.put(topic, picture(number, encoding), 1 + number / rate)
         return self.path
 
     def put(self, topic, message, seconds):
@@ -113,6 +136,33 @@ class EpisodesTest(InFolder):
         found = [(len(episode.times), split) for episode, split, _ in self.episodes()]
         self.assertEqual(found, [(30, "failure"), (31, "train")])
         self.assertEqual(len(self.episodes(begin=1.5, end=1.9)[0][0].times), 12 + 1)
+
+    def test_recorded_pictures_are_those_nearest_to_the_rows(self):
+        for topic, encoding, rate in (("endoscope/image_raw", "rgb8", 60), ("endoscope/image_raw", "bgr8", 30), ("a/endoscope/image_raw", "bgra8", 20),
+                                      ("endoscope/image_raw/compressed", "png", 60), ("endoscope/left/image_raw", "mono8", 60)):  # fmt: skip
+            self.write()
+            self.add_pictures(topic, encoding, rate)
+            with Source(self.path) as source:
+                pictures, fps = Recorded(source), min(rate, 30)
+                self.assertEqual(pictures.shape, [16, 32, 3])
+                for episode, _ in Reader(source, fps).episodes():
+                    found = numpy.array([frame[0, 0] for frame in pictures.of(episode.times, fps)])
+                    numbers = numpy.round((numpy.array(episode.times) / 1e9 - 1) * rate)
+                    numpy.testing.assert_array_equal(found[:, 0], numbers)
+                    numpy.testing.assert_array_equal(found[:, 1], numbers if encoding == "mono8" else 2 * numbers % 256)
+
+    def test_pictures_that_cannot_be_used(self):
+        self.write()
+        self.add_pictures("microscope/image_raw")  # of another camera
+        with Source(self.path) as source:
+            self.assertEqual(topic_of(source), [])
+        self.add_pictures(rate=10)
+        with Source(self.path) as source, self.assertRaisesRegex(BagError, "no picture within 0.0.. s of a frame; give the --rate"):
+            list(Recorded(source).of([1e9 + k * 1e9 / 30 for k in range(60)], 30))
+        self.write()
+        self.add_pictures(encoding="16UC1")
+        with Source(self.path) as source, self.assertRaisesRegex(BagError, "image_raw at 1.000 s cannot be read .'16UC1'.; those in rgb8"):
+            Recorded(source)
 
     def test_what_cannot_be_done(self):
         self.write()

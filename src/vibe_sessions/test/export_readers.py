@@ -1,12 +1,18 @@
 """What the readers of others find in exports. Called by scripts/test.d/export.sh with a name of a class, in an environment with
 the packages of readers.txt."""
 
+import contextlib
+import ctypes
 import dataclasses
 import glob
+import io
 import json
 import os
 import pathlib
 import random
+import re
+import shutil
+import signal
 import unittest
 
 import numpy
@@ -14,10 +20,16 @@ import rosbag
 import genpy
 from export_lerobot_test import EpisodesTest
 from export_ros2_test import TYPES
-from export_test import ExportTest
+from export_test import ExportTest, InterruptedTest
+from killed import killed
 from random_messages import content, random_message
+from sensor_msgs.msg import Image
 
+from vibe_sessions.export import main as export
 from vibe_sessions.export import ros2_package
+from vibe_sessions.export.definitions import fields_of, parts_of
+from vibe_sessions.headless import call, find_program
+from vibe_sessions.imports.session import write_commands
 
 
 def content2(message):
@@ -97,6 +109,48 @@ class McapReaders(ExportTest):
             self.with_mcap()
 
 
+class FoxgloveLayout(ExportTest):
+    """Against a recording of the simulator with every topic, and a picture."""
+
+    DRAWN = {"sensor_msgs/msg/PointCloud2", "geometry_msgs/msg/PoseStamped"}  # by the panel 3D itself
+
+    def setUp(self):
+        super().setUp()
+        scene = pathlib.Path(__file__).parents[1] / "regressions/scenes/coarse_stomach.yaml"
+        write_commands(self.folder + "/commands.bag", str(scene), 1 / 60, numpy.zeros((5, 7)), numpy.zeros((5, 6), numpy.uint8))
+        replay = find_program("vibe_sim", "vibe_replay")
+        call(["--record", self.folder + "/new.bag", self.folder + "/commands.bag"], program=replay)
+        call(["--fill", self.bag, self.folder + "/new.bag"], program=replay, accepted=(0, 3))
+        with rosbag.Bag(self.bag, "a") as bag:
+            bag.write("/endoscope/image_raw", Image(height=1, width=1, encoding="rgb8", step=3, data=b"abc"), genpy.Time(1))
+
+    def test_all_that_it_shows_is_there(self):
+        from mcap.reader import make_reader
+
+        self.exports(to="mcap")
+        with open(self.output + "/a/mcap/foxglove.json", encoding="utf-8") as file:
+            layout = json.load(file)
+        with open(self.output + "/a/mcap/session.mcap", "rb") as file:
+            summary = make_reader(file).get_summary()
+        kinds = {channel.topic: summary.schemas[channel.schema_id] for channel in summary.channels.values()}
+        panels = layout["configById"]
+        self.assertEqual(sorted(panels), sorted(re.findall('"([^"]*!.*?)"', json.dumps(layout["layout"]))))
+        for topic, about in panels["3D!organ"]["topics"].items():
+            self.assertIn(kinds[topic].name, self.DRAWN, topic)
+            if "colorField" in about:
+                self.assertIn(about["colorField"], [field.name for field in self.messages(topic.strip("/"))[0].fields])
+        self.assertEqual(kinds[panels["Image!picture"]["imageMode"]["imageTopic"]].name, "sensor_msgs/msg/Image")
+        for path in (path["value"] for panel in panels.values() for path in panel.get("paths", ())):
+            topic, *names = path.split(".")
+            kind = kinds[topic].name.replace("/msg/", "/")
+            parts = parts_of(kind, kinds[topic].data.decode())
+            for name in names:
+                kind = fields_of(kind, parts[kind], arrays=True)[name.partition("[")[0]][0]
+                self.assertEqual(kind.endswith("]"), name.endswith("]"), path)
+                kind = kind.partition("[")[0]
+            self.assertIn(kind, ("float64", "string"), path)
+
+
 class Ros2Package(unittest.TestCase):
     def test_every_definition_is_read_and_has_a_hash(self):
         import rospkg
@@ -116,7 +170,9 @@ class Ros2Package(unittest.TestCase):
             self.assertEqual(len(types), len([each for each in files if each.startswith("msg/")]) + 2 * len([each for each in files if each.startswith("srv/")]))
 
 
-class ParquetReader(ExportTest):
+class ParquetReader(InterruptedTest):
+    FORMATS = "csv,parquet"
+
     def test_same_as_csv(self):
         from pyarrow import parquet
 
@@ -155,8 +211,6 @@ class LerobotReader(EpisodesTest):
     def test_rows_are_those_of_the_episodes(self):
         from pyarrow import parquet
 
-        from vibe_sessions.export import main as export
-
         folder = os.path.dirname(self.write())
         contents = []
         for place in ("/a", "/b"):
@@ -170,6 +224,79 @@ class LerobotReader(EpisodesTest):
             table = parquet.read_table(folder + "/a/lerobot/data/chunk-000/file-{:03d}.parquet".format(number)).to_pydict()
             for name, rows in episode.columns().items():
                 numpy.testing.assert_array_equal(numpy.array(table[name]).reshape(rows.shape), rows)
+
+    def files(self, folder):
+        """(bytes, time of the last change) by path."""
+        paths = [path for path in pathlib.Path(folder).rglob("*") if path.is_file()]
+        return {str(path.relative_to(folder)): (path.read_bytes(), path.stat().st_mtime_ns) for path in paths}
+
+    def test_a_kill_at_any_moment_keeps_finished_episodes(self):
+        first, second = self.write(), os.path.join(self.folder, "second", "session.bag")
+        self.add_pictures()
+        os.mkdir(os.path.dirname(second))
+        shutil.copy(first, second)
+
+        def make(place):
+            return export.main([first, second, "--to", "lerobot", "--output", os.path.join(self.folder, place)])
+
+        self.assertEqual(make("whole"), 0)
+        wanted = {path: data for path, (data, _) in self.files(self.folder + "/whole").items()}
+        self.assertEqual(len([path for path in wanted if path.endswith(".mp4")]), 8)
+        at, status, kept = 0, None, set()
+        while status != 0:
+            at += 23
+            shutil.rmtree(self.folder + "/out", ignore_errors=True)
+            status = killed(at, lambda: make("out"))
+            self.assertIn(status, (0, -signal.SIGKILL))
+            part = self.files(self.folder + "/out/.lerobot.part")
+            finished = json.loads(part["meta/info.json"][0])["total_episodes"] if "export.json" in part else 0
+            self.assertEqual(make("out"), 0)
+            found = self.files(self.folder + "/out")
+            self.assertEqual({path: data for path, (data, _) in found.items()}, wanted)
+            for path, (_, changed) in part.items():
+                if path.endswith((".mp4", ".parquet")) and re.search("file-(...)", path) and int(re.search("file-(...)", path)[1]) < finished:
+                    self.assertEqual(found["lerobot/" + path][1], changed, path)
+            kept.add(finished)
+        self.assertLessEqual(set(range(8)), kept)
+
+    def test_pictures_of_the_recording_are_its_video(self):
+        import av
+
+        self.write()
+        self.add_pictures()
+        self.assertEqual(export.main([self.path, "--to", "lerobot", "--output", self.folder + "/out"]), 0)
+        with av.open(self.folder + "/out/lerobot/videos/observation.images.endoscope/chunk-000/file-001.mp4") as video:
+            shown = [frame.to_ndarray(format="rgb24").shape for frame in video.decode(video=0)]
+        self.assertEqual(shown, [(16, 32, 3)] * len(self.episodes()[1][0].times))
+        plain = os.path.join(self.folder, "plain", "session.bag")
+        os.mkdir(os.path.dirname(plain))
+        pictured, self.path = self.path, plain
+        self.write()
+        with contextlib.redirect_stderr(io.StringIO()) as said:
+            self.assertEqual(export.main([pictured, plain, "--to", "lerobot", "--output", self.folder + "/mixed"]), 2)
+        self.assertIn("has no pictures of the endoscope, unlike the first recording; export them apart", said.getvalue())
+
+
+class GltfReader(ExportTest):
+    def test_assimp_finds_every_frame(self):
+        import pyassimp
+
+        self.make()
+        with rosbag.Bag(self.bag, "a") as bag:
+            cloud = next(message for _, message, _ in bag.read_messages(topics=["/tissue/particles"]))
+            points = numpy.frombuffer(cloud.data, "<f4").reshape(-1, 4).copy()
+            points[:, 2] += 0.01
+            cloud.data, cloud.header.stamp = points.tobytes(), genpy.Time(4)
+            bag.write("/tissue/particles", cloud, cloud.header.stamp)
+        self.exports(to="gltf")
+        with pyassimp.load(self.output + "/a/gltf/wall.glb") as scene:
+            wall = scene.meshes[0].contents
+            self.assertEqual(wall.mNumAnimMeshes, 1)
+            self.assertEqual(scene.meshes[0].faces.ravel().tolist(), list(self.messages("tissue/topology")[0].triangles))
+            for found, cloud in zip((wall, wall.mAnimMeshes[0].contents), self.messages("tissue/particles")):
+                vertices = ctypes.cast(found.mVertices, ctypes.POINTER(ctypes.c_float))
+                wanted = numpy.frombuffer(cloud.data, "<f4").reshape(-1, 4)[:, :3]
+                numpy.testing.assert_allclose(numpy.ctypeslib.as_array(vertices, (found.mNumVertices, 3)), wanted, atol=1e-8)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """Messages of ROS 2: the bytes of each type, its definition, and the package of vibe_msgs."""
 
+import io
 import os
 import random
 import re
@@ -17,11 +18,13 @@ import yaml
 from random_messages import content, random_message
 
 from vibe_sessions.export import ros2_package
-from vibe_sessions.export.cdr import CODES, HEAD, cdr_of
+from vibe_sessions.export.cdr import HEAD, Encoder
 from vibe_sessions.export.definitions import fields_of, parts_of, ros2_definition
 
 PACKAGES = (vibe_msgs.msg, sensor_msgs.msg, geometry_msgs.msg, std_msgs.msg, tf2_msgs.msg)
 TYPES = [kind for package in PACKAGES for kind in vars(package).values() if isinstance(kind, type)]
+CODES = {"bool": "?", "byte": "b", "char": "B", "int8": "b", "uint8": "B", "int16": "h", "uint16": "H", "int32": "i",
+         "uint32": "I", "int64": "q", "uint64": "Q", "float32": "f", "float64": "d"}  # fmt: skip
 ROS2_NAME = re.compile("[a-z](_?[a-z0-9]+)*_?[a-z0-9]*$")
 
 
@@ -63,12 +66,17 @@ class BytesTest(unittest.TestCase):
     def test_every_type_is_the_same_when_it_is_read_again(self):
         dice = random.Random(1)
         for kind in TYPES:
+            encoder = Encoder(kind._type, kind._full_text)
             for _ in range(5):
-                message = random_message(kind, dice)
-                reader = Cdr(cdr_of(message), kind)
+                message, data = random_message(kind, dice), io.BytesIO()
+                message.serialize(data)
+                reader = Cdr(encoder.encode(data.getvalue()), kind)
                 # by words: NaN is equal to itself, and -0.0 is not 0.0
                 self.assertEqual(repr(reader.value(kind._type)), repr(content(message)), kind._type)
                 self.assertEqual(reader.at, len(reader.data), kind._type)
+                for cut in dice.sample(range(len(data.getvalue())), min(2, len(data.getvalue()))):
+                    with self.assertRaises(struct.error, msg=kind._type):
+                        encoder.encode(data.getvalue()[:cut])
 
 
 class DefinitionTest(unittest.TestCase):

@@ -6,21 +6,27 @@ import ctypes
 import errno
 import glob
 import io
+import json
 import os
 import re
 import shutil
+import signal
 import struct
 import unittest
 import zlib
 from unittest import mock
 
+import genpy
 import numpy
 import rosbag
 from in_folder import InFolder
+from killed import killed
 from report_bags import SyntheticSession
 
+from vibe_sessions.export import gltf as gltf_module
 from vibe_sessions.export import main as export
 from vibe_sessions.export.source import Source
+from vibe_sessions.whole_file import digest
 
 
 def tree(folder):
@@ -198,8 +204,75 @@ class MeshTest(ExportTest):
         self.assertIn("endTimeCode = 72.0 ", text)
 
 
+class GltfTest(ExportTest):
+    def read(self, path):
+        """What the text says, and the values of each accessor."""
+        with open(path, "rb") as file:
+            data = file.read()
+        magic, version, size, length, kind = struct.unpack_from("<4sIIII", data)
+        self.assertEqual((magic, version, size, kind, length % 4), (b"glTF", 2, len(data), 0x4E4F534A, 0))
+        self.assertEqual(struct.unpack_from("<II", data, 20 + length), (len(data) - length - 28, 0x004E4942))
+        gltf, values = json.loads(data[20 : 20 + length]), []
+        for accessor in gltf["accessors"]:
+            view = gltf["bufferViews"][accessor["bufferView"]]
+            width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor["type"]]
+            found = numpy.frombuffer(data, {5126: "<f4", 5125: "<u4"}[accessor["componentType"]], accessor["count"] * width, 28 + length + view["byteOffset"])
+            self.assertEqual(found.nbytes, view["byteLength"])
+            values.append(found.reshape(-1, width))
+            if "min" in accessor:
+                self.assertEqual((accessor["min"], accessor["max"]), (values[-1].min(axis=0).tolist(), values[-1].max(axis=0).tolist()))
+        return gltf, values
+
+    def test_each_frame_is_that_of_its_message(self):
+        self.make()
+        with rosbag.Bag(self.bag, "a") as bag:  # three frames more, each a little larger
+            cloud = next(message for _, message, _ in bag.read_messages(topics=["/tissue/particles"]))
+            points = numpy.frombuffer(cloud.data, "<f4").reshape(-1, 4)
+            for k in range(1, 4):
+                moved = points.copy()
+                moved[:, :3] *= 1 + 0.1 * k
+                cloud.data, cloud.header.stamp = moved.tobytes(), genpy.Time.from_sec(3 + k / 7)
+                bag.write("/tissue/particles", cloud, cloud.header.stamp)
+        self.exports(to="gltf")
+        gltf, values = self.read(self.output + "/a/gltf/wall.glb")
+        (primitive,) = gltf["meshes"][0]["primitives"]
+        base, targets = values[primitive["attributes"]["POSITION"]], [values[each["POSITION"]] for each in primitive["targets"]]
+        (weights,) = (sampler for channel, sampler in zip(gltf["animations"][0]["channels"], gltf["animations"][0]["samplers"])
+                      if channel["target"]["path"] == "weights")  # fmt: skip
+        weights = values[weights["output"]].reshape(-1, len(targets))
+        frames, clouds = self.table("frames", "a/gltf"), self.messages("tissue/particles")
+        self.assertEqual((len(weights), len(frames)), (4, 4))
+        for row, weight, cloud in zip(frames, weights, clouds):
+            shown = base + sum(each * target for each, target in zip(weight, targets))
+            wanted = numpy.frombuffer(cloud.data, "<f4").reshape(-1, 4)[:, :3]
+            self.assertLessEqual(abs(shown - wanted).max(), float(row["deviation [m]"]) * 1.01)
+            self.assertLess(float(row["deviation [m]"]), 1e-8)
+            self.assertEqual(float(row["stamp [s]"]), cloud.header.stamp.to_nsec() / 1e9)
+        self.assertEqual(values[primitive["indices"]].ravel().tolist(), list(self.messages("tissue/topology")[0].triangles))
+
+    def test_the_scope_moves_as_it_was_measured(self):
+        self.make()
+        with rosbag.Bag(self.bag, "a") as bag:
+            cloud = next(message for _, message, _ in bag.read_messages(topics=["/tissue/particles"]))
+            cloud.header.stamp = genpy.Time(2)
+            bag.write("/tissue/particles", cloud, cloud.header.stamp)
+        self.exports(to="gltf")
+        gltf, values = self.read(self.output + "/a/gltf/wall.glb")
+        channels = {channel["target"]["path"]: gltf["animations"][0]["samplers"][channel["sampler"]] for channel in gltf["animations"][0]["channels"]
+                    if gltf["nodes"][channel["target"]["node"]]["name"] == "scope_tip"}  # fmt: skip
+        poses = [message for message in self.messages("scope/measured_cp") if message.header.stamp.to_sec() >= 2]
+        numpy.testing.assert_allclose(values[channels["translation"]["output"]], [[p.x, p.y, p.z] for p in (m.pose.position for m in poses)], atol=1e-8)
+        numpy.testing.assert_allclose(values[channels["translation"]["input"]].ravel(), [m.header.stamp.to_sec() - 2 for m in poses], atol=1e-6)
+        self.assertEqual(values[channels["rotation"]["output"]].tolist(), [[0, 0, 0, 1]] * len(poses))
+
+    def test_what_cannot_be_one_file(self):
+        self.make()
+        with mock.patch.object(gltf_module, "MOST", 0):
+            self.refuses("has more than 0 frames, .*give a lower --rate", to="gltf")
+
+
 class InterruptedTest(ExportTest):
-    FORMATS = "csv,mcap,mesh"
+    FORMATS = "csv,mcap,mesh,gltf"
 
     def reference(self):
         self.make(duration=0.5)
@@ -219,7 +292,7 @@ class InterruptedTest(ExportTest):
         self.exports(to=self.FORMATS)
         self.assertEqual(tree(self.output), wanted)
         times = {path: os.stat(os.path.join(self.output, path)).st_mtime_ns for path in wanted}
-        self.assertEqual(self.exports(to=self.FORMATS).count("complete, kept"), 3)
+        self.assertEqual(self.exports(to=self.FORMATS).count("complete, kept"), len(self.FORMATS.split(",")))
         self.assertEqual({path: os.stat(os.path.join(self.output, path)).st_mtime_ns for path in wanted}, times)
         self.refuses("other options; remove it", "--rate", "5")
 
@@ -246,16 +319,37 @@ class InterruptedTest(ExportTest):
             self.assertEqual(self.check_left(wanted), wanted)
         self.assertGreater(number, 30)
 
-    def test_a_kill_while_it_writes(self):
-        wanted = self.reference()
-        for folder in ("reference/a/csv", "reference/a/mesh"):  # what a killed program leaves
-            name = os.path.basename(folder)
-            shutil.copytree(os.path.join(self.folder, folder), os.path.join(self.output, "a", "." + name + ".part"))
-            with open(os.path.join(self.output, "a", "." + name + ".part", "of_another_call"), "w", encoding="utf-8"):
-                pass
-        self.exports(to=self.FORMATS)
-        self.assertEqual(self.check_left(wanted), wanted)
-        self.assertEqual(os.listdir(self.output + "/a").sort(), ["csv", "mcap", "mesh"].sort())
+    def test_a_kill_at_any_moment_keeps_what_is_finished_and_leaves_nothing_half_done(self):
+        wanted, at, status = self.reference(), 0, None
+        formats = sorted(self.FORMATS.split(","))
+        while status != 0:
+            at += 6
+            shutil.rmtree(self.output, ignore_errors=True)
+            status = killed(at, lambda: export.main([self.bag, "--to", self.FORMATS, "--output", self.output]))
+            self.assertIn(status, (0, -signal.SIGKILL))
+            left = self.check_left(wanted)
+            times = {path: os.stat(os.path.join(self.output, path)).st_mtime_ns for path in left}
+            self.exports(to=self.FORMATS)
+            self.assertEqual(tree(self.output), wanted)
+            self.assertEqual(sorted(os.listdir(self.output + "/a")), formats)
+            self.assertEqual({path: os.stat(os.path.join(self.output, path)).st_mtime_ns for path in left}, times)
+        self.assertGreater(at, 12 * len(formats))
+
+    def test_what_a_killed_export_has_repeated_is_not_repeated_again(self):
+        self.make(duration=0.5)
+        scratch = os.path.join(self.output, "a", ".filling")
+        os.makedirs(scratch)
+        shutil.copy(self.bag, os.path.join(scratch, digest(self.bag) + ".bag"))
+        asked = mock.patch.object(Source, "is_compact", lambda source: True)
+        with asked, mock.patch.object(export, "repeat") as repeat:
+            self.exports("--fill")
+            repeat.assert_not_called()
+            self.assertEqual(os.listdir(self.output + "/a"), ["csv"])
+            os.makedirs(scratch)
+            shutil.copy(self.bag, os.path.join(scratch, "of_another.bag"))
+            repeat.side_effect = shutil.copy
+            self.exports("--fill", to="mcap")
+            repeat.assert_called_once()
 
 
 class RefusalTest(ExportTest):
@@ -277,11 +371,12 @@ class RefusalTest(ExportTest):
         for data, pattern in ((b"", "is empty"), (b"x" * 99, "is not a bag"), (whole[: len(whole) // 2], "not closed.*rosbag reindex")):
             with open(path, "wb") as file:
                 file.write(data)
-            for form in ("csv", "mcap", "mesh"):
+            for form in ("csv", "mcap", "mesh", "gltf"):
                 self.refuses(pattern, to=form)
             self.assertEqual(tree(self.output), {})
         self.make(without=("tissue/topology",))
         self.refuses("has no tissue/topology", to="mesh")
+        self.refuses("has no tissue/topology", to="gltf")
         self.make(scene="nonsense: 1\n")
         self.refuses("does not repeat.*nonsense.*export what it has", "--rate", "30", to="mesh")
 

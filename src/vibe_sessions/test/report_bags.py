@@ -118,6 +118,7 @@ class SyntheticSession:
         angle = 2 * math.pi * seconds / TURN
         pose = PoseStamped()
         pose.pose.position = Point(RADIUS * math.cos(angle), RADIUS * math.sin(angle), 0.01)
+        pose.pose.orientation.w = 1
         self.put("scope/measured_cp", pose, self.origin + seconds)
         wrench = WrenchStamped()
         wrench.wrench.force.z = 6 * max(0.0, math.sin(angle))

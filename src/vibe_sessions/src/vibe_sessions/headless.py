@@ -63,8 +63,8 @@ def _wait(child, stopped):
                 raise Stopped from None
 
 
-def call(arguments, stopped=lambda: False, program=None):
-    """What a program printed: vibe_headless, or that at another path.
+def call(arguments, stopped=lambda: False, program=None, accepted=(0,)):
+    """What a program printed that ends with one of these statuses: vibe_headless, or that at another path.
 
     Raises SessionError with the sentence that it said, Killed if a signal ended it, Stopped on demand.
     """
@@ -82,7 +82,7 @@ def call(arguments, stopped=lambda: False, program=None):
             child.communicate()
     if child.returncode < 0:
         raise Killed(f"{name} was ended by the signal {signal.Signals(-child.returncode).name}.")
-    if child.returncode > 0:
+    if child.returncode not in accepted:
         lines = said.strip().splitlines() or [f"{name} ended with status {child.returncode}."]
         raise SessionError(lines[-1].removeprefix(name + ": "))
     return output

@@ -22,8 +22,9 @@ def parts_of(datatype, definition):
     return {datatype: first, **{name.strip(): text for name, _, text in (other.partition("\n") for other in others)}}
 
 
-def fields_of(datatype, text):
-    """(type, unit) by name, without constants. The comment above fields, or behind one, tells the unit in brackets."""
+def fields_of(datatype, text, arrays=False):
+    """(type, unit) by name, without constants. The comment above fields, or behind one, tells the unit in brackets. With
+    `arrays` a type says whether it is one, as float64[3]."""
     fields, words, is_old = {}, "", True  # a comment is that of all fields up to the next one
     for line in text.splitlines():
         found = LINE.match(line)
@@ -31,7 +32,7 @@ def fields_of(datatype, text):
             words = line if is_old or not line.strip() else words + line
         elif not found[4]:
             units = re.findall(r"\[([^\]\d]{1,12}[^\]]{0,3})\]", words + (found[6] or ""))
-            fields[found[3]] = full_name(found[1], datatype.split("/")[0]), " or ".join(dict.fromkeys(units))
+            fields[found[3]] = full_name(found[1], datatype.split("/")[0]) + (found[2] or "" if arrays else ""), " or ".join(dict.fromkeys(units))
         is_old = found is not None
     return fields
 

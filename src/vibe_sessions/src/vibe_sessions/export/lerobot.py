@@ -1,11 +1,10 @@
 """A LeRobot data set of recordings: an episode for each goal of a trainee, or for each run that somebody else drove."""
 
-import os
-
 import numpy
 from vibe_msgs.msg import GoalProgress, ProcedureEvent
 
 from ..report.bag_file import BagError
+from .pictures import Images, Recorded, topic_of
 
 FPS = 30
 KINDS = dict(sorted((value, name) for name, value in vars(ProcedureEvent).items() if name.isupper() and isinstance(value, int)))
@@ -122,33 +121,10 @@ class Reader:
             yield ended, success or (not self._has_goals and "CINCHED" in ended.kinds)
 
 
-class Images:
-    """What scripts/dataset wrote of a session."""
-
-    def __init__(self, folder):
-        from PIL import Image
-
-        self._open, self._folder = Image.open, folder
-        try:
-            self._stamps = numpy.loadtxt(os.path.join(folder, "times.txt"), ndmin=2)[:, 1]
-            self.shape = list(self._load(0).shape)
-        except (OSError, ValueError) as error:
-            raise BagError("--images: '{}' is no folder of scripts/dataset ({}); name another".format(folder, error)) from None
-
-    def _load(self, number):
-        return numpy.asarray(self._open(os.path.join(self._folder, "image", "{:06d}.png".format(number))).convert("RGB"))
-
-    def of(self, times, fps):
-        """Those nearest to these times [ns], at most half a frame away."""
-        apart = numpy.abs(self._stamps[None, :] - numpy.array(times)[:, None] / 1e9)
-        if apart.min(axis=1).max() > 0.51 / fps:
-            raise BagError("--images: '{}' has none within {:.3f} s of a frame; call scripts/dataset --rate {} --output DIR BAG".format(
-                self._folder, apart.min(axis=1).max(), fps))  # fmt: skip
-        return (self._load(number) for number in apart.argmin(axis=1))
-
-
 class DataSet:
-    def __init__(self, folder, arguments):
+    """In a folder that is new or was begun by the same call. Whether it has pictures, and their size, says its first recording."""
+
+    def __init__(self, folder, arguments, first):
         try:
             import vibe
             from vibe.data import lerobot
@@ -156,20 +132,28 @@ class DataSet:
             raise BagError("lerobot needs the Python module vibe ({}); build it: scripts/build --part python".format(error)) from None
         self._error, self._fps = vibe.Error, int(arguments.rate or FPS)
         self._images = Images(arguments.images) if arguments.images else None
+        shape = self._images.shape if self._images else Recorded(first).shape if topic_of(first) else None
+        self._has_pictures = shape is not None
         features = {name: {"dtype": "float32", "shape": [len(names)], "names": names} for name, names in NAMES.items()}
-        if self._images:
-            features[CAMERA] = {"dtype": "video", "shape": self._images.shape, "names": ["height", "width", "channels"]}
+        if shape:
+            features[CAMERA] = {"dtype": "video", "shape": shape, "names": ["height", "width", "channels"]}
         try:
             self._writer = lerobot.Writer(folder, version=arguments.lerobot_version, fps=self._fps, features=features)
         except vibe.Error as error:
             raise BagError("lerobot: {}".format(error)) from None
 
-    def add(self, source):
-        """The episodes of a recording."""
+    def add(self, source, before):
+        """The episodes of a recording, of which some may be there already; `before` were there when it began. Returns how many
+        there are then."""
+        if not self._images and self._has_pictures != bool(topic_of(source)):
+            raise BagError("{}: {} pictures of the endoscope, unlike the first recording; export them apart".format(
+                source.path, "has no" if self._has_pictures else "has"))  # fmt: skip
+        pictures = (self._images or Recorded(source)) if self._has_pictures else None
         try:
-            for episode, success in Reader(source, self._fps).episodes():
-                videos = {CAMERA: self._images.of(episode.times, self._fps)} if self._images else None
-                self._writer.add(episode.columns(), episode.task, videos, episode.split(success), success)
+            for number, (episode, success) in enumerate(Reader(source, self._fps).episodes(), before):
+                if number >= self._writer.episodes:
+                    videos = {CAMERA: pictures.of(episode.times, self._fps)} if pictures else None
+                    self._writer.add(episode.columns(), episode.task, videos, episode.split(success), success)
         except self._error as error:
             raise BagError(str(error)) from None
         return self._writer.episodes

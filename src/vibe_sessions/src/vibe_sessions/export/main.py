@@ -7,20 +7,21 @@ import json
 import os
 import shutil
 import struct
-import subprocess
 import sys
 
+from ..headless import SessionError, call, find_program
 from ..report.bag_file import BagError
 from ..report.main import find_bags
 from ..report.session_work import names_of
-from ..whole_file import digest, flush
+from ..whole_file import digest, flush, open_whole
+from .gltf import Gltf
 from .mcap import Mcap
 from .mesh import KEPT, Mesh
 from .options import check, parser
 from .source import Source
 from .tables import Csv, Parquet
 
-WRITERS = {"csv": Csv, "parquet": Parquet, "mcap": Mcap, "mesh": Mesh}
+WRITERS = {"csv": Csv, "parquet": Parquet, "mcap": Mcap, "mesh": Mesh, "gltf": Gltf}
 ABOUT = "export.json"  # in each folder: of what it is
 
 
@@ -30,7 +31,8 @@ def read(path):
 
 
 class Folder:
-    """The folder of a format: made under another name, and renamed when all in it is on the disk."""
+    """The folder of a format: made under another name, and renamed when all in it is on the disk. What is finished is kept, and
+    nothing that is half done has a final name."""
 
     def __init__(self, place, name, arguments, *options, **about):
         about.update({each: getattr(arguments, each) for each in ("begin", "end", "rate", *options)}, format=name)
@@ -56,9 +58,19 @@ class Folder:
         finally:
             shutil.rmtree(self.part, ignore_errors=True)
 
-    def end(self, what):
-        with open(os.path.join(self.part, ABOUT), "w", encoding="utf-8") as file:
+    def resume(self):
+        """For what is made of whole parts, which are kept, too, if they were described as those of the same call."""
+        about = os.path.join(self.part, ABOUT)
+        if not os.path.exists(about) or read(about) != self._about:
+            shutil.rmtree(self.part, ignore_errors=True)
+        os.makedirs(self.part, exist_ok=True)
+
+    def describe(self):
+        with open_whole(os.path.join(self.part, ABOUT)) as file:
             file.write(self._about)
+
+    def end(self, what):
+        self.describe()
         for folder, _, names in os.walk(self.part, topdown=False):
             for name in [*names, "."]:
                 flush(os.path.join(folder, name))
@@ -68,26 +80,29 @@ class Folder:
 
 
 @contextlib.contextmanager
-def whole(bag, scratch, is_asked):
+def whole(bag, sha, scratch, is_asked):
     """The path of a recording, or, if it is asked for, of the same with every message, from repeating it."""
     if not is_asked:
         yield bag
         return
-    shutil.rmtree(scratch, ignore_errors=True)  # of an export that was interrupted
-    os.makedirs(scratch)
+    path = os.path.join(scratch, sha + ".bag")
     try:
-        path, said = os.path.join(scratch, "whole.bag"), os.path.join(scratch, "said.txt")
-        print("repeating {}, to have every message of it".format(bag), flush=True)
-        with open(said, "w", encoding="utf-8") as file:
-            command = ["rosrun", "vibe_sim", "vibe_replay", "--fill", path, bag]
-            status = subprocess.run(command, stdout=file, stderr=subprocess.STDOUT, check=False).returncode
-        if status not in (0, 3):  # 3: an older release has no hashes to compare with
-            last = (read(said).strip().splitlines() or ["it says nothing"])[-1]
-            raise BagError("{}: does not repeat, so what it leaves out cannot be added ({}); export what it has to csv, parquet "
-                           "or mcap without --fill".format(bag, last))  # fmt: skip
+        if not os.path.exists(path):  # else an export was killed that had repeated it
+            shutil.rmtree(scratch, ignore_errors=True)
+            os.makedirs(scratch)
+            repeat(bag, path)
         yield path
     finally:
         shutil.rmtree(scratch, ignore_errors=True)
+
+
+def repeat(bag, path):
+    print("repeating {}, to have every message of it".format(bag), flush=True)
+    try:  # status 3: an older release has no hashes to compare with
+        call(["--fill", path, bag], program=find_program("vibe_sim", "vibe_replay"), accepted=(0, 3))
+    except SessionError as error:
+        raise BagError("{}: does not repeat, so what it leaves out cannot be added ({}); export what it has to csv, parquet "
+                       "or mcap without --fill".format(bag, str(error))) from None  # fmt: skip
 
 
 def write(arguments, path, folders):
@@ -116,32 +131,38 @@ def export_one(arguments, bag, place):
     left = {name: folder for name, folder in folders.items() if not folder.is_complete()}
     for fill in (False, True):
         asked = {name: folder for name, folder in left.items()
-                 if fill == (is_compact and (arguments.fill or (name == "mesh" and (arguments.rate or 0) > KEPT)))}  # fmt: skip
+                 if fill == (is_compact and (arguments.fill or (name in ("mesh", "gltf") and (arguments.rate or 0) > KEPT)))}  # fmt: skip
         if asked:
             os.makedirs(place, exist_ok=True)
-            with whole(bag, os.path.join(place, ".filling"), fill) as path:
+            with whole(bag, about["sha256"], os.path.join(place, ".filling"), fill) as path:
                 write(arguments, path, asked)
 
 
 def export_set(arguments, bags):
-    """The data set of all recordings."""
+    """The data set of all recordings. Goes on after the last finished episode, and repeats no recording that has all of its own."""
     from . import lerobot
 
     recordings = [[os.path.basename(bag), digest(bag)] for bag in bags.values()]
     folder = Folder(arguments.output, "lerobot", arguments, "lerobot_version", "images", recordings=recordings)
     if folder.is_complete():
         return
-    with folder.begun():
-        made, rows = lerobot.DataSet(folder.part, arguments), ["session,episodes so far"]
-        for name, bag in bags.items():
-            with Source(bag) as source:
-                fill = source.is_compact() and bool(lerobot.lacks(source))
-            with whole(bag, os.path.join(arguments.output, ".filling"), fill) as path:
-                with Source(path, None, arguments.begin, arguments.end) as source:
-                    rows.append("{},{}".format(name, made.add(source)))
-        with open(os.path.join(folder.part, "sessions.csv"), "w", encoding="utf-8") as file:
+    folder.resume()
+    with Source(next(iter(bags.values()))) as source:
+        made, table = lerobot.DataSet(folder.part, arguments, source), os.path.join(folder.part, "sessions.csv")
+    folder.describe()
+    rows, before = read(table).splitlines() if os.path.exists(table) else ["session,episodes so far"], 0
+    if len(rows) > 1:
+        before = int(rows[-1].rpartition(",")[2])
+    for (name, bag), (_, sha) in list(zip(bags.items(), recordings))[len(rows) - 1 :]:
+        with Source(bag) as source:
+            fill = source.is_compact() and bool(lerobot.lacks(source))
+        with whole(bag, sha, os.path.join(arguments.output, ".filling"), fill) as path:
+            with Source(path, None, arguments.begin, arguments.end) as source:
+                before = made.add(source, before)
+        rows.append("{},{}".format(name, before))
+        with open_whole(table) as file:
             file.write("\n".join(rows) + "\n")
-        folder.end(rows[-1].rsplit(",", 1)[1] + " episodes")
+    folder.end("{} episodes".format(before))
 
 
 def export(arguments, fail):

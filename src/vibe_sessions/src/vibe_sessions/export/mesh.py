@@ -54,17 +54,17 @@ def write_ply(path, points, triangles, comment):
         file.write("\n".join(lines).encode() + points.tobytes() + faces.tobytes())
 
 
-class Mesh:
-    def __init__(self, folder, source, files):
-        self.connections, self._path, self._folder = set(), source.path, folder
-        for name in ("tissue/topology", "tissue/particles"):
+class Wall:
+    """Frames of the wall for a class that writes them in _frame()."""
+
+    def __init__(self, source, further=()):
+        self.connections, self._path = set(), source.path
+        self._topologies, self._last = {}, -1
+        for name in ("tissue/topology", "tissue/particles", *further):
             topics = sorted(source.bag.connections[number].topic for number in source.numbers_of(name))
-            if not topics:
-                raise BagError("{}: has no {}, so there is no wall to write; record it, or leave mesh out".format(source.path, name))
-            self.connections.update(source.numbers_of(topics[0]))
-        self._usd = files.enter_context(open(os.path.join(folder, "wall.usda"), "w", encoding="utf-8"))
-        self._topologies, self._last, self._revision, self._frames = {}, -1, None, ["file,stamp [s],revision"]
-        os.makedirs(os.path.join(folder, "ply"))
+            if not topics and name not in further:
+                raise BagError("{}: has no {}, so there is no wall to write; record it, or leave mesh and gltf out".format(source.path, name))
+            self.connections.update(source.numbers_of(*topics[:1]))
 
     def add(self, message):
         cloud = message.fields
@@ -74,11 +74,27 @@ class Mesh:
         points = points_of(cloud)
         revision = int(points["revision"][0]) if "revision" in points.dtype.names else max(self._topologies, default=0)
         if revision in self._topologies and message.time > self._last:  # time may be set back, but not in a film
-            triangles, time, self._last = self._topologies[revision], message.time / 1e9, message.time
-            name = "ply/wall_{:06d}.ply".format(len(self._frames) - 1)
-            self._frames.append("{},{!r},{}".format(name, time, revision))
-            write_ply(os.path.join(self._folder, name), points, triangles, "{!r} s, frame {}".format(time, cloud.header.frame_id))
-            self._add_sample(round(time * RATE, 6), revision, points, triangles, cloud.header.frame_id)
+            self._last = message.time
+            self._frame(message.time / 1e9, revision, points, cloud.header.frame_id)
+
+    def _check(self, frames):
+        if not frames:
+            raise BagError("{}: has no particles with their topology in this time; choose another, or leave mesh and gltf out".format(self._path))
+
+
+class Mesh(Wall):
+    def __init__(self, folder, source, files):
+        super().__init__(source)
+        self._usd = files.enter_context(open(os.path.join(folder, "wall.usda"), "w", encoding="utf-8"))
+        self._folder, self._revision, self._frames = folder, None, ["file,stamp [s],revision"]
+        os.makedirs(os.path.join(folder, "ply"))
+
+    def _frame(self, time, revision, points, frame):
+        name = "ply/wall_{:06d}.ply".format(len(self._frames) - 1)
+        self._frames.append("{},{!r},{}".format(name, time, revision))
+        triangles = self._topologies[revision]
+        write_ply(os.path.join(self._folder, name), points, triangles, "{!r} s, frame {}".format(time, frame))
+        self._add_sample(round(time * RATE, 6), revision, points, triangles, frame)
 
     def _add_sample(self, code, revision, points, triangles, frame):
         if self._revision is None:
@@ -91,8 +107,7 @@ class Mesh:
         self._usd.write("            {!r}: [{}],\n".format(code, ("({:.9g}, {:.9g}, {:.9g}), " * len(points)).format(*positions)[:-2]))
 
     def finish(self):
-        if self._revision is None:
-            raise BagError("{}: has no particles with their topology in this time; choose another, or leave mesh out".format(self._path))
+        self._check(self._frames[1:])
         end = round(self._last / 1e9 * RATE, 6)
         self._usd.write(SHOWN.format(self._first - 1, self._first, end + 1e6) + "}\n")
         self._usd.seek(len(BEGIN))

@@ -6,10 +6,10 @@ import importlib.util
 
 from ..report.options import Parser
 
-FORMATS = ("csv", "parquet", "mcap", "lerobot", "mesh")
+FORMATS = ("csv", "parquet", "mcap", "lerobot", "mesh", "gltf")
 DESCRIPTION = """\
 Writes recorded sessions in formats that others read: tables of topics (csv, parquet), messages of ROS 2 (mcap), a data
-set for learning (lerobot) and the moving wall (mesh: USD and PLY). docs/export.md has what is in the files."""
+set for learning (lerobot) and the moving wall (mesh: USD and PLY; gltf). docs/export.md has what is in the files."""
 EPILOG = """\
 Each format is a folder DIR/SESSION/FORMAT, that of lerobot DIR/lerobot. A format that is complete is kept: after an
 interruption the same command goes on. The same call gives the same bytes. Ends with status 0, or 2 after one sentence."""
@@ -49,10 +49,11 @@ def add_options(made):
     add("--from", dest="begin", type=number("seconds", 0), metavar="S", help="begin, as a stamp (simulated time begins at 1 s)")
     add("--to-time", dest="end", type=number("seconds", 0), metavar="S", help="end, as a stamp")
     add("--rate", type=number("Hz", 0.001), metavar="HZ", help="at most so many messages of a topic, frames or meshes per second "
-        "(default: all; of lerobot 30, of mesh those of the recording)")  # fmt: skip
+        "(default: all; of lerobot 30, of mesh and gltf those of the recording)")  # fmt: skip
     add("--fill", action="store_true", help="repeat a compact recording first, so that it has every message of every topic; "
-        "lerobot does so anyway, and mesh where --rate asks for it")  # fmt: skip
-    add("--images", metavar="DIR", help="of lerobot: what scripts/dataset wrote of the only recording, as a video")
+        "lerobot does so anyway, and mesh and gltf where --rate asks for it")  # fmt: skip
+    add("--images", metavar="DIR", help="of lerobot: what scripts/dataset wrote of the only recording, as a video "
+        "(default: the pictures in the recording, if it has some)")
     add("--lerobot-version", choices=("v3.0", "v2.1"), default="v3.0", help="of its format (default: %(default)s)")
 
 
@@ -76,4 +77,5 @@ def check(arguments, fail):
         fail("--rate of lerobot must be a whole number, not {:g}".format(arguments.rate))
     for name in sorted({"parquet", "lerobot"} & set(arguments.to)):
         if importlib.util.find_spec("pyarrow") is None:
-            fail("--to {} needs the Python package pyarrow, which is not there; install it with pip, or leave {} out".format(name, name))
+            fail("--to {} needs the Python package pyarrow, which is not there; in a sourced shell `pip install --target tools 'pyarrow<24' av` and "
+                 "`PYTHONPATH=$PYTHONPATH:tools rosrun vibe_sessions export` give it, or leave {} out".format(name, name))  # fmt: skip

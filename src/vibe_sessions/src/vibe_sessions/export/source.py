@@ -32,14 +32,14 @@ class Message:
     """One message, which is parsed where somebody asks for its fields."""
 
     def __init__(self, source, number, received, data):
-        self._source, self._data = source, data
+        self._source, self.data = source, data
         self.number, self.connection, self.received = number, source.bag.connections[number], received  # [ns]
         self.time = (stamp_of(data)[1] if has_header(self.connection.definition) else 0) or received  # [ns]
 
     @functools.cached_property
     def fields(self):
         try:
-            return parse(self.connection, self._data)
+            return parse(self.connection, self.data)
         except (struct.error, genpy.DeserializationError, ValueError) as error:
             raise self._source.damaged(self.connection, self.received, error) from None
 
@@ -87,6 +87,7 @@ class Source:
     def messages(self, wanted):
         """Those of some connections; on a terminal a line says how far it is. Raises BagError where one cannot be read."""
         total, due, seen, said = sum(self.bag.count(number) for number in wanted), {}, set(), 0
+        is_shown = sys.stderr.isatty()
         for done, (number, received, data) in enumerate(self.bag.in_time(wanted), 1):
             connection = self.bag.connections[number]
             if number not in seen and not has_its_definition(connection):
@@ -99,7 +100,7 @@ class Source:
                 raise self.damaged(connection, received, error) from None
             if self._is_wanted(message, due):
                 yield message
-            if sys.stderr.isatty() and (time.monotonic() - said > 0.2 or done == total):
+            if is_shown and (time.monotonic() - said > 0.2 or done == total):
                 said = time.monotonic()
                 print("\r\033[K{} {} %".format(self.path, 100 * done // total), end="" if done < total else "\r\033[K", file=sys.stderr)
 
