@@ -120,8 +120,10 @@ window = vibe.view(environment.simulation, size=32)
 assert window.update() and not window.closed
 window.close()
 assert window.closed and not window.update()
-environment._window._root.tk.call(*environment._window._root.protocol("WM_DELETE_WINDOW").split())  # somebody closes it
+root = environment._window._root
+root.after(0, lambda: root.tk.call(*root.protocol("WM_DELETE_WINDOW").split()))  # somebody closes it
 environment.step(np.zeros(4))
+assert environment._window.closed
 environment.close()
 try:
     environment.render()
