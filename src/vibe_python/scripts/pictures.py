@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Draws what Simulation.camera(tool=True) gives, after two marks were made: colour, depth, normals, labels side by side."""
+"""Draws what Simulation.camera(tool=True) gives, after two marks were made: colour, depth, normals, labels side by side; or with
+--outside an episode of Reach from before the patient."""
 
 import argparse
 
@@ -7,6 +8,7 @@ import matplotlib.image
 import numpy as np
 
 import vibe
+from vibe.env import Environment, Expert
 
 PROTOCOL = """
 name: two marks
@@ -20,18 +22,32 @@ REGIONS = np.array([[0, 0, 0], [204, 120, 166], [87, 181, 232], [230, 158, 0], [
                     [150, 150, 150], [60, 90, 200]], np.uint8)
 
 
+def outside():
+    environment = Environment("Reach", render_mode="rgb_array", view="outside", organs=[("sthenic", 1.0)])
+    seen, _ = environment.reset(seed=1)
+    expert = Expert(environment)
+    expert.reset()
+    for _ in range(15):
+        seen = environment.step(expert.action(seen))[0]
+    return environment.render()
+
+
+def marks(size):
+    simulation = vibe.Simulation(vibe.load())
+    simulation.follow(vibe.Trainee(simulation.model, PROTOCOL))
+    simulation.run(90, insertion=simulation.input["insertion"] - 0.05)
+    seen = simulation.camera(size, size, 1.7, normals=True, colour=True, tool=True)
+    grey = (255 * np.clip(np.nan_to_num(seen["depth"]) / FAR, 0, 1)).astype(np.uint8)
+    return np.concatenate([seen["colour"], np.stack([grey] * 3, -1), (127.5 * (seen["normal"] + 1)).astype(np.uint8), REGIONS[seen["label"]]], 1)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("file", help="PNG that is written")
     parser.add_argument("--size", type=int, default=256, help="of each picture [px]")
+    parser.add_argument("--outside", action="store_true", help="the picture from outside instead")
     options = parser.parse_args()
-    simulation = vibe.Simulation(vibe.load())
-    simulation.follow(vibe.Trainee(simulation.model, PROTOCOL))
-    simulation.run(90, insertion=simulation.input["insertion"] - 0.05)
-    seen = simulation.camera(options.size, options.size, 1.7, normals=True, colour=True, tool=True)
-    grey = (255 * np.clip(np.nan_to_num(seen["depth"]) / FAR, 0, 1)).astype(np.uint8)
-    parts = [seen["colour"], np.stack([grey] * 3, -1), (127.5 * (seen["normal"] + 1)).astype(np.uint8), REGIONS[seen["label"]]]
-    matplotlib.image.imsave(options.file, np.concatenate(parts, 1))
+    matplotlib.image.imsave(options.file, outside() if options.outside else marks(options.size))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,7 @@
 #include <pybind11/pybind11.h>
 
+#include <optional>
+
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "ray_caster.hpp"
@@ -14,11 +16,42 @@ namespace {
 
 constexpr int kMaxPixels = 4096;  // per side
 
-void checkLens(int width, int height, double field_of_view) {
+/// What a picture is taken with.
+struct Taking {
+  double field_of_view;                   // from the left to the right edge [rad]
+  double lamp;                            // where a white wall that faces it has the radiance 1 [m]
+  std::optional<Eigen::Isometry3d> pose;  // in world; none: at the end of the scope
+};
+
+void checkPicture(int width, int height, const Taking& taking) {
   if (width < 1 || height < 1 || width > kMaxPixels || height > kMaxPixels)
     throw Error("'width' or 'height' is not from 1 to 4096; give the pixels of the image.");
-  if (!(field_of_view > 0.01 && field_of_view < 3.1))
+  if (!(taking.field_of_view > 0.01 && taking.field_of_view < 3.1))
     throw Error("'field_of_view' is not from 0.01 to 3.1; give the angle from the left to the right edge [rad].");
+  if (!(taking.lamp > 0 && taking.lamp <= 100))
+    throw Error("'lamp' is not above 0 and at most 100; give the distance at which it lights a wall well [m].");
+}
+
+std::optional<Eigen::Isometry3d> poseOf(const py::handle& value) {
+  if (value.is_none()) return std::nullopt;
+  const auto given = numbers(value, "pose", {4, 4});
+  const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(given.data());
+  const Eigen::Matrix3d turn = matrix.topLeftCorner<3, 3>();
+  if (!(turn.transpose() * turn).isIdentity(1e-6) || turn.determinant() < 0 ||
+      !matrix.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1)))
+    throw Error("'pose' is not a rotation and a place; give the pose (4, 4) of the camera in world [m], or None.");
+  return Eigen::Isometry3d(matrix);
+}
+
+/// The triangles of a surface for a camera outside: the wall is open where it shows it its outside.
+std::vector<std::array<int, 3>> opened(const SurfaceView& surface, std::size_t walls, const Eigen::Vector3d& eye) {
+  std::vector<std::array<int, 3>> triangles = surface.triangles;
+  for (std::size_t i = 0; i < walls; ++i) {
+    std::array<int, 3>& t = triangles[i];
+    const Eigen::Vector3d a = surface.position(t[0]), b = surface.position(t[1]), c = surface.position(t[2]);
+    if ((b - a).cross(c - a).dot(eye - a) > 0) t.fill(t[0]);  // a point, which no ray meets
+  }
+  return triangles;
 }
 
 /// A new array (height, width, 3) if it is wanted, else nothing.
@@ -46,28 +79,32 @@ void findLabels(const Organ& organ, const Scenery& scenery, CastImage& image, st
 }
 
 /// @param colour  null: not wanted
-void look(const Use& use, double field_of_view, bool tool, CastImage& image, std::uint8_t* labels,
+void look(const Use& use, const Taking& taking, bool tool, CastImage& image, std::uint8_t* labels,
           std::uint8_t* colour) {
   const Model& model = use.model();
   const State& state = use.state();
-  const Scenery scenery = tool ? sceneryOf(model, state) : Scenery{};
-  const SurfaceView surface =
-      tool ? scenery.surface() : SurfaceView{model.organ.surface.triangles, state.x, state.y, state.z};
-  const Eigen::Isometry3d pose = linkPose(model, state, model.tool->linkIndex("scope_camera_optical"));
-  castRays(surface, pose, field_of_view, image);
+  const std::size_t walls = model.organ.surface.triangles.size();
+  const Instruments shown = taking.pose ? Instruments::All : Instruments::BeforeTheLens;
+  const Scenery scenery = sceneryOf(model, state, tool ? shown : Instruments::None);
+  const SurfaceView surface = scenery.surface();
+  const Eigen::Isometry3d pose =
+      taking.pose ? *taking.pose : linkPose(model, state, model.tool->linkIndex("scope_camera_optical"));
+  const auto triangles = taking.pose ? opened(surface, walls, pose.translation()) : surface.triangles;
+  castRays({triangles, surface.x, surface.y, surface.z}, pose, taking.field_of_view, image);
   if (colour != nullptr) {
     std::vector<Eigen::Vector3d> albedo = wallAlbedo(model, state);
     albedo.insert(albedo.end(), scenery.albedo.begin(), scenery.albedo.end());
-    shade(surface, static_cast<int>(model.organ.surface.triangles.size()), albedo, pose, field_of_view, image, colour);
+    shade(surface, static_cast<int>(walls), albedo, pose, taking.field_of_view, taking.lamp, image, colour);
   }
   findLabels(model.organ, scenery, image, labels);
 }
 
 py::dict camera(SimulationHandle& handle, int width, int height, double field_of_view, bool normals, bool colour,
-                bool tool) {
-  checkLens(width, height, field_of_view);
+                bool tool, const py::object& pose, double lamp) {
+  const Taking taking{field_of_view, lamp, poseOf(pose)};
+  checkPicture(width, height, taking);
   const Use use(handle);
-  needTool(use.model());
+  if (tool || !taking.pose) needTool(use.model());
   py::array_t<float> depth({height, width}), normal = inColour<float>(width, height, normals);
   py::array_t<std::int32_t> triangle({height, width});
   py::array_t<std::uint8_t> label({height, width}), shaded = inColour<std::uint8_t>(width, height, colour);
@@ -77,7 +114,7 @@ py::dict camera(SimulationHandle& handle, int width, int height, double field_of
   std::uint8_t* const colours = colour ? shaded.mutable_data() : nullptr;
   {
     const Unlocked others;
-    look(use, field_of_view, tool, image, labels, colours);
+    look(use, taking, tool, image, labels, colours);
   }
   py::dict found;
   found["depth"] = depth;
@@ -93,7 +130,8 @@ py::dict camera(SimulationHandle& handle, int width, int height, double field_of
 void bindCamera(SimulationClass& simulation) {
   simulation.def(
       "camera", &camera, py::arg("width") = 128, py::arg("height") = 128, py::arg("field_of_view") = 1.7,
-      py::arg("normals") = false, py::arg("colour") = false, py::arg("tool") = false,
+      flag("normals", false), flag("colour", false), flag("tool", false), py::arg("pose") = py::none(),
+      py::arg("lamp") = kLampReach,
       "What a pinhole camera at the endoscope's lens sees of the wall, by exact rays and without a display; "
       "tool: with the suturing device and the threads. field_of_view: from the left to the right edge [rad]. A "
       "dictionary of arrays (height, width): depth float32 along the optical axis [m], NaN: nothing; label "
@@ -101,8 +139,10 @@ void bindCamera(SimulationClass& simulation) {
       "triangle "
       "int32, -1: not the wall; on request normal (height, width, 3) float32 in the camera, towards it; and colour "
       "(height, width, 3) uint8: red, green, blue of a matt wall that a lamp at the lens lights, 0: nothing. "
-      "The colour is 255 sqrt(r / (1 + r)), r = albedo cos(angle of incidence) (0.03 m / distance)^2; it is "
-      "not the look of rviz.");
+      "The colour is 255 sqrt(r / (1 + r)), r = albedo cos(angle of incidence) (lamp / distance)^2 with lamp [m]; it "
+      "is "
+      "not the look of rviz. pose: (4, 4) of a camera elsewhere in world, z along its optical axis, x to the right, "
+      "y down [m]; from outside it sees through the near wall, and tool is the whole scope.");
 }
 
 }  // namespace vibe::python

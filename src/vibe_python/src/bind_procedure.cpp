@@ -107,7 +107,7 @@ void bindProcedure(SimulationClass& simulation) {
 
 void bindTechnique(py::module_& module) {
   module.def("measure_units", &measureUnits, "Units of Simulation.measures() by name, SI; '1' for counts and shares.");
-  module.def("recognise_technique", &recognise, py::arg("bites"), py::arg("printed") = false,
+  module.def("recognise_technique", &recognise, py::arg("bites"), flag("printed", false),
              "The stitch pattern of bites (n, 3) in any unit: technique, margin from 0 to 1, transitions. printed: by "
              "the rule of the ViBE paper as printed.");
 }

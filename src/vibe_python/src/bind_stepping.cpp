@@ -109,7 +109,7 @@ void bindLife(SimulationClass& simulation) {
   simulation
       .def(
           py::init(&make), py::arg("model"), py::arg("seed") = py::none(), py::arg("threads") = 1,
-          py::arg("metrics") = true, py::arg("impedance") = true,
+          flag("metrics", true), flag("impedance", true),
           "Begins at the initial state. seed: instead of the scene's; threads: inside a step, results do not depend on "
           "them; metrics=False: measures() stays empty; impedance=False: impedance() stays None, which saves time and "
           "memory, and hash(), which covers its past, differs once the tool has touched something.")
@@ -165,12 +165,12 @@ void bindSnapshots(SimulationClass& simulation) {
       .def(
           "hash", [](SimulationHandle& s) { return Use(s)->simulation.hash(); },
           "64 bits of all of the state: equal hashes mean equal states, and, with one model, equal futures.")
-      .def("snapshot", &snapshot, py::arg("prepared") = false,
+      .def("snapshot", &snapshot, flag("prepared", false),
            "The present state, in memory. prepared=True, for states that many simulations go back to: keeps what the "
            "first step after restore() takes long to make, too (a megabyte with 1,000 particles), with the same "
            "results.")
       .def(
-          "restore", &restore, py::arg("snapshot"), py::arg("other_model") = false,
+          "restore", &restore, py::arg("snapshot"), flag("other_model", false),
           "Back to a state; views show it. The input then holds the joints where they are, and no button but "
           "helix_grab and "
           "cinch, if they were pressed. Raises vibe.Error if it is of another model; other_model=True takes one of the "
@@ -185,7 +185,7 @@ void bindSnapshots(SimulationClass& simulation) {
             const Use use(s);
             use->replaceState(loadSnapshot(use.model(), file, takenIf(other_model)));
           },
-          py::arg("file"), py::arg("other_model") = false,
+          py::arg("file"), flag("other_model", false),
           "Back to the state of a snapshot that save() or a node has written; see restore().");
 }
 

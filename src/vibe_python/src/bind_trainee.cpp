@@ -64,6 +64,7 @@ class ScriptedTrainee : public TraineeHandle {
 
 // One line without a colon is the name of a file.
 bool isText(const std::string& source) {
+  if (source.empty()) throw Error("The name of a file is empty; give one, or the text of a protocol or script.");
   return source.find('\n') != std::string::npos || source.find(": ") != std::string::npos;
 }
 

@@ -18,6 +18,11 @@ void bindAnatomy(pybind11::module_& module);
 void bindTechnique(pybind11::module_& module);
 void bindBatch(pybind11::module_& module);
 
+/// An argument that takes True and False only; others are true or false by accident.
+inline pybind11::arg_v flag(const char* name, bool value) {
+  return pybind11::arg(name).noconvert() = value;
+}
+
 /// A call that fits no function raises TypeError with one sentence: what was given, and what it takes. To be called
 /// once everything is bound.
 void explainRefusals(pybind11::module_& module);

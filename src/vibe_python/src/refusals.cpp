@@ -2,6 +2,7 @@
 #include <climits>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "bindings.hpp"
 
@@ -21,6 +22,7 @@ constexpr std::size_t kMost = 8;      // arguments that a sentence names
 struct Signature {
   std::string name;          // "Simulation.run"
   std::string arguments;     // "(steps: int, **kwargs)"
+  bool makes = false;        // its first argument, which is nothing before
   PyObject* type = nullptr;  // of a method, whose first argument is the object; borrowed
 };
 
@@ -103,8 +105,38 @@ bool holdsNoText(PyObject* given, PyObject* keywords, bool takes_bytes) {
   return found;
 }
 
+/// Whether an object of the module was made by __new__() alone: pybind11 would take what is in its memory for the
+/// value.
+bool isHalfMade(PyObject* value) {
+  if (Py_TYPE(Py_TYPE(value)) != py::detail::get_internals().default_metaclass) return false;
+  for (const auto& part : py::detail::values_and_holders(reinterpret_cast<py::detail::instance*>(value)))
+    if (!part.holder_constructed()) return true;
+  return false;
+}
+
+/// The first such object among arguments, and in lists of them; null: none.
+PyObject* findHalfMade(PyObject* given, PyObject* keywords, bool makes) {
+  std::vector<PyObject*> values;
+  for (Py_ssize_t k = makes ? 1 : 0; k < PyTuple_GET_SIZE(given); ++k) values.push_back(PyTuple_GET_ITEM(given, k));
+  PyObject *key = nullptr, *value = nullptr;
+  for (Py_ssize_t at = 0; keywords != nullptr && PyDict_Next(keywords, &at, &key, &value);) values.push_back(value);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (isHalfMade(values[k])) return values[k];
+    if (PyList_Check(values[k]))
+      for (Py_ssize_t i = 0; i < PyList_GET_SIZE(values[k]); ++i)
+        if (isHalfMade(PyList_GET_ITEM(values[k], i))) return PyList_GET_ITEM(values[k], i);
+  }
+  return nullptr;
+}
+
 PyObject* callOrExplain(PyObject* self, PyObject* given, PyObject* keywords) {
   const auto known = signatures().find(self);
+  if (PyObject* const half = findHalfMade(given, keywords, known != signatures().end() && known->second.makes)) {
+    const std::string type = without(Py_TYPE(half)->tp_name, "_core.");
+    PyErr_Format(PyExc_TypeError, "The %s was made by __new__() alone and is nothing; make it as help(%s) says.",
+                 type.c_str(), type.c_str());
+    return nullptr;
+  }
   const bool takes_bytes = known != signatures().end() && known->second.arguments.find("bytes") != std::string::npos;
   if (holdsNoText(given, keywords, takes_bytes)) {
     PyErr_SetString(PyExc_ValueError, "A text is given as bytes or holds the character 0; give a text without it.");
@@ -131,7 +163,7 @@ std::string argumentsOf(const std::string& documentation) {
   return list.empty() ? "no arguments" : "(" + list + ")";
 }
 
-void watch(PyObject* function, const std::string& name, PyObject* type) {
+void watch(PyObject* function, const std::string& name, bool makes, PyObject* type) {
   if (PyInstanceMethod_Check(function)) function = PyInstanceMethod_GET_FUNCTION(function);
   if (!PyCFunction_Check(function)) return;
   PyMethodDef* const definition = reinterpret_cast<PyCFunctionObject*>(function)->m_ml;
@@ -140,7 +172,7 @@ void watch(PyObject* function, const std::string& name, PyObject* type) {
   if (pybind_dispatcher == nullptr) pybind_dispatcher = current;
   if (current != pybind_dispatcher) return;
   const std::string documentation = definition->ml_doc == nullptr ? "" : definition->ml_doc;
-  signatures()[PyCFunction_GET_SELF(function)] = {name, argumentsOf(documentation), type};
+  signatures()[PyCFunction_GET_SELF(function)] = {name, argumentsOf(documentation), makes, type};
   definition->ml_meth = reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&callOrExplain));
 }
 
@@ -149,8 +181,8 @@ void watchClass(const py::handle& type, const std::string& name) {
   for (const py::handle member : py::list(members.attr("items")())) {
     const auto [key, value] = py::cast<std::pair<std::string, py::object>>(member);
     const std::string full = key == "__init__" ? name : name + "." + key;
-    watch(value.ptr(), full, type.ptr());
-    if (PyObject_HasAttrString(value.ptr(), "fget")) watch(value.attr("fget").ptr(), full, type.ptr());
+    watch(value.ptr(), full, key == "__init__" || key == "__setstate__", type.ptr());
+    if (PyObject_HasAttrString(value.ptr(), "fget")) watch(value.attr("fget").ptr(), full, false, type.ptr());
   }
 }
 
@@ -162,7 +194,7 @@ void explainRefusals(py::module_& module) {
     if (PyType_Check(value.ptr()))
       watchClass(value, name);
     else
-      watch(value.ptr(), name, nullptr);
+      watch(value.ptr(), name, false, nullptr);
   }
 }
 

@@ -51,7 +51,8 @@ Rgb seeping(double gap, double aside) {
   return deep / (way * way * way) * left;
 }
 
-/// Irradiance of a surface at `place`, of whatever side, by the lamp at the origin, for red, green and blue.
+/// Irradiance of a surface at `place`, of whatever side, by a lamp of unit intensity at the origin, for red, green and
+/// blue [1/m^2].
 Rgb irradiance(const Eigen::Vector3d& place, const Eigen::Vector3d& normal, bool is_wall) {
   const double square = place.squaredNorm(), distance = std::sqrt(square);
   const double height = std::abs(normal.dot(place)) / normal.norm(), close = is_wall ? closeness(distance) : 0;
@@ -59,7 +60,7 @@ Rgb irradiance(const Eigen::Vector3d& place, const Eigen::Vector3d& normal, bool
   if (close > 0)
     light += close *
              (seeping(std::max(height - kHalfWall, 0.0), std::sqrt(std::max(square - height * height, 0.0))) - light);
-  return kLampReach * kLampReach * light;
+  return light;
 }
 
 std::uint8_t shown(double radiance) {
@@ -79,7 +80,8 @@ std::vector<Eigen::Vector3d> wallAlbedo(const Model& model, const State& state) 
 }
 
 void shade(const SurfaceView& surface, int walls, const std::vector<Eigen::Vector3d>& albedo,
-           const Eigen::Isometry3d& camera, double field_of_view, const CastImage& image, std::uint8_t* colour) {
+           const Eigen::Isometry3d& camera, double field_of_view, double lamp, const CastImage& image,
+           std::uint8_t* colour) {
   const Lens lens(image.width, image.height, field_of_view);
   const Eigen::Isometry3d to_camera = camera.inverse();
   SurfaceMesh seen{{}, surface.triangles};  // in the camera
@@ -95,7 +97,7 @@ void shade(const SurfaceView& surface, int walls, const std::vector<Eigen::Vecto
       const Eigen::Vector3d normal = weight[0] * normals[t[0]] + weight[1] * normals[t[1]] + weight[2] * normals[t[2]];
       radiance = (weight[0] * albedo[t[0]] + weight[1] * albedo[t[1]] + weight[2] * albedo[t[2]])
                      .cwiseMax(0)
-                     .cwiseProduct(irradiance(place, normal, image.triangle[i] < walls));
+                     .cwiseProduct(lamp * lamp * irradiance(place, normal, image.triangle[i] < walls));
     }
     for (int k = 0; k < 3; ++k) colour[3 * i + k] = shown(radiance[k]);
   }

@@ -42,15 +42,12 @@ const SurfaceMesh& meshOf(const std::string& file) {
   return found != read.end() ? found->second : read.emplace(file, readMeshFile(resolveAddress(file))).first->second;
 }
 
-/// The meshes of a URDF that the lens may see: links that scope_tip carries.
-std::vector<LinkMesh> meshesBeforeTheLens(const Model& model) {
+/// Whether the lens may see a link: those that scope_tip carries.
+std::vector<bool> beforeTheLens(const Model& model) {
   std::vector<bool> carried(static_cast<std::size_t>(model.tool->linkCount()));
   for (const ToolJoint& joint : model.tool->joints())
     carried[joint.child_link] = carried[joint.parent_link] || joint.parent_link == model.tip_link;
-  std::vector<LinkMesh> meshes = linkMeshes(model);
-  const auto is_behind = [&](const LinkMesh& mesh) { return !carried[mesh.link]; };
-  meshes.erase(std::remove_if(meshes.begin(), meshes.end(), is_behind), meshes.end());
-  return meshes;
+  return carried;
 }
 
 // Of one URDF after another; models of one scene share it.
@@ -60,7 +57,7 @@ const std::vector<LinkMesh>& meshesOf(const Model& model) {
   const std::lock_guard<std::mutex> lock(one_at_a_time);
   const std::string& urdf = model.scene.scope->urdf;
   const auto found = known.find(urdf);
-  return found != known.end() ? found->second : known.emplace(urdf, meshesBeforeTheLens(model)).first->second;
+  return found != known.end() ? found->second : known.emplace(urdf, linkMeshes(model)).first->second;
 }
 
 void add(const Eigen::Vector3d& vertex, const Rgb& colour, Scenery& scenery) {
@@ -117,12 +114,15 @@ void addThreads(const Model& model, const State& state, Scenery& scenery) {
 
 }  // namespace
 
-Scenery sceneryOf(const Model& model, const State& state) {
+Scenery sceneryOf(const Model& model, const State& state, Instruments shown) {
   Scenery scenery{state.x, state.y, state.z, model.organ.surface.triangles, {}, {}};
+  if (shown == Instruments::None) return scenery;
+  const std::vector<bool> before_lens = beforeTheLens(model);
   const std::vector<Eigen::Isometry3d> poses = drawnLinkPoses(model, state);
   for (const LinkMesh& mesh : meshesOf(model))
-    addMesh(meshOf(mesh.file), poses[mesh.link] * mesh.origin * Eigen::Scaling(mesh.scale),
-            colourOf(model.tool->linkName(mesh.link)), scenery);
+    if (shown == Instruments::All || before_lens[static_cast<std::size_t>(mesh.link)])
+      addMesh(meshOf(mesh.file), poses[mesh.link] * mesh.origin * Eigen::Scaling(mesh.scale),
+              colourOf(model.tool->linkName(mesh.link)), scenery);
   addThreads(model, state, scenery);
   return scenery;
 }

@@ -22,11 +22,12 @@ struct Scenery {
   SurfaceView surface() const { return {triangles, x, y, z}; }
 };
 
-/// The wall, the meshes that the URDF has for the links before the lens, and the threads: tubes along straight lines
-/// from bite to bite, on the inside of the wall. Blood, T-tags and cinches are not among them. Files of meshes are read
-/// once per process.
-/// @param model  with a tool
+enum class Instruments { None, BeforeTheLens, All };
+
+/// The wall, the meshes that the URDF has for links, and the threads: tubes along straight lines from bite to bite, on
+/// the inside of the wall. Blood, T-tags and cinches are not among them. Files of meshes are read once per process.
+/// @param model  with a tool, unless no instruments are shown
 /// @throws Error if a mesh of the URDF cannot be read
-Scenery sceneryOf(const Model& model, const State& state);
+Scenery sceneryOf(const Model& model, const State& state, Instruments shown);
 
 }  // namespace vibe::python

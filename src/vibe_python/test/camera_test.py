@@ -4,6 +4,7 @@ import os
 import tempfile
 import threading
 import unittest
+import zlib
 
 import numpy as np
 
@@ -149,6 +150,41 @@ class CameraTest(unittest.TestCase):
                 simulation.run(60, helix_advance=0.02)
                 device[urdf] = (simulation.camera(96, 96, ANGLE, tool=True)["label"] == 6).sum()
         self.assertGreater(device[wide.name], 1.2 * device[here])
+
+    def test_a_camera_elsewhere_sees_the_inside_of_the_far_wall(self):
+        simulation = self.simulation
+        lens = {"normals": True, "colour": True}
+        seen, same = (simulation.camera(48, 48, ANGLE, **lens, **pose) for pose in ({}, {"pose": simulation.link_pose("scope_camera_optical")}))
+        for name in seen:
+            np.testing.assert_array_equal(seen[name], same[name])
+        pose, middle = np.eye(4), simulation.positions.mean(0)
+        pose[:3, :3], pose[:3, 3] = [[0, 0, -1], [1, 0, 0], [0, -1, 0]], middle + [0.6, 0, 0]
+        wall, scope = (simulation.camera(96, 96, 0.6, colour=True, tool=tool, pose=pose, lamp=0.6) for tool in (False, True))
+        a, b, c = np.swapaxes(simulation.positions[simulation.model.triangles], 0, 1)
+        inside = np.einsum("ij,ij->i", np.cross(b - a, c - a), a - pose[:3, 3]) > 0
+        self.assertTrue(0.1 < (wall["triangle"] >= 0).mean() < 0.6)
+        self.assertTrue(inside[np.unique(wall["triangle"])[1:]].all())
+        self.assertFalse(inside.all())  # control
+        hides = scope["label"] == 6
+        self.assertGreater(hides[:10].sum(), 5)  # the shaft, which comes from above
+        np.testing.assert_array_equal(scope["colour"][~hides], wall["colour"][~hides])
+
+    def test_a_lamp_that_reaches_farther_is_brighter(self):
+        share = [(self.simulation.camera(24, 24, colour=True, lamp=lamp)["colour"][..., 0] / 255.0) ** 2 for lamp in (0.03, 0.06)]
+        self.assertAlmostEqual(np.median(share[1] / (1 - share[1]) / share[0] * (1 - share[0])), 4, delta=0.1)
+
+    def test_pictures_for_people(self):
+        simulation = self.simulation
+        endoscope, outside, marked = (vibe.picture(simulation, view, 64, goal) for view, goal in (
+            ("endoscope", None), ("outside", None), ("outside", simulation.positions.mean(0))))
+        np.testing.assert_array_equal(endoscope, simulation.camera(64, 64, 1.7, colour=True, tool=True)["colour"])
+        edge = np.concatenate([outside[0], outside[-1], outside[:, 0], outside[:, -1]])
+        self.assertLess((edge > 0).any(-1).mean(), 0.1)  # the whole organ is in it; the shaft leaves it
+        row, column = np.nonzero((marked != outside).any(-1))
+        self.assertTrue(0 < len(row) < 9 and abs(row - 32).max() < 12 and abs(column - 32).max() < 12)
+        file = simulation._repr_png_()
+        rows = np.frombuffer(zlib.decompress(file[41:-16]), np.uint8).reshape(480, 1 + 3 * 480)[:, 1:]
+        np.testing.assert_array_equal(rows.reshape(480, 480, 3), vibe.picture(simulation))
 
     def test_threads_are_where_the_bites_are(self):
         environment = Environment("Cinch", camera=(96, 96, 2.2), pictures=["label"], tool=True, **SMALL)

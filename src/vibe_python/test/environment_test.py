@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 """Environments: the same bits alone and side by side, resets as Gymnasium defines them, experts, and what is refused."""
+import importlib.util
+import inspect
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -11,7 +14,8 @@ import numpy as np
 
 import vibe
 import vibe.env
-from vibe.env import BREATHING, TASKS, Environment, Expert, GoalEnvironment, Reach, VectorEnvironment, api, contract, demonstrations
+from vibe.env import BREATHING, TASKS, Environment, Expert, GoalEnvironment, Reach, Task, VectorEnvironment, api, contract, demonstrations
+from vibe.env.settings import Settings
 from vibe.env.tip import tip_motion
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../scripts"))
@@ -96,6 +100,36 @@ with tempfile.TemporaryDirectory() as folder:
         again.reset(seed=int(demo.attrs["seed"]))
         same = [np.array_equal(again.step(action)[0]["wall"], wall) for action, wall in zip(demo["actions"][:], demo["next_obs/wall"])]
         print("from file", all(same), f"{again.unwrapped.simulation.hash():016x}" == demo.attrs["hash"])
+"""
+WINDOW = """
+import copy, time
+import numpy as np
+import vibe
+from vibe.env import Environment, contract
+environment = Environment("Reach", render_mode="human", view="outside", **contract.SETTINGS)
+assert environment.render_mode == "human" and copy.deepcopy(environment).render_mode is None
+environment.reset(seed=1)
+begin = time.monotonic()
+for _ in range(5):
+    environment.step(np.zeros(4))
+assert time.monotonic() - begin > 4 / 20 and environment.render() is None
+picture = vibe.picture(environment.simulation, "outside", goal=environment.task.look()["goal"][0])
+shown = np.array([[environment._window._photo.get(x, y) for x in range(0, 480, 7)] for y in range(0, 480, 7)])
+assert np.array_equal(shown, picture[::7, ::7])
+window = vibe.view(environment.simulation, size=32)
+assert window.update() and not window.closed
+window.close()
+assert window.closed and not window.update()
+root = environment._window._root
+root.after(0, lambda: root.tk.call(*root.protocol("WM_DELETE_WINDOW").split()))  # somebody closes it
+environment.step(np.zeros(4))
+assert environment._window.closed
+environment.close()
+try:
+    environment.render()
+except vibe.Error as error:
+    assert "call reset() first" in str(error)
+    print("shown")
 """
 SMALL = contract.SETTINGS
 PAGE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../docs/python.md")
@@ -187,6 +221,44 @@ class EnvironmentTest(unittest.TestCase):
                       for seed in range(20)}
             self.assertGreater(len(phases), 4)
 
+    def test_waves_move_the_wall_and_episodes_begin_in_their_phases(self):
+        moved = {}
+        for motion in ("strong", None):
+            environment = Environment("Reach", motion=motion, **SMALL)
+            info = environment.reset(seed=2)[1]
+            self.assertEqual(info["organ"], "sthenic 1" + (", strong motion" if motion else ""))
+            phases = [(environment.reset(seed=seed), environment.simulation.motion["wave_phase"])[1] for seed in range(12)]
+            antrum, first = environment.simulation.model.region == 3, environment.simulation.positions
+            environment.task.advance(np.zeros((1, 4)))
+            moved[motion] = abs(environment.simulation.positions - first)[antrum].max()
+            self.assertEqual(len(set(np.round(phases, 3))) > 3, motion is not None)
+            self.assertTrue(equal(environment.reset(seed=3)[0], environment.reset(seed=3)[0]))
+        self.assertGreater(moved["strong"], 5 * moved[None])
+        with self.assertRaisesRegex(vibe.Error, "use 'motion'"):
+            Environment("Reach", motion="slight", vary={"motion.wave_speed": ("uniform", 1e-3, 2e-3)})
+
+    def test_settings_have_names_types_and_defaults(self):
+        task = {name for name, parameter in inspect.signature(Task.__init__).parameters.items() if parameter.kind is parameter.KEYWORD_ONLY}
+        self.assertEqual({*Settings.__annotations__}, task - {"threads"})
+        for kind in (Environment, VectorEnvironment, GoalEnvironment):
+            shown = inspect.signature(kind).parameters
+            self.assertLess({*Settings.__annotations__}, {*shown})
+            self.assertEqual((shown["particles"].default, shown["particles"].annotation), (1000, int))
+            for name in shown:
+                if shown[name].kind is not shown[name].VAR_KEYWORD and name not in ("render_mode", "num_envs"):
+                    self.assertRegex(f"{Environment.__doc__} {VectorEnvironment.__doc__}", rf"\b{name}\b")
+
+    def test_a_window_shows_episodes_to_people(self):
+        self.assertEqual([kind.metadata["render_modes"] for kind in (Environment, VectorEnvironment)], [["rgb_array", "human"], ["rgb_array"]])
+        with mock.patch.dict(os.environ), self.assertRaisesRegex(vibe.Error, "No window can be opened .*; set DISPLAY|install python3-tk"):
+            os.environ.pop("DISPLAY", None)
+            Environment("Reach", render_mode="human", **SMALL)
+        if not shutil.which("xvfb-run") or not importlib.util.find_spec("tkinter"):
+            self.skipTest("xvfb-run or tkinter is not installed")
+        shown = subprocess.run(["xvfb-run", "-a", sys.executable, "-c", WINDOW], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                               check=False)
+        self.assertEqual((shown.returncode, shown.stdout), (0, "shown\n"))
+
     def test_longer_steps_are_fewer_and_move_the_wall_alike(self):
         goals = {}
         for period, steps in ((None, 1), (1 / 20, 1), (1 / 60, 3)):
@@ -252,6 +324,7 @@ class EnvironmentTest(unittest.TestCase):
         self.assertTrue(equal(first, environment.reset(seed=3)[0]))
         self.assertEqual([environment.step(np.zeros(4))[3] for _ in range(3)], [False, False, True])
         self.assertEqual(environment.render().shape, (480, 480, 3))
+        self.assertTrue(environment._repr_png_().startswith(b"\x89PNG"))
         together = VectorEnvironment("Reach", 2, threads=1, breathing="slight", **SMALL)
         found = together.reset(seed=5, options={**options, "reset_mask": np.array([True, True])})[0]
         self.assertTrue(equal(row(found, 0), seen) and equal(row(found, 1), seen))

@@ -167,15 +167,19 @@ class SnapshotTest(Worlds):
         for section, values in (("tissue", {"young_modulus": 5e4}), ("gas", {"regulated_pressure": "8 mmHg"}), ("gravity", None),
                                 ("breathing", {}), ("scope", {"friction": 0.2})):
             other = vibe.Simulation(vibe.load(geometry={"particles": 300}, **{section: values}))
+            hashes = set()
             for wrong in (snapshot, pickle.loads(pickle.dumps(snapshot))):
                 with self.assertRaisesRegex(vibe.Error, "same organ but of a scene with other values"):
                     other.restore(wrong)
                 other.restore(wrong, other_model=True)
-                for view in ("x", "vy", "tip_pose"):
+                hashes.add(other.hash())  # not that of the simulation, whose contacts are kept for its scene only
+                for view in ("positions", "velocities", "joints", "wrench", "strain", "heat", "time"):
                     np.testing.assert_array_equal(getattr(other, view), getattr(simulation, view))
+            self.assertEqual(len(hashes), 1)
             other.step()
         same = vibe.Simulation(vibe.load(geometry={"particles": 300}, seed=7, name="renamed", render_surface=True))
         same.restore(snapshot)  # control
+        self.assertEqual(same.hash(), simulation.hash())
 
 
 class ToolTest(Worlds):

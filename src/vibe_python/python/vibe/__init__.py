@@ -14,6 +14,7 @@ and the same inputs give the same bits. What is wrong raises vibe.Error: one sen
     Simulation   a running simulation: step, run, follow, snapshot, restore; arrays, tool, contacts, threads, measures
     Trainee      pursues the goals of a protocol; Script: motions over time
     Anatomy      places of the wall by anatomical coordinates
+    picture      what a simulation looks like, as an array; view: in a window
     vibe.env     environments for learning, in the interface of Gymnasium
 
 docs/python.md of the repository is a tutorial.
@@ -73,11 +74,12 @@ try:
     )
 except ImportError as error:
     raise ImportError(_unloadable(error)) from None
+from ._pictures import picture, view
 
 __version__ = "1.0.0"
 __all__ = [
     "BUTTONS", "JOINTS", "Anatomy", "Error", "Event", "InputSource", "Model", "Script", "Simulation", "Snapshot",
-    "Trainee", "load", "measure_units", "observe_all", "recognise_technique", "step_all", "wall_points",
+    "Trainee", "load", "measure_units", "observe_all", "picture", "recognise_technique", "step_all", "view", "wall_points",
 ]
 
 DEFAULT_SCENE = "package://vibe_core/scenes/stomach.yaml"

@@ -15,12 +15,14 @@ import vibe
 
 from . import api
 from .environment import Environment, VectorEnvironment
+from .settings import whole
 
 SETTINGS = {"particles": 300, "organs": [("sthenic", 1.0)]}  # the least that prepares fast
 
 
 def broken(task, actions=8, **settings):
     """One sentence for each thing that a task does not keep; random actions, with SETTINGS but for those given."""
+    whole("actions", actions, 1, 10**6)
     settings = {**SETTINGS, **settings}
     environment = Environment(task, **settings)
     try:

@@ -15,7 +15,7 @@ import vibe
 from ..data import files, hdf5, lerobot
 from .environment import Environment
 from .episodes import Task
-from .settings import PICTURES
+from .settings import PICTURES, whole
 
 STATE = ("joints", "tip", "direction", "wrench")  # of the robot; what else is observed is of its surroundings
 
@@ -30,9 +30,17 @@ def record(environment, policy, file, episodes, seed=0, progress=None, format="r
 
     Each episode is written whole as it ends. A set that was begun with the same task, settings, policy and version of vibe is
     gone on with after its last episode, whatever stopped it."""
-    if format not in FORMATS:
+    if not isinstance(format, str) or format not in FORMATS:
         raise vibe.Error(f"'format' is {vibe._shown(format)}; use {', '.join(FORMATS)}.")
-    with FORMATS[format](environment.unwrapped, os.fspath(file), _begun(environment.unwrapped, policy, seed)) as out:
+    if not isinstance(getattr(environment, "unwrapped", None), Environment):
+        raise vibe.Error(f"'environment' is {vibe._shown(environment)}; give a vibe.env.Environment.")
+    file, episodes, seed = vibe._file("file", file), whole("episodes", episodes, 1, 10**9), whole("seed", seed, 0, 2**63)
+    begun = _begun(environment.unwrapped, policy, seed)
+    if not all(callable(getattr(policy, name, None)) for name in ("reset", "action")):
+        raise vibe.Error(f"'policy' is {vibe._shown(policy)}; give an object with reset() and action(observation).")
+    if progress is not None and not callable(progress):
+        raise vibe.Error(f"'progress' is {vibe._shown(progress)}; give a function of (episodes done, of how many, successes), or None.")
+    with FORMATS[format](environment.unwrapped, file, begun) as out:
         tried = out.seeds[-1] + 1 - seed if out.seeds else 0
         for number in range(seed + tried, seed + episodes):
             rows, success = episode(environment, policy, number)
@@ -59,7 +67,7 @@ def episode(environment, policy, seed):
 
 def environment_of(file):
     """The environment that the demonstrations of a robomimic file are of, from the file alone."""
-    with hdf5.opened(file, "data") as found:
+    with hdf5.opened(vibe._file("file", file), "data") as found:
         begun = json.loads(found.attrs["begun"])
     if begun["vibe"] != vibe.__version__:
         raise vibe.Error(f"{file} was made by version {begun['vibe']}, and this is {vibe.__version__}, whose episodes may differ; install that one.")

@@ -3,24 +3,30 @@
 from __future__ import annotations
 
 import copy
+import functools
 import os
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
 
 import numpy as np
 
 import vibe
 
+from .. import _pictures
 from . import api
 from .episodes import Task, task_of
-from .settings import chosen, numbers, whole
+from .settings import Settings, chosen, named, numbers, whole
 
-PICTURE = (480, 480, 1.7)  # of render(): width, height, field of view [rad]
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 def _generator(seed):
     if seed is not None:
         whole("seed", seed, 0, 2**64 - 1)
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed)))
+
+
+with_settings = functools.partial(named, of=Task.__init__)
 
 
 def _made(cls, task, settings, state):
@@ -35,13 +41,16 @@ class _Episodes:
     """What the single and the vector environment share: their task, and their state."""
 
     metadata = {"render_modes": ["rgb_array"]}
+    _window = None  # of render_mode 'human'
 
-    def _prepare(self, task, settings, render_mode, **further):
-        if render_mode is not None and (not isinstance(render_mode, str) or render_mode != "rgb_array"):
-            raise vibe.Error(f"'render_mode' is {vibe._shown(render_mode)}; use 'rgb_array', or None.")
+    def _prepare(self, task, settings, render_mode, view, **further):
+        modes = self.metadata["render_modes"]
+        if render_mode is not None and (not isinstance(render_mode, str) or render_mode not in modes):
+            raise vibe.Error(f"'render_mode' is {vibe._shown(render_mode)}; use {', '.join(map(repr, modes))}, or None.")
+        _pictures.check_view(view)
         kind = task_of(task)
         kind.check_settings(settings)
-        self.task, self.render_mode = kind(**further, **settings), render_mode
+        self.task, self.render_mode, self._view = kind(**further, **settings), render_mode, view
         self.metadata = {**self.metadata, "render_fps": kind.rate}
 
     def snapshot(self) -> dict[str, Any]:
@@ -74,12 +83,19 @@ class _Episodes:
     def _has_begun(self):
         return not self.task.closed and any(simulation is not None for simulation in self.task.simulation)
 
-    def _pictures(self):
-        if self.render_mode is None:
-            raise vibe.Error("The environment was made without render_mode='rgb_array'; give that.")
+    def _check_begun(self):
         if not self._has_begun():
             raise vibe.Error("No episode has begun; call reset() first.")
-        return tuple(simulation.camera(*PICTURE, colour=True, tool=True)["colour"] for simulation in self.task.simulation)
+
+    def _pictures(self):
+        self._check_begun()
+        return tuple(vibe.picture(simulation, self._view, goal=goal)
+                     for simulation, goal in zip(self.task.simulation, self.task.look()["goal"]))
+
+    def _rendered(self):
+        if self.render_mode is None:
+            raise vibe.Error("The environment was made without render_mode='rgb_array'; give that.")
+        return self._pictures()
 
 
 class Environment(_Episodes, api.Env):
@@ -100,6 +116,8 @@ class Environment(_Episodes, api.Env):
                simulated time per step [s], a whole part of that of an action; None: one step per action. Shorter steps
                are slower and more accurate (docs/python.md)
     breathing  None (still), 'slight', 'moderate' or 'strong': the diaphragm moves the stomach (vibe.env.BREATHING)
+    motion     None, 'slight', 'moderate' or 'strong': contraction waves, breath and heart of this grade; `breathing`, where it
+               is given, is the breath's
     scene      other values of keys of the scene, by section, as vibe.load() takes them
     vary       what reset() draws anew, by SECTION.KEY of the scene, 'action.delay' [s] and 'action.noise' (standard
                deviation of the shares): ('uniform', least, greatest), ('normal', mean, standard deviation) or
@@ -109,7 +127,9 @@ class Environment(_Episodes, api.Env):
     max_episode_steps
                actions until an episode is truncated, instead of the task's
     render_mode
-               None, or 'rgb_array': render() gives a picture with device and threads
+               None; 'rgb_array': render() gives a picture with device and threads; 'human': a window shows it after every
+               reset() and step(), in simulated time (tkinter and a display are needed). Copies have no window
+    view       of these pictures: 'endoscope', or 'outside': organ, scope and goal from before the patient
 
     reset(seed) draws stomach, start and goal; the same seed gives the same episode, to the bit. reset(options=...) chooses
     instead: {'organ': (shape, scale) or a scene file, 'start': 0 to 3, 'goal': (along, around [rad]), 'phase': 0 to 7,
@@ -117,15 +137,21 @@ class Environment(_Episodes, api.Env):
     episode has ended raise vibe.Error. snapshot(), restore(), copy.deepcopy() and pickle take a begun episode with them.
     """
 
-    def __init__(self, task: Union[str, type[Task]] = "Reach", *, render_mode: Optional[str] = None, **settings: Any) -> None:
-        self._prepare(task, settings, render_mode)
+    metadata = {"render_modes": ["rgb_array", "human"]}
+
+    @with_settings
+    def __init__(self, task: Union[str, type[Task]] = "Reach", *, render_mode: Optional[str] = None, view: str = "endoscope",
+                 **settings: Unpack[Settings]) -> None:
+        self._prepare(task, settings, render_mode, view)
         self._made_of, self._settings = task, settings
         self.observation_space, self.action_space = self.task.observation_space, self.task.action_space
         self._random = None
         self._ended = True
+        if render_mode == "human":
+            self._window = _pictures.Window(f"vibe: {self.task.name}", lambda: self._pictures()[0])
 
     def __reduce__(self):
-        settings = {**self._settings, "render_mode": self.render_mode}
+        settings = {**self._settings, "render_mode": None if self._window else self.render_mode, "view": self._view}
         return _made, (type(self), self._made_of, settings, self.snapshot() if self._has_begun() else None)
 
     def __repr__(self):
@@ -134,8 +160,7 @@ class Environment(_Episodes, api.Env):
     @property
     def simulation(self) -> vibe.Simulation:
         """The vibe.Simulation of the episode."""
-        if not self._has_begun():
-            raise vibe.Error("No episode has begun; call reset() first.")
+        self._check_begun()
         return self.task.simulation[0]
 
     def _seen(self):
@@ -149,11 +174,23 @@ class Environment(_Episodes, api.Env):
         self._ended = True  # until there is another episode
         self.task.begin(0, self._random, choices)
         self._ended = False
+        return self._show()
+
+    def _show(self):
+        if self._window:
+            self._window.update(1 / self.task.rate)
         return self._seen()
 
-    def render(self) -> np.ndarray:
-        """What the endoscope sees, (480, 480, 3) uint8, with device and threads."""
-        return self._pictures()[0]
+    def render(self) -> Optional[np.ndarray]:
+        """A picture of `view`, (480, 480, 3) uint8, with device and threads; None with render_mode='human', whose window shows it."""
+        if self._window is None:
+            return self._rendered()[0]
+        self._check_begun()
+        self._window.update()
+        return None
+
+    def _repr_png_(self):
+        return _pictures.png(self._pictures()[0]) if self._has_begun() else None
 
     def step(self, action: Any) -> tuple[dict[str, np.ndarray], float, bool, bool, dict[str, Any]]:
         if self.task.closed:
@@ -162,11 +199,13 @@ class Environment(_Episodes, api.Env):
             raise vibe.Error("The episode has ended, or none has begun; call reset().")
         reward, success, truncated = self.task.advance(numbers(action, self.action_space.shape)[None])
         self._ended = bool(success[0] or truncated[0])
-        seen, info = self._seen()
+        seen, info = self._show()
         return seen, float(reward[0]), bool(success[0]), bool(truncated[0]), {**info, "is_success": bool(success[0])}
 
     def close(self) -> None:
         self.task.close()
+        if self._window:
+            self._window.close()
 
 
 class VectorEnvironment(_Episodes, api.VectorEnv):
@@ -180,12 +219,14 @@ class VectorEnvironment(_Episodes, api.VectorEnv):
                'disabled': reset(options={'reset_mask': ...}) resets it
     """
 
+    @with_settings
     def __init__(self, task: Union[str, type[Task]] = "Reach", count: int = 8, *, num_envs: Optional[int] = None, threads: Optional[int] = None,
-                 autoreset: str = "next_step", render_mode: Optional[str] = None, **settings: Any) -> None:
+                 autoreset: str = "next_step", render_mode: Optional[str] = None, view: str = "endoscope",
+                 **settings: Unpack[Settings]) -> None:
         if not isinstance(autoreset, str) or autoreset not in ("next_step", "same_step", "disabled"):
             raise vibe.Error(f"'autoreset' is {vibe._shown(autoreset)}; use 'next_step', 'same_step' or 'disabled'.")
         count = count if num_envs is None else num_envs
-        self._prepare(task, settings, render_mode, count=count, threads=len(os.sched_getaffinity(0)) if threads is None else threads)
+        self._prepare(task, settings, render_mode, view, count=count, threads=len(os.sched_getaffinity(0)) if threads is None else threads)
         self._made_of, self._settings, self._threads = task, settings, threads
         self.num_envs, self.autoreset = count, autoreset
         self.single_observation_space, self.single_action_space = self.task.observation_space, self.task.action_space
@@ -198,10 +239,10 @@ class VectorEnvironment(_Episodes, api.VectorEnv):
 
     def __reduce__(self):
         settings = {**self._settings, "count": self.num_envs, "threads": self._threads, "autoreset": self.autoreset,
-                    "render_mode": self.render_mode}
+                    "render_mode": self.render_mode, "view": self._view}
         return _made, (type(self), self._made_of, settings, self.snapshot() if self._has_begun() else None)
 
-    def reset(self, *, seed: Any = None, options: Optional[dict[str, Any]] = None) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    def reset(self, *, seed: Optional[Union[int, Sequence[Optional[int]]]] = None, options: Optional[dict[str, Any]] = None) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
         """seed: one number, from which slot k gets seed + k; a list of one per slot; None. options: as those of Environment,
         for every slot, and 'reset_mask': which slots (count,) bool."""
         seeds = [None] * self.num_envs if seed is None else \
@@ -237,7 +278,7 @@ class VectorEnvironment(_Episodes, api.VectorEnv):
 
     def render(self) -> tuple[np.ndarray, ...]:
         """A picture per slot, as Environment.render()."""
-        return self._pictures()
+        return self._rendered()
 
     def step(self, actions: Any) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         ended = self._ended.copy()

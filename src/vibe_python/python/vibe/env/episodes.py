@@ -51,12 +51,13 @@ class Task:
             _register(cls)
 
     def __init__(self, count=1, *, particles=1000, organs=_organs.TRAINING, action="joints", threads=1, camera=None,
-                 pictures=None, tool=False, breathing=None, step_period=None, max_episode_steps=None, scene=None, vary=None, tolerance=None,
+                 pictures=None, tool=False, breathing=None, motion=None, step_period=None, max_episode_steps=None, scene=None, vary=None, tolerance=None,
                  along=None, around=None):
         if not isinstance(action, str) or action not in ("joints", "tip"):
             raise vibe.Error(f"'action' is {vibe._shown(action)}; use 'joints' or 'tip'.")
-        if breathing is not None and (not isinstance(breathing, str) or breathing not in _organs.BREATHING):
-            raise vibe.Error(f"'breathing' is {vibe._shown(breathing)}; use {', '.join(_organs.BREATHING)}, or None.")
+        for setting, grade, known in (("breathing", breathing, _organs.BREATHING), ("motion", motion, _organs.MOTION)):
+            if grade is not None and (not isinstance(grade, str) or grade not in known):
+                raise vibe.Error(f"'{setting}' is {vibe._shown(grade)}; use {', '.join(known)}, or None.")
         if action == "tip" and not self.moves_tip_only():
             raise vibe.Error(f"The task {self.name} moves more than the tip; use action='joints'.")
         if not is_number(self.rate) or not self.rate > 0:
@@ -65,12 +66,12 @@ class Task:
         self.around = range_of("around", self.around if around is None else around, -2 * math.pi, 2 * math.pi)
         self.tolerance = self._tolerance(tolerance)
         self.count, self.particles = whole("count", count, 1, 65536), whole("particles", particles, 100, 1000000)
-        self.organs, self.breathing = organs_of(organs), breathing
+        self.organs, self.breathing, self.motion = organs_of(organs), breathing, motion
         self.mode, self.threads, self.camera = action, whole("threads", threads, 1, 1024), camera_of(camera)
         self.pictures, self.tool = pictures_of(pictures, tool, self.camera), bool(tool)
         self.step_period = self._period(step_period)
         self.length = self.steps_of_episode() if max_episode_steps is None else whole("max_episode_steps", max_episode_steps, 1, 10**9)
-        self.variation = Variation(count, scene, vary, breathing, self.sections)
+        self.variation = Variation(count, scene, vary, {"breathing": breathing, "motion": motion}, self.sections)
         for sections in self.variation.scenes():  # what no scene has is refused before any episode
             _organs.load(self.organs[0], 100, self.step_period, sections)
         self.simulation = [None] * count
@@ -171,16 +172,16 @@ class Task:
         """A new episode in one slot: draws stomach, start and goal, but for what chosen() has found."""
         self._check_open()
         choices = choices or {}
-        if "phase" in choices and not self.breathing:
-            raise vibe.Error("'phase' is chosen for a stomach that does not breathe; leave it out, or name a 'breathing'.")
+        if "phase" in choices and not self.breathing and not self.motion:
+            raise vibe.Error("'phase' is chosen for a stomach that does not breathe or move; leave it out, or name a 'breathing' or 'motion'.")
         self.random[slot] = random
         stomach = self.organs[random.integers(len(self.organs))]
         scene = vibe._overrides(self.variation.begin(slot, random, choices.get("varied", {}))) or "{}"
-        organ = _organs.organ(choices.get("organ", stomach), self.particles, self.breathing, self.step_period, scene)
+        organ = _organs.organ(choices.get("organ", stomach), self.particles, self.breathing, self.step_period, scene, self.motion)
         self._use(slot, organ)
         start = choices.get("start", int(random.integers(len(organ.starts))))
         phases = organ.starts[start]
-        phase = random.integers(len(phases)) if self.breathing else 0
+        phase = random.integers(len(phases)) if self.breathing or self.motion else 0
         self.simulation[slot].restore(phases[choices.get("phase", phase)])
         self._set_goal(slot, organ, start, int(random.integers(GOALS)), choices.get("goal"))
         triangles = len(organ.model.triangles)
@@ -229,7 +230,7 @@ class Task:
         """For subclasses: what begins with an episode."""
 
     #: what no episode changes; everything else that an instance holds is the state of its episodes
-    _constant = {"count", "particles", "organs", "tolerance", "along", "around", "breathing", "mode", "threads", "camera",
+    _constant = {"count", "particles", "organs", "tolerance", "along", "around", "breathing", "motion", "mode", "threads", "camera",
                  "pictures", "tool", "step_period", "length", "closed", "action_space", "observation_space", "seen", "events"}
 
     def state(self):

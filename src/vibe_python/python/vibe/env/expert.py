@@ -8,6 +8,7 @@ import numpy as np
 
 import vibe
 
+from .settings import whole
 from .tip import TIP_SPEED, tip_motion
 
 
@@ -20,6 +21,7 @@ class Expert:
         task = getattr(environment, "task", None)
         if getattr(task, "count", None) != 1:
             raise vibe.Error(f"An expert acts in an Environment, and this is {vibe._shown(environment)}; give a single one.")
+        whole("seed", seed, 0, 2**64 - 1)
         self._begun = False
         self._policy = task.expert(seed)
         if self._policy is None:
@@ -37,6 +39,8 @@ class Expert:
         if not self._begun:
             raise vibe.Error("The expert has not begun; call its reset() after that of the environment.")
         task = self.environment.task
+        if not isinstance(observation, dict) or not {"tip", "achieved_goal"} & set(observation):
+            raise vibe.Error(f"The observation is {vibe._shown(observation)}; give what reset() or step() of the environment gave.")
         if "tip" not in observation:  # of a GoalEnvironment
             observation = {name: value[0] for name, value in task.observe().items()}
         return self._policy.action(task, observation).astype(np.float32)

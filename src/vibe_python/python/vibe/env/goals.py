@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
 import vibe
 
 from .api import REAL, gymnasium, spaces
-from .environment import Environment
-from .settings import FAR, PICTURES, STRONG
+from .environment import Environment, with_settings
+from .settings import FAR, PICTURES, STRONG, Settings, places
 from .tasks import Reach
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 class GoalEnvironment(Environment):
@@ -23,8 +26,10 @@ class GoalEnvironment(Environment):
     within the task's tolerance of the inside of the wall, otherwise -1; the episode then ends.
     """
 
-    def __init__(self, task: Union[str, type[Reach]] = "Reach", *, render_mode: Optional[str] = None, **settings: Any) -> None:
-        super().__init__(task, render_mode=render_mode, **settings)
+    @with_settings
+    def __init__(self, task: Union[str, type[Reach]] = "Reach", *, render_mode: Optional[str] = None, view: str = "endoscope",
+                 **settings: Unpack[Settings]) -> None:
+        super().__init__(task, render_mode=render_mode, view=view, **settings)
         if not isinstance(self.task, Reach):
             raise vibe.Error(f"The task {self.task.name} does not end at a place that the tip reaches; give Reach, or one that derives from it.")
         boxes = self.observation_space.spaces
@@ -48,12 +53,15 @@ class GoalEnvironment(Environment):
     def compute_terminated(self, achieved_goal: Any, desired_goal: Any, info: Any = None) -> np.ndarray:
         """Whether the goals are reached: arrays (..., 3) of places, of which the radius of the present organ's wall, 1.2 mm
         within 1 %, is taken off. Returns bool (...)."""
-        apart = np.linalg.norm(np.subtract(achieved_goal, desired_goal, dtype=float), axis=-1)
+        achieved, desired = places("achieved_goal", achieved_goal), places("desired_goal", desired_goal)
+        self._check_begun()
+        apart = np.linalg.norm(achieved - desired, axis=-1)
         return apart - self.task.organ[0].model.particle_radius <= self.task.tolerance
 
     def compute_truncated(self, achieved_goal: Any, desired_goal: Any, info: Any = None) -> np.ndarray:
         """False (...): what an episode has achieved does not cut it off."""
-        return np.zeros(np.shape(achieved_goal)[:-1], bool)
+        places("desired_goal", desired_goal)
+        return np.zeros(places("achieved_goal", achieved_goal).shape[:-1], bool)
 
     def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: Any = None) -> np.ndarray:
         """0 where compute_terminated(), otherwise -1: float (...)."""

@@ -20,8 +20,12 @@ HELD_OUT = (("sthenic", 0.96), ("sthenic", 1.04), ("j", 0.96), ("j", 1.04), ("st
 #: the range of 18 volunteers (PMC10113698) and its middle. The rates are those of adults at rest.
 BREATHING = {"slight": (12 / 60, 9.4e-3), "moderate": (16 / 60, 20e-3), "strong": (20 / 60, 30.5e-3)}
 
+#: grade of the scene's section `motion`: waves, respiration unless `breathing` says it, heart (docs/motion.md)
+MOTION = {"slight": 1.0, "moderate": 2.0, "strong": 3.0}
+
 STARTS = 4  # places of the scope per stomach
-PHASES = 8  # of a breath, in which episodes begin
+PHASES = 8  # of a breath, or of the period of contraction waves, in which episodes begin
+_WAVE = 1 / 0.0472  # period of contraction waves, as the scene has it by default [s]
 _SETTLING = 3.0  # simulated time from the entry to the place [s]
 _INSUFFLATION = 60.0  # at most [s]
 
@@ -36,23 +40,25 @@ def load(stomach, particles, step_period, sections):
 
 
 class Organ:
-    """One stomach: its model, the states that episodes begin with (by place of the scope and phase of the breath), and
+    """One stomach: its model, the states that episodes begin with (by place of the scope and phase of what moves it), and
     simulations that are free at present. `stomach` is (shape, scale), or a scene file; `scene` a text of JSON: other
     values of its keys."""
 
-    def __init__(self, stomach, particles, breathing, step_period, scene):
-        self._breath = None
+    def __init__(self, stomach, particles, breathing, step_period, scene, motion):
+        self._cycle = _WAVE if motion else None
         sections = json.loads(scene)
         if breathing:
             rate, amplitude = BREATHING[breathing]
-            self._breath = 1 / rate  # [s]
+            self._cycle = self._cycle or 1 / rate  # [s]
             sections["breathing"] = {"rate": rate, "amplitude": amplitude}
+        if motion:
+            sections["motion"] = {"grade": MOTION[motion]}
         self.model = load(stomach, particles, step_period, sections)
         self.name = stomach if isinstance(stomach, str) else "{} {:g}".format(*stomach)
-        self.name += f", {breathing} breathing" if breathing else ""
+        self.name += "".join(f", {grade} {what}" for what, grade in (("breathing", breathing), ("motion", motion)) if grade)
         self.joint_speeds = np.array([speed for _, _, speed in self.model.joint_limits.values()])  # greatest [m/s], [rad/s]
         self.goals = {}  # of tasks, by what they are drawn from; see Task
-        self._key = stomach, particles, breathing, step_period, scene
+        self._key = stomach, particles, breathing, step_period, scene, motion
         self._begin_pool()
         simulation = self.take()
         self._insufflate(simulation)
@@ -106,11 +112,11 @@ class Organ:
 
         wait(_SETTLING)
         wait(_SETTLING / 3)
-        if self._breath is None:
+        if self._cycle is None:
             return [simulation.snapshot(prepared=True)]
         phases = []
         for _ in range(PHASES):
-            wait(self._breath / PHASES)
+            wait(self._cycle / PHASES)
             phases.append(simulation.snapshot())
         return phases
 
@@ -122,5 +128,5 @@ class Organ:
 
 
 @functools.lru_cache(maxsize=32)  # values that are drawn make ever new ones
-def organ(stomach, particles, breathing=None, step_period=1 / 20, scene="{}"):
-    return Organ(stomach, particles, breathing, step_period, scene)
+def organ(stomach, particles, breathing=None, step_period=1 / 20, scene="{}", motion=None):
+    return Organ(stomach, particles, breathing, step_period, scene, motion)

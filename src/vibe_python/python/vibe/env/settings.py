@@ -1,5 +1,8 @@
 """What may be given to environments: each value is checked, and what cannot be taken is refused in one sentence."""
 
+import inspect
+from typing import Any, Optional, Sequence, Tuple, TypedDict, Union
+
 import numpy as np
 
 import vibe
@@ -11,6 +14,35 @@ FAR, STRONG, DEEP = 10.0, 1000.0, 10.0
 #: pictures that an observation may hold: channels, type, least and greatest value
 PICTURES = {"depth": ((), np.float32, 0, DEEP), "label": ((), np.uint8, 0, 7), "normal": ((3,), np.float32, -1, 1),
             "colour": ((3,), np.uint8, 0, 255)}
+
+
+class Settings(TypedDict, total=False):
+    """The keywords of every environment and their types; Environment says what they mean. A task may have further ones."""
+
+    particles: int
+    organs: Sequence[Union[str, Tuple[str, float]]]
+    action: str
+    camera: Optional[Tuple[int, int, float]]
+    pictures: Optional[Sequence[str]]
+    tool: bool
+    breathing: Optional[str]
+    motion: Optional[str]
+    step_period: Optional[float]
+    max_episode_steps: Optional[int]
+    scene: Optional[dict[str, Any]]
+    vary: Optional[dict[str, Sequence[Any]]]
+    tolerance: Optional[float]
+    along: Optional[Tuple[float, float]]
+    around: Optional[Tuple[float, float]]
+
+
+def named(constructor, of):
+    """A constructor of an environment, whose signature shows the keywords of Settings with the defaults of the constructor `of`."""
+    own, known = inspect.signature(constructor), inspect.signature(of).parameters
+    keywords = [known[name].replace(annotation=kind) for name, kind in Settings.__annotations__.items()]
+    *others, further = own.parameters.values()
+    constructor.__signature__ = own.replace(parameters=[*others, *keywords, further.replace(annotation=Any)])
+    return constructor
 
 
 def whole(name, value, least, most):
@@ -34,6 +66,18 @@ def numbers(action, shape):
     if not np.isfinite(given).all():
         raise vibe.Error("The action holds a value that is not finite; give numbers from -1 to 1.")
     return np.minimum(np.maximum(given.astype(float), -1), 1)
+
+
+def places(name, value):
+    """Places (..., 3) as an array of float, or vibe.Error."""
+    try:
+        found = np.asarray(value)
+        kind = found.dtype.kind
+    except (TypeError, ValueError, OverflowError):
+        kind = ""
+    if kind not in ("i", "u", "f") or found.shape[-1:] != (3,) or not np.isfinite(found).all():
+        raise vibe.Error(f"'{name}' is {vibe._shown(value)}; give places (..., 3), finite numbers [m].")
+    return found.astype(float)
 
 
 def is_number(value):

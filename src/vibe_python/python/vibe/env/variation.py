@@ -16,16 +16,20 @@ _SETTINGS = {"geometry.particles": "particles", "geometry.shape": "organs", "geo
 class Variation:
     """Other values of a scene, of which some are drawn: `scene` are sections as vibe.load() takes them, `vary` is a
     dictionary from SECTION.KEY or one of OF_ACTIONS to a distribution in SI units, ('uniform', least, greatest), ('normal',
-    mean, standard deviation) or ('choice', values). `of_task` are sections that the task has, unless others are given. Raises vibe.Error for what is none of these."""
+    mean, standard deviation) or ('choice', values). `moving` are the settings that make sections of the scene; `of_task` are
+    sections that the task has, unless others are given. Raises vibe.Error for what is none of these."""
 
-    def __init__(self, count, scene, vary, breathing, of_task):
+    def __init__(self, count, scene, vary, moving, of_task):
         if scene is not None and not isinstance(scene, dict):
             raise vibe.Error(f"'scene' is {vibe._shown(scene)}; give a dictionary of sections, such as {{'gas': {{'regulated_pressure': 900}}}}, "
                              "and scene files as 'organs'.")
         self.scene, self.vary = {**of_task, **(scene or {})}, _distributions(vary)
-        for name in (*self.vary, *self.scene, *(f"geometry.{key}" for key in self.scene.get("geometry") or {})):
-            if name in _SETTINGS or breathing and name.split(".")[0] == "breathing":
-                raise vibe.Error(f"The environment has a setting of its own for '{name}'; use '{_SETTINGS.get(name, 'breathing')}'.")
+        vibe._overrides(self.scene)  # refuses what no scene holds
+        geometry = self.scene.get("geometry")
+        for name in map(str, (*self.vary, *self.scene, *(f"geometry.{key}" for key in (geometry if isinstance(geometry, dict) else {})))):
+            section = name.split(".")[0]
+            if name in _SETTINGS or moving.get(section):
+                raise vibe.Error(f"The environment has a setting of its own for '{name}'; use '{_SETTINGS.get(name, section)}'.")
         self.values = [{} for _ in range(count)]  # that were drawn
         self._sent = [[] for _ in range(count)]  # actions that have not arrived
         self._noise = [None] * count  # its generators
