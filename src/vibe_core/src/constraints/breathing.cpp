@@ -110,8 +110,9 @@ class BreathingBlock : public ConstraintBlock {
     findLocal(model);
   }
 
-  Activity prepare(const StepContext& context, BodyLoads&) override {
+  Activity prepare(const StepContext& context, BodyLoads& loads) override {
     place(context, context.when * context.step);
+    loads.driven = true;
     return Activity::Disturb;
   }
 

@@ -12,22 +12,20 @@ class PeristalsisBlock : public ConstraintBlock {
   explicit PeristalsisBlock(const ShellTissue& tissue)
       : tissue_(tissue),
         contraction_(tissue.elements()->mesh().nodes.size(), 0),
-        displacement_(4 * contraction_.size()),
-        scratch_(4 * contraction_.size()) {}
+        displacement_(4 * contraction_.size()) {}
 
   // As long as a step lasts, the contraction is that of its end.
   Activity prepare(const StepContext& context, BodyLoads& loads) override {
     tissue_.muscle()->contraction(context.state.time + context.step, contraction_.data());
     loads.contraction = &contraction_;
+    loads.driven = true;
     return Activity::Disturb;
   }
 
   // The muscle works before anything moves: by what the wall's energy then grows.
   void begin(const StepContext& context, BodyLoads&) override {
     tissue_.displacement4(context.state, displacement_);
-    const double before = tissue_.elements()->muscleEnergy(displacement_.data(), scratch_.data());
-    tissue_.muscle()->contraction(context.state.time + context.step, displacement_.data() + 3, 4);
-    work_ = tissue_.elements()->muscleEnergy(displacement_.data(), scratch_.data()) - before;
+    work_ = tissue_.elements()->muscleWork(displacement_.data(), contraction_.data());
     if (context.state.solver.elastic_energy >= 0) context.state.solver.elastic_energy += work_;
   }
 
@@ -38,9 +36,9 @@ class PeristalsisBlock : public ConstraintBlock {
 
  private:
   const ShellTissue& tissue_;
-  std::vector<float> contraction_;             // per node (ratio)
-  std::vector<float> displacement_, scratch_;  // (4 per node)
-  double work_ = 0;                            // in this step [J]
+  std::vector<float> contraction_;   // per node, at the end of the step (ratio)
+  std::vector<float> displacement_;  // at its start (4 per node)
+  double work_ = 0;                  // in this step [J]
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "self_contact/self_contact.hpp"
 #include "vibe_core/constraints/wall_contacts.hpp"
 #include "vibe_core/model/model.hpp"
+#include "vibe_core/scene/scene.hpp"
 #include "vibe_core/solver/step_policy.hpp"
 #include "vibe_core/state/state.hpp"
 
@@ -70,7 +71,8 @@ namespace {
 class SelfContactBlock : public ConstraintBlock {
  public:
   explicit SelfContactBlock(const Model& model)
-      : contact_(model.organ.surface, model.organ.thickness, model.scene.tissue.young_modulus) {}
+      : contact_(model.organ.surface, model.organ.thickness, model.scene.tissue.young_modulus,
+                 breathingOf(model.scene).has_value()) {}
 
   Activity prepare(const StepContext&, BodyLoads&) override { return Activity::Sleep; }
 

@@ -47,7 +47,7 @@ Eigen::Vector3d nodeOf(const double* positions4, int node) {
 
 }  // namespace
 
-SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double young_modulus)
+SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double young_modulus, bool carried)
     : policy_(stepPolicy()),
       rest_(std::move(rest)),
       thickness_(std::move(thickness)),
@@ -57,9 +57,9 @@ SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double
   min_thickness_ = *std::min_element(thickness_.begin(), thickness_.end());
   max_thickness_ = *std::max_element(thickness_.begin(), thickness_.end());
   close_distance_ = 0.5 * longestEdge(rest_) + policy_.wall_core_search * max_thickness_;
-  memory_ =
-      std::make_unique<SelfContactMemory>(rest_, policy_.wall_reach * max_thickness_, facingCosine(),
-                                          policy_.path_floor * min_thickness_, policy_.search_slack * max_thickness_);
+  memory_ = std::make_unique<SelfContactMemory>(rest_, policy_.wall_reach * max_thickness_, facingCosine(),
+                                                policy_.path_floor * min_thickness_,
+                                                policy_.search_slack * max_thickness_, carried);
 }
 
 SelfContact::~SelfContact() = default;

@@ -79,9 +79,10 @@ class SelfContact : public EnergyTerm {
   /// @param rest           the middle surface at rest, consistently oriented; its vertices are the nodes [m]
   /// @param thickness      per vertex [m]
   /// @param young_modulus  of the wall [Pa]
+  /// @param carried        the wall is moved about as a whole, as by breath; makes a difference for speed only
   /// @throws Error if a triangle refers to a missing vertex, a thickness or the modulus is not positive, or sizes
   ///         differ
-  SelfContact(SurfaceMesh rest, std::vector<double> thickness, double young_modulus);
+  SelfContact(SurfaceMesh rest, std::vector<double> thickness, double young_modulus, bool carried = false);
   ~SelfContact() override;
 
   /// Finds the possible contacts within a step; call once before the step. The result depends only on the arguments,

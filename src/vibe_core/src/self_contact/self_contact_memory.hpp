@@ -69,9 +69,10 @@ class SelfContactMemory {
   /// @param one_wall  along edges within which the surface is one wall
   /// @param floor     minimum distance of paths
   /// @param slack     motion of a vertex for which what was found holds
-  SelfContactMemory(const SurfaceMesh& rest, double one_wall, double cosine, double floor, double slack)
+  /// @param carried   see SelfContactSearch::Settings
+  SelfContactMemory(const SurfaceMesh& rest, double one_wall, double cosine, double floor, double slack, bool carried)
       : walls(rest, one_wall),
-        search(rest, {walls, cosine, floor, slack}),
+        search(rest, {walls, cosine, floor, slack, carried}),
         close(rest.triangles, search.rings(), walls),
         paths(rest.triangles, walls, floor),
         position(rest.vertices),

@@ -42,18 +42,37 @@ SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const Settings& se
       walls_(settings.walls),
       cosine_(settings.cosine),
       floor_(settings.floor),
+      carried_(settings.carried),
       rings_(triangles_, rest.vertices.size()),
       tree_(rest, rings_),
       bounds_(triangles_, tree_.parts(), settings.slack),
       vertex_off_(rest.vertices.size()),
       triangle_off_(triangles_.size()) {
   tree_.setWalls(walls_);
+  for (Positions* positions : {&middle_start_, &middle_end_})
+    for (std::vector<double>& component : *positions) component.resize(carried_ ? rest.vertices.size() : 0);
   for (std::vector<Near>* list : {&near_, &new_near_, &old_near_}) list->reserve(kPerTriangle * triangles_.size());
   for (std::vector<Meeting>* list : {&meetings_, &new_meetings_, &old_meetings_})
     list->reserve(kPerTriangle * triangles_.size());
 }
 
 bool SelfContactSearch::adapt(const NodeVectors& start, const NodeVectors& end, double distance) {
+  if (!carried_) return renew(start, end, distance);
+  const NodeVectors to = aboutMiddle(end, middle_end_);
+  return renew(start == end ? to : aboutMiddle(start, middle_start_), to, distance);
+}
+
+SelfContactSearch::NodeVectors SelfContactSearch::aboutMiddle(const NodeVectors& at, Positions& out) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Map<const Eigen::ArrayXd> x(at[k], static_cast<Eigen::Index>(out[k].size()));
+    double sum = 0;
+    for (const double value : x) sum += value;
+    Eigen::Map<Eigen::ArrayXd>(out[k].data(), x.size()) = x - sum / static_cast<double>(x.size());
+  }
+  return {out[0].data(), out[1].data(), out[2].data()};
+}
+
+bool SelfContactSearch::renew(const NodeVectors& start, const NodeVectors& end, double distance) {
   // The distance changes with the speed of the walls; the lists are made anew only where they are too short or far too
   // long.
   const bool all = distance > distance_ || distance < stepPolicy().search_too_far * distance_;
@@ -99,8 +118,9 @@ void SelfContactSearch::addNear(int v, int triangle) {
 }
 
 // How far positions are from the centres of the balls, for which the distances in the list were taken.
-void SelfContactSearch::measure(const NodeVectors& at) {
+void SelfContactSearch::measure(const NodeVectors& where) {
   if (near_.empty()) return;
+  const NodeVectors at = carried_ ? aboutMiddle(where, middle_start_) : where;
   for (std::size_t i = 0; i < vertex_off_.size(); ++i)
     vertex_off_[i] =
         kRoundedUp * static_cast<float>((Eigen::Vector3d(at[0][i], at[1][i], at[2][i]) - bounds_.centre()[i]).norm());

@@ -31,6 +31,7 @@ class SelfContactSearch {
     double cosine;              ///< of walls that face each other, at most
     double floor;               ///< of triangles that may not come nearer
     double slack;               ///< motion of a vertex for which the lists hold
+    bool carried = false;  ///< it moves as a whole: positions are taken about their mean, so that lists hold longer
   };
 
   SelfContactSearch(const SurfaceMesh& rest, const Settings& settings);
@@ -49,7 +50,7 @@ class SelfContactSearch {
   /// parts without overhang do not come near themselves.
   const std::vector<Meeting>& meetings() const { return meetings_; }
   /// Prepares leastDistance() for positions for which the lists hold.
-  void measure(const NodeVectors& at);
+  void measure(const NodeVectors& where);
   /// No more than the distance of a vertex from a triangle that is near() [m].
   float leastDistance(const Near& near) const {
     return near.distance - vertex_off_[near.vertex] - triangle_off_[near.triangle];
@@ -59,6 +60,9 @@ class SelfContactSearch {
   int count() const { return count_; }  ///< of the calls of adapt() that had to renew parts of the lists
 
  private:
+  using Positions = std::array<std::vector<double>, 3>;
+  static NodeVectors aboutMiddle(const NodeVectors& at, Positions& out);
+  bool renew(const NodeVectors& start, const NodeVectors& end, double distance);
   void renewNear();
   void addNear(int vertex, int triangle);
   void renewMeetings();
@@ -69,6 +73,8 @@ class SelfContactSearch {
   std::vector<std::array<int, 3>> triangles_;
   const SurfaceWalls& walls_;
   double cosine_, floor_;
+  bool carried_;
+  Positions middle_start_, middle_end_;  // about their mean; empty unless carried [m]
   VertexTriangles rings_;
   SelfContactTree tree_;
   SelfContactBounds bounds_;

@@ -12,6 +12,7 @@ void BodyLoads::clear() {
   gas = GasLoad();
   tool_yield = ToolYield();
   contraction = nullptr;
+  driven = false;
   held_still = false;
   extra = nullptr;
   couplings.clear();

@@ -69,11 +69,21 @@ std::uint64_t hashOf(const std::vector<float>& positions, const std::vector<Stif
   return hash.result();
 }
 
-void copyPositions(const MotionView& motion, int nodes, const std::vector<float>* contraction,
-                   std::vector<float>& out) {
+// How far a driven body is carried about: that changes no stiffness [m].
+Eigen::Vector3d carriedBy(const ElasticBody& body, const MotionView& motion, const BodyLoads& loads) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  if (!loads.driven) return sum;
+  for (int i = 0; i < body.nodeCount(); ++i)
+    for (int k = 0; k < 3; ++k) sum[k] += motion.x[k][i] - body.rest[i][k];
+  return sum / body.nodeCount();
+}
+
+void copyPositions(const MotionView& motion, int nodes, const Eigen::Vector3d& carried,
+                   const std::vector<float>* contraction, std::vector<float>& out) {
   out.resize(3 * static_cast<std::size_t>(nodes));
   for (int i = 0; i < nodes; ++i)
-    for (int k = 0; k < 3; ++k) out[3 * static_cast<std::size_t>(i) + k] = static_cast<float>(motion.x[k][i]);
+    for (int k = 0; k < 3; ++k)
+      out[3 * static_cast<std::size_t>(i) + k] = static_cast<float>(motion.x[k][i] - carried[k]);
   if (contraction != nullptr) out.insert(out.end(), contraction->begin(), contraction->end());
 }
 
@@ -133,7 +143,7 @@ void collectCouplings(const BodyLoads& loads, const double* positions4, double g
 }
 
 void FactorSchedule::nameHere(const ElasticBody& body, const MotionView& motion, StepperMemory& memory) {
-  copyPositions(motion, body.nodeCount(), nullptr, memory.linearization_point);
+  copyPositions(motion, body.nodeCount(), Eigen::Vector3d::Zero(), nullptr, memory.linearization_point);
   memory.couplings.clear();
   memory.linearization_id = hashOf(memory.linearization_point, memory.couplings);
   memory.next.clear();
@@ -150,8 +160,10 @@ void FactorSchedule::advance(const ElasticBody& body, const MotionView& motion, 
     memory.next.clear();
     memory.next_couplings.clear();
   }
-  if (steps == 0 || !memory.next.empty() || !farFrom(body, motion, memory.linearization_point)) return;
-  copyPositions(motion, body.nodeCount(), loads.contraction, memory.next);
+  if (steps == 0 || !memory.next.empty()) return;
+  const Eigen::Vector3d carried = carriedBy(body, motion, loads);
+  if (!farFrom(body, motion, carried, memory.linearization_point)) return;
+  copyPositions(motion, body.nodeCount(), carried, loads.contraction, memory.next);
   // in double precision: the stiffness of a thread follows from the difference of two positions
   slots.positions.resize(4 * static_cast<std::size_t>(body.nodeCount()));
   for (int i = 0; i < body.nodeCount(); ++i)
@@ -236,13 +248,15 @@ void FactorSchedule::makeNext(FactorSlots& slots) {
   slots.next_columns.prepare(*slots.next, task.nodes, task.attachments);
 }
 
-bool FactorSchedule::farFrom(const ElasticBody& body, const MotionView& motion, const std::vector<float>& about) const {
+bool FactorSchedule::farFrom(const ElasticBody& body, const MotionView& motion, const Eigen::Vector3d& carried,
+                             const std::vector<float>& about) const {
   for (int i = 0; i < body.nodeCount(); ++i) {
     double distance2 = 0;
     for (int k = 0; k < 3; ++k) {
       const double from =
           about.empty() ? body.rest[i][k] : static_cast<double>(about[3 * static_cast<std::size_t>(i) + k]);
-      distance2 += (motion.x[k][i] - from) * (motion.x[k][i] - from);
+      const double away = motion.x[k][i] - carried[k] - from;
+      distance2 += away * away;
     }
     if (!(distance2 <= distance * distance)) return true;
   }

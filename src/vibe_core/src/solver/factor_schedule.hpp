@@ -6,6 +6,8 @@
 #include <mutex>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "solver/column_cache.hpp"
 #include "threads/background_worker.hpp"
 #include "vibe_core/solver/body_loads.hpp"
@@ -114,7 +116,8 @@ struct FactorSchedule {
   static void nameHere(const ElasticBody& body, const MotionView& motion, StepperMemory& memory);
 
  private:
-  bool farFrom(const ElasticBody& body, const MotionView& motion, const std::vector<float>& about) const;
+  bool farFrom(const ElasticBody& body, const MotionView& motion, const Eigen::Vector3d& carried,
+               const std::vector<float>& about) const;
   void factorSafely(const ElasticBody& body, const FactorPoint& point, const std::shared_ptr<const FactorPlan>& plan,
                     BlockMatrix& matrix, Factor& factor, ThreadPool& pool) const;
   void takeCurrent(const ElasticBody& body, const StepperMemory& memory, FactorSlots& slots, ThreadPool& pool) const;

@@ -48,6 +48,7 @@ class QuasiNewton {
   bool satisfyConstraints();
   /// Length of the full direction of the last iterate [m].
   double directionLength() const { return direction_length_; }
+  double safeLength() const { return safe_length_; }  ///< see the constructor [m]
   double value() const { return value_; }
   /// Rounding error of the displacements, which are single precision [m].
   double resolution() const;

@@ -42,9 +42,10 @@ void StepSolve::foresee() {
     system_.schur.setRows(system_.rows, *scratch_.factors.current, scratch_.factors.columns);
   }
   newton_.setGas(foreseenVolume());
-  if (guessed_ && newton_.referenceLength() > 0) doubtDirection();
+  if (guessed_ && newton_.referenceLength() > plan_.safe_length) doubtDirection();
   chooseContacts();
   newton_.aim();
+  if (loads_.driven && continuation_.from != From::Solution) judgeDriven();
   storeToolForces(system_, loads_);
 }
 
@@ -67,6 +68,14 @@ void StepSolve::doubtDirection() {
   startFromHere();
   at_.first = at_.last;
   newton_.setGas(foreseenVolume());
+}
+
+// The first direction is what a driven motion has changed by. Where that is short, what it leaves is far less than the
+// next step changes by, and it is judged as a first direction from the present positions.
+void StepSolve::judgeDriven() {
+  change_ = newton_.directionLength();
+  goes_on_ = !loads_.held_still && change_ < newton_.safeLength();
+  if (goes_on_) newton_.judgeBy(0);
 }
 
 // Which contacts will push is known only after a direction was found.
@@ -114,7 +123,7 @@ StepOutcome StepSolve::finish() {
 void StepSolve::iterate(StepOutcome& outcome) {
   const StepPolicy& policy = stepPolicy();
   const double longest = fallback_ ? policy.fallback_max_move * plan_.size : std::numeric_limits<double>::max();
-  const int usual = plan_.settings.iterations;
+  const int usual = goes_on_ ? 1 : plan_.settings.iterations;
   const double tolerance = loads_.held_still ? policy.hold_tolerance : plan_.settings.tolerance;
   bool done = false;
   while (!(done && !loads_.held_still) && !outcome.converged && !newton_.exhausted() &&
@@ -134,7 +143,7 @@ void StepSolve::judgeEnd(bool done, StepOutcome& outcome) {
   const StepPolicy& policy = stepPolicy();
   const double first_length = newton_.referenceLength();
   if (continuation_.from != From::Solution)
-    memory_.usual_length += policy.usual_share * (first_length - memory_.usual_length);
+    memory_.usual_length += policy.usual_share * ((loads_.driven ? change_ : first_length) - memory_.usual_length);
   // a search that failed may have failed by rounding only: then less may be left for the step to count as arrived
   const double enough = newton_.failed() ? std::max(policy.nearly_arrived * first_length,
                                                     policy.position_roundings * newton_.resolution())
@@ -177,7 +186,8 @@ double StepSolve::guess() {
 
 // A large motion goes on with its velocity, and the step has to find only what changes it. The velocity has the error
 // that the last step has left, which its iterations have brought below a hundredth of such a motion. Of a small one it
-// may be all, and would grow from step to step.
+// may be all, and would grow from step to step. A driven motion, which is small, goes on with its mean velocity over
+// two steps: errors that alternate cancel in it, and others fade as long as the iterations contract.
 double StepSolve::predict() {
   const ElasticBody& body = plan_.body;
   const double ahead = scheme_.part() * scheme_.h;
@@ -187,10 +197,11 @@ double StepSolve::predict() {
     for (int k = 0; k < 3 && body.fixed[i] == 0; ++k) speed2 += motion_.v[k][i] * motion_.v[k][i];
     fastest2 = std::max(fastest2, speed2);
   }
-  const double length = ahead * std::sqrt(fastest2);
-  if (!(length > plan_.safe_length)) return 0;
+  const double length = ahead * std::sqrt(fastest2), back = loads_.driven ? scheme_.h : 0;
+  if (!(length > plan_.safe_length || loads_.driven)) return 0;
   for (int i = 0; i < body.nodeCount(); ++i)
-    for (int k = 0; k < 3 && body.fixed[i] == 0; ++k) at_.z[4 * i + k] += ahead * motion_.v[k][i];
+    for (int k = 0; k < 3 && body.fixed[i] == 0; ++k)
+      at_.z[4 * i + k] += ahead * (motion_.v[k][i] - back * motion_.a[k][i]);
   return length;
 }
 

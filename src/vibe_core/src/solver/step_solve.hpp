@@ -38,6 +38,7 @@ class StepSolve {
   void startFromHere();
   void evaluateStart();
   void doubtDirection();
+  void judgeDriven();
   void chooseContacts();
   double foreseenVolume() const;
   int evaluationsLeft() const;
@@ -58,6 +59,8 @@ class StepSolve {
   Potential potential_;
   QuasiNewton newton_;
   bool guessed_ = false;  // it starts elsewhere than at the present positions
+  double change_ = 0;     // length of the first direction of a driven motion [m]
+  bool goes_on_ = false;  // the motion is driven, and that length is short
   StepWays ways_;
 };
 

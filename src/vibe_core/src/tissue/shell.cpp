@@ -143,14 +143,19 @@ ShellPart ShellElements::makePart(int first_piece, int last_piece, std::vector<i
   return part;
 }
 
-// @param first_node_batch  the batch with which the sweep's nodes begin
-double ShellElements::evaluateRun(const Run& run, int first_node_batch, ShellSweep& sweep) const {
+// What a sweep has to know of a run.
+void ShellElements::setRun(const Run& run, ShellSweep& sweep) const {
   const auto material = static_cast<std::size_t>(run.material), rows = static_cast<std::size_t>(run.rows);
   sweep.rest = batch_rest_.data() + run.row + rows * static_cast<std::size_t>(sweep.first - run.first);
   sweep.rows = run.rows;
   sweep.law = mesh_.materials[material].law;
   sweep.poisson_ratio = mesh_.materials[material].poisson_ratio;
   sweep.constants = &constants_[material];
+}
+
+// @param first_node_batch  the batch with which the sweep's nodes begin
+double ShellElements::evaluateRun(const Run& run, int first_node_batch, ShellSweep& sweep) const {
+  setRun(run, sweep);
   if (!batch_fibre_.empty()) sweep.fibre = batch_fibre_.data() + static_cast<std::size_t>(kFibreRows * sweep.first);
   sweep.first -= first_node_batch, sweep.last -= first_node_batch;
   const double energy = kernel_->sweep(sweep);
@@ -159,15 +164,16 @@ double ShellElements::evaluateRun(const Run& run, int first_node_batch, ShellSwe
   return energy + kernel_->fibres(sweep);
 }
 
-double ShellElements::muscleEnergy(const float* displacement4, float* scratch4) const {
+double ShellElements::muscleWork(const float* displacement4, const float* contraction) const {
   double energy = 0;
   for (const Run& run : runs_) {
     if (run.rows != kShellMuscleRows) continue;
     ShellSweep sweep{};
     sweep.node = batch_node_.data();
-    sweep.displacement4 = displacement4, sweep.gradient4 = scratch4;
+    sweep.displacement4 = displacement4, sweep.next = contraction;
     sweep.first = run.first, sweep.last = run.last;
-    energy += evaluateRun(run, 0, sweep);
+    setRun(run, sweep);
+    energy += kernel_->muscle(sweep);
   }
   return energy;
 }

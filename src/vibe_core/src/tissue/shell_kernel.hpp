@@ -42,6 +42,7 @@ struct ShellSweep {
   const float* displacement4;  ///< [m], and the contraction of the muscle
   float* gradient4;            ///< added to [N]
   float* volume_gradient4;     ///< added to [m^2]; null: not computed
+  const float* next;           ///< per node, what the contraction becomes; for the work of the muscle only (ratio)
   double volume;               ///< out, added to, if requested [m^3]
 };
 
@@ -53,6 +54,7 @@ struct ShellKernel {
   const char* name;
   ShellSweepFunction sweep;
   ShellSweepFunction fibres;  ///< contribution of fibres to the above, without the volume
+  ShellSweepFunction muscle;  ///< by how much the energy grows while nothing moves and the contraction becomes the next
 };
 ShellKernel shellKernelSse2();       ///< plain arithmetic
 ShellKernel shellKernelFusedSse2();  ///< the bits of AVX2 and AVX-512; slow

@@ -88,7 +88,8 @@ struct ShellKernelOfPairs {
 }  // namespace
 
 ShellKernel shellKernelAvx512() {
-  return {"avx512", sweepShell<ShellKernelOfPairs>, ShellKernelOfPairs::Single::sweepFibres};
+  using Single = ShellKernelOfPairs::Single;
+  return {"avx512", sweepShell<ShellKernelOfPairs>, Single::sweepFibres, sweepMuscle<Single>};
 }
 
 }  // namespace vibe

@@ -21,14 +21,19 @@ struct ShellKernelOf {
       for (int r = 0; r < 3; ++r) u[a][r] = u[a][r] - u1[r];
     }
   }
-  /// Of the muscle: the mean of the nodes' fourth numbers.
-  [[gnu::always_inline]] static Pack contraction(const ShellSweep& s, const BatchOffsets* offset, int lane) {
+  /// The mean over the nodes of triangles. @param value  of the offset of a node
+  template <class Value>
+  [[gnu::always_inline]] static Pack meanOf(const Value& value, const BatchOffsets* offset, int lane) {
     alignas(64) float sum[kWidth];
     for (int k = 0; k < kWidth; ++k) {
-      const auto at = [&](int node) { return s.displacement4[offset[node].lane[lane + k] + 3]; };
+      const auto at = [&](int node) { return value(offset[node].lane[lane + k]); };
       sum[k] = (at(0) + at(1)) + at(2);
     }
     return Pack::load_aligned(sum) * Pack(1.0f / 3);
+  }
+  /// Of the muscle: the mean of the nodes' fourth numbers.
+  [[gnu::always_inline]] static Pack contraction(const ShellSweep& s, const BatchOffsets* offset, int lane) {
+    return meanOf([&s](std::uint32_t at) { return s.displacement4[at + 3]; }, offset, lane);
   }
   [[gnu::always_inline]] static void scatter(const ShellSweep& s, const BatchOffsets* offset,
                                              const Pack (&f)[kParts][5][3]) {
@@ -79,6 +84,33 @@ struct ShellKernelOf {
     return energy.total();
   }
 
+  // The membrane's alone: bending does not contract. Batches through which no wave passes are left out.
+  template <Law law>
+  static double sweepMuscle(ShellSweep& s) {
+    const WallTerms<Pack> terms(*s.constants, s.poisson_ratio);
+    typename Lanes::Sum twice;
+    const BatchReals* rows = s.rest;
+    for (int batch = s.first; batch < s.last; ++batch, rows += kShellMuscleRows)
+      for (int part = 0; part < kParts; ++part) {
+        const BatchOffsets* offset = s.node + batch * 6;
+        const int lane = part * kWidth;
+        const Pack from = contraction(s, offset, lane);
+        const Pack to = meanOf([&s](std::uint32_t at) { return s.next[at / 4]; }, offset, lane);
+        if (xsimd::all(from == to)) continue;
+        const auto rest = [=](int row) { return Pack::load_aligned(rows[row].lane + lane); };
+        Pack u1[3], u[5][3], x[5][3], unused[5][3];
+        gather(s, offset, lane, u1, u);
+        for (int a = 0; a < 5; ++a)
+          for (int r = 0; r < 3; ++r) x[a][r] = rest(kShellPatch + 3 * a + r), unused[a][r] = Pack(0.0f);
+        const auto energy = [&](const Pack& shorter) __attribute__((always_inline)) {
+          return membraneEnergy<law, LawFormula<law>::kThicknessSteps, kShellMuscleRows>(terms, rest, shorter, x, u,
+                                                                                         unused);
+        };
+        twice.add(energy(to) - energy(from), part);
+      }
+    return 0.5 * twice.total();
+  }
+
   template <bool ghosts>
   static double sweepFibresOf(ShellSweep& s) {
     typename Lanes::Sum energy;
@@ -119,6 +151,12 @@ double sweepShell(ShellSweep& s) {
   });
 }
 
+/// Kernel::sweepMuscle() of the law of a sweep.
+template <class Kernel>
+double sweepMuscle(ShellSweep& s) {
+  return withLaw(s.law, [&](auto tag) { return Kernel::template sweepMuscle<decltype(tag)::value>(s); });
+}
+
 #ifdef VIBE_KERNEL_SET  // not in the kernel for AVX-512, which has a source of its own
 template <class Set>
 constexpr const char* kSetName = "sse2";
@@ -134,7 +172,7 @@ constexpr const char* kSetName<KernelSets::Avx2> = "avx2";
 ShellKernel VIBE_KERNEL(shellKernel)() {
   using Set = KernelSets::VIBE_KERNEL_SET;
   using Kernel = ShellKernelOf<Set>;
-  return {kSetName<Set>, sweepShell<Kernel>, Kernel::sweepFibres};
+  return {kSetName<Set>, sweepShell<Kernel>, Kernel::sweepFibres, sweepMuscle<Kernel>};
 }
 #endif
 

@@ -157,6 +157,9 @@ struct BodyLoads {
   /// Contraction of the muscle of ElasticBody::shell during the step, per node (ratio); null: it is relaxed. It lives
   /// until the end of the step.
   const std::vector<float>* contraction = nullptr;
+  /// What moves the body changes smoothly, as breath and muscle do: it goes on with its velocity, however small that
+  /// is.
+  bool driven = false;
   /// The hand holds the tool still: iterations go on until the motion that they leave is rest.
   bool held_still = false;
   const EnergyTerm* extra = nullptr;         ///< null: none

@@ -20,8 +20,8 @@ struct StiffnessCoupling {
 /// What an implicit stepper carries from step to step beside the motion. The factor itself is a cache: it is computed
 /// again wherever the scratch does not hold the one that the memory names.
 struct StepperMemory {
-  /// Positions of the factor in use (3 * nodes) [m], and after them, where muscle contracts, its contraction (nodes);
-  /// empty: rest.
+  /// Positions of the factor in use (3 * nodes), of a driven body less its mean move [m], and after them, where muscle
+  /// contracts, its contraction (nodes); empty: rest.
   std::vector<float> linearization_point;
   std::vector<float> next;                        ///< the same of the next factor; empty: there is none
   std::vector<StiffnessCoupling> couplings;       ///< contacts and threads in the factor in use

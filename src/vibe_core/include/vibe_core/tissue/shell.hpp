@@ -84,9 +84,9 @@ class ShellElements : public ElasticElements {
   }
   /// The same with contracted muscle. @param contraction  per node, 0 or more (ratio); null: 0
   double evaluate(const double* displacement, const float* contraction, double* gradient) const;
-  /// The energy of the triangles with muscle alone, in single precision [J].
-  /// @param scratch4  (4 * nodeCount) is added to
-  double muscleEnergy(const float* displacement4, float* scratch4) const;
+  /// By how much the energy grows while nothing moves and the contraction of the muscle changes [J].
+  /// @param contraction  per node, afterwards (ratio)
+  double muscleWork(const float* displacement4, const float* contraction) const;
 
   /// Like evaluate, and also adds the piece's share of the volume [m^3] enclosed by the surface, and a third of each
   /// triangle's area vector to its nodes [m^2]. The latter is the force of a pressure of 1 Pa and, for a closed
@@ -142,6 +142,7 @@ class ShellElements : public ElasticElements {
   void addBatch(const std::vector<int>& triangles, int rows);
   int firstBatch(int piece) const;
   ShellPart makePart(int first_piece, int last_piece, std::vector<int>& place) const;
+  void setRun(const Run& run, ShellSweep& sweep) const;
   double evaluateRun(const Run& run, int first_node_batch, ShellSweep& sweep) const;
   double evaluatePiece(int piece, ShellSweep sweep, int first_node_batch, double* volume) const;
 
