@@ -22,6 +22,7 @@ SCENES = {  # variants of the default scene: a text that follows its line, or (l
     "small": (None, "geometry: {particles: 1000}\n"),
     "fine": (None, "geometry: {particles: 16000}\n"),
     "coarse": (None, "geometry: {particles: 900}\ngas: {flow_limit: 30 L/min}\n"),
+    "thin": (None, "tissue: {thickness: {cardia: 0.8 mm, fundus: 0.8 mm, body: 0.8 mm, antrum: 0.8 mm}}\n"),
     "shape_matching": (None, "tissue: {model: shape_matching, young_modulus: 100 kPa, self_contact: false}\n"),
     # of vibe_population --seed 1, by number: four small ones, of them a soft and a thin one, and one that is stiff
     "population_33": (None, PATIENT.format("sthenic", 0.5467, 1.009, -5.667, 65.29, 2.119, 2.119, 2.506, 2.904, 2.904)),
@@ -32,6 +33,7 @@ SCENES = {  # variants of the default scene: a text that follows its line, or (l
 }
 ORGANS = ("stomach", "stomach_small", "stomach_large", "stomach_j", "stomach_steer_horn", "stomach_8mmhg",
           "stomach_12mmhg")
+REST_ORGANS = ("stomach_small", "stomach_large", "stomach_steer_horn")
 QUICK_CASES = ("case4_sphere", "case5_inflation", "case5_limit", "case6_bite", "case6_bite_refined", "case7_cinch")
 QUICK_EXPERIMENTS = ("shell_stiffness", "rubber_balloon", "rubber_width_held", "silicone_beam", "porcine_filling")
 MEASURES = ("time", "sets", "sets_as_planned", "bites", "bites_full_thickness", "tear_outs", "missed_bites", "slips",
@@ -92,6 +94,10 @@ def rest_parts():
     for particles, poses, minutes in (("3618", "50", 7), ("2000", "50", 4), ("1000", "100", 5), ("680", "100", 4), ("300", "200", 4)):
         words = ("vibe_contact", "rest", "--particles", particles, "--poses", poses, "--hold", "19")
         yield Part(particles, words, minutes)
+    scenes = (("thin", "{thin}"), *((name, f"package://vibe_core/scenes/{name}.yaml") for name in REST_ORGANS))
+    for name, scene in scenes:
+        words = ("vibe_contact", "rest", "--scene", scene, "--particles", "1000", "--poses", "40", "--hold", "19")
+        yield Part(name, words, 2)
 
 
 def threads_parts():

@@ -187,19 +187,20 @@ def ways(store):
 
 @made_from("rest")
 def rest(store):
-    """Of each mesh: how many poses rest, creep, tremble, and those that move most."""
-    meshes, lines = {}, []
+    """Of each mesh and organ: how many poses rest, creep, tremble, and those that move most."""
+    parts, lines = {}, []
     for row in store.rows("rest"):
-        meshes.setdefault(row["particles"], []).append(row)
-    for particles, rows in meshes.items():
+        parts.setdefault(row["part"], []).append(row)
+    for part, rows in parts.items():
+        organ = "shipped" if part.isdigit() else "0.8 mm thick" if part == "thin" else f"`{part}`"
         moving = sorted((row for row in rows if row["wall"] == "trembles"), key=lambda row: -number(row["motion_mm"]))
         worst = ["{} mm at {} N{}".format(digits(row["motion_mm"]), digits(row["force_N"]), "" if row["period_steps"] in "01"
                  else ", every {} steps".format(row["period_steps"])) for row in moving[:3]]  # fmt: skip
         counts = (sum(row["wall"] == word for row in rows) for word in ("rests", "creeps", "trembles"))
-        lines.append((whole(particles), str(len(rows)), *map(str, counts), "; ".join(worst)))
-    header = ("particles", "poses", "rest", "creep", "tremble", "those that tremble most")
+        lines.append((organ, whole(rows[0]["particles"]), str(len(rows)), *map(str, counts), "; ".join(worst)))
+    header = ("organ", "particles", "poses", "rest", "creep", "tremble", "those that tremble most")
     return table(header, lines), [
-        (whole(particles) + " particles", rows[0]) for particles, rows in meshes.items()
+        (f"{whole(part)} particles" if part.isdigit() else "thin" if part == "thin" else f"`{part}`", rows[0]) for part, rows in parts.items()
     ]
 
 
