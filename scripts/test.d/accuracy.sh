@@ -40,7 +40,7 @@ check 'a figure that was typed over is found' finds "accuracy.md: the table 'fem
   '/case6_bite/s/[0-9.]+ %/0.1 %/' --check-pages
 check 'a result without its page is found' finds "accuracy.md: the table 'fem'" docs/measured/fem.csv \
   '/^case6_bite,/s/0\.0[0-9]+/0.001/' --check-pages
-check 'what the guard no longer vouches for is marked as older' finds "accuracy.md: the table 'fem'" \
+check 'what the guard no longer vouches for is marked as older' finds "accuracy.md: the table '" \
   docs/measured/guard.csv '/^free,/s/0\.0/0.1/' --check-pages
 check 'a table that nobody makes is found' finds "below 'Steps in contact' that no script makes" docs/accuracy.md \
   's/^### Steps in contact$/&\n\n| state | error |\n|---|---|\n| free | 0.1 % |/' --check-pages

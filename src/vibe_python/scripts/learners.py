@@ -50,7 +50,7 @@ def success(act, environment, episodes):
 def learn(model, actions):
     begin, before = time.process_time(), model.num_timesteps
     while model.num_timesteps < before + actions:
-        model.learn(actions // PARTS, reset_num_timesteps=False)
+        model.learn(max(1, actions // PARTS), reset_num_timesteps=False)
         reached = statistics.fmean(model.ep_success_buffer or [0])
         print(f"{type(model).__name__}: {model.num_timesteps} actions, {time.process_time() - begin:.0f} s of CPU time; "
               f"{reached:.0%} of the last {len(model.ep_success_buffer)} episodes", flush=True)

@@ -110,7 +110,7 @@ class CameraTest(unittest.TestCase):
         for other in others:
             np.testing.assert_array_equal(other, colour)
         self.assertEqual(len(others), 3)
-        simulation = simulations[0]
+        simulation = vibe.Simulation(self.simulation.model)  # not insufflated: a mark has all corners of a triangle
         simulation.follow(vibe.Trainee(simulation.model, "name: m\nskill: {like: expert}\ngoals:\n  - mark: {along: 0.45, around: 0 rad}\n"))
         picture, marked = simulation.camera(64, 64, colour=True), simulation.burn_grade > 0
         pale = marked[simulation.model.triangles].all(1)[picture["triangle"]]

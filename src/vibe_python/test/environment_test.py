@@ -255,9 +255,9 @@ class EnvironmentTest(unittest.TestCase):
             Environment("Reach", render_mode="human", **SMALL)
         if not shutil.which("xvfb-run") or not importlib.util.find_spec("tkinter"):
             self.skipTest("xvfb-run or tkinter is not installed")
-        shown = subprocess.run(["xvfb-run", "-a", sys.executable, "-c", WINDOW], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        shown = subprocess.run(["xvfb-run", "-a", sys.executable, "-c", WINDOW], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                check=False)
-        self.assertEqual((shown.returncode, shown.stdout), (0, "shown\n"))
+        self.assertEqual((shown.returncode, shown.stdout), (0, "shown\n"), shown.stderr)
 
     def test_longer_steps_are_fewer_and_move_the_wall_alike(self):
         goals = {}

@@ -151,6 +151,18 @@ class EpisodesTest(InFolder):
                     numpy.testing.assert_array_equal(found[:, 0], numbers)
                     numpy.testing.assert_array_equal(found[:, 1], numbers if encoding == "mono8" else 2 * numbers % 256)
 
+    def test_after_a_reset_pictures_are_those_of_the_new_time(self):
+        self.write()
+        self.add_pictures()
+        with rosbag.Bag(self.path, "a") as bag:
+            for number in range(60):
+                message = picture(190 + number, "rgb8")
+                message.header.stamp = genpy.Time.from_sec(2 + number / RATE)
+                bag.write("/endoscope/image_raw", message, genpy.Time.from_sec(20 + number / RATE))
+        with Source(self.path) as source:
+            found = [int(frame[0, 0, 0]) for frame in Recorded(source).of([int(time * 1e9) for time in (2, 2.5, 2.1, 2.2)], 30)]
+        self.assertEqual(found, [60, 90, 196, 202])
+
     def test_pictures_that_cannot_be_used(self):
         self.write()
         self.add_pictures("microscope/image_raw")  # of another camera

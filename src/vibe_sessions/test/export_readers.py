@@ -279,8 +279,10 @@ class LerobotReader(EpisodesTest):
 
 class GltfReader(ExportTest):
     def test_assimp_finds_every_frame(self):
-        import pyassimp
-
+        try:
+            import pyassimp
+        except Exception as error:  # AssimpError and others: it looks for a library of its version
+            self.skipTest("pyassimp: {}".format(error))
         self.make()
         with rosbag.Bag(self.bag, "a") as bag:
             cloud = next(message for _, message, _ in bag.read_messages(topics=["/tissue/particles"]))

@@ -235,6 +235,8 @@ class GltfTest(ExportTest):
                 bag.write("/tissue/particles", cloud, cloud.header.stamp)
         self.exports(to="gltf")
         gltf, values = self.read(self.output + "/a/gltf/wall.glb")
+        x, y, z, w = gltf["nodes"][-1]["rotation"]
+        numpy.testing.assert_allclose([2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)], [0, 1, 0], atol=1e-15)  # z is up
         (primitive,) = gltf["meshes"][0]["primitives"]
         base, targets = values[primitive["attributes"]["POSITION"]], [values[each["POSITION"]] for each in primitive["targets"]]
         (weights,) = (sampler for channel, sampler in zip(gltf["animations"][0]["channels"], gltf["animations"][0]["samplers"])

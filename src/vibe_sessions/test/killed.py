@@ -22,8 +22,12 @@ def killed(at, action):
 
             return called
 
-        for module, name in ((builtins, "open"), (os, "fsync"), (os, "rename"), (os, "replace")):
-            setattr(module, name, counted(getattr(module, name)))
-        with open(os.devnull, "w", encoding="utf-8") as nothing, contextlib.redirect_stdout(nothing):
-            os._exit(action())
+        status = 70  # of an exception, which may not go on in the tests of the parent
+        try:
+            with open(os.devnull, "w", encoding="utf-8") as nothing, contextlib.redirect_stdout(nothing):
+                for module, name in ((builtins, "open"), (os, "fsync"), (os, "rename"), (os, "replace")):
+                    setattr(module, name, counted(getattr(module, name)))
+                status = action()
+        finally:
+            os._exit(status)
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])

@@ -70,8 +70,7 @@ std::vector<WallPoint> placesOf(const OutcomeTrial& trial, double along, const A
   const WallPoint centre = map.at(along, 0);
   std::vector<WallPoint> places;
   for (const Eigen::Vector2d& place : suturePattern(trial.pattern, kOutcomeBites, kOutcomeLength, kOutcomeWidth)) {
-    const WallPoint point = map.walk(centre, place.x(), place.y());
-    places.push_back({point.triangle, point.weight});
+    places.push_back(map.walk(centre, place.x(), place.y()));
   }
   return places;
 }

@@ -34,12 +34,14 @@ WallPlan::WallPlan(const Organ& organ, const SurfaceView& wall) : map_(organ, ve
     curve_length_.push_back(k == 0 ? 0 : curve_length_.back() + (here - last).norm());
     last = here;
   }
+  if (!(length() > 0)) throw Error("The body of the organ has no greater curvature; check its landmarks.");
 }
 
 WallPoint WallPlan::at(double along, double across) const {
   const auto next = std::lower_bound(curve_length_.begin() + 1, curve_length_.end() - 1, along);
   const std::size_t k = static_cast<std::size_t>(next - curve_length_.begin());
-  const double part = std::clamp((along - curve_length_[k - 1]) / (curve_length_[k] - curve_length_[k - 1]), 0.0, 1.0);
+  const double step = curve_length_[k] - curve_length_[k - 1];
+  const double part = step > 0 ? std::clamp((along - curve_length_[k - 1]) / step, 0.0, 1.0) : 0;
   return map_.walk(map_.at((1 - part) * curve_axis_[k - 1] + part * curve_axis_[k], 0), 0, -across);
 }
 

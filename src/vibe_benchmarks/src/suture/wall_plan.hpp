@@ -19,7 +19,7 @@ Eigen::Vector3d placeOf(const WallPoint& point, const SurfaceView& wall);
 class WallPlan {
  public:
   /// @param wall  current positions of the organ's vertices
-  /// @throws Error as AnatomicalMap
+  /// @throws Error as AnatomicalMap, or if the body has no greater curvature
   WallPlan(const Organ& organ, const SurfaceView& wall);
 
   /// Length of the greater curvature of the body [m].

@@ -85,8 +85,7 @@ const std::vector<EventRow>& eventRows() {
        "the helix."},
       {Kind::LeftLumen, Detail::None, "left lumen", "m",
        "The tip of the scope is outside of the organ, with {value:mm} of the scope in, beyond or beside an open end; "
-       "draw "
-       "it back."}};
+       "draw it back."}};
   return rows;
 }
 

@@ -170,11 +170,17 @@ void AnatomicalMap::findRegions(const Organ& organ) {
   const TriangleTree rest(organ.surface);
   const double incisura = alongLandmark(organ.landmarks.incisura, rest);
   const double pylorus = alongLandmark(organ.landmarks.pylorus, rest);
-  const double dome = alongAtHeight(organ.landmarks.oesophagus.z(), incisura, organ.surface.vertices);
+  double dome = extent_[static_cast<std::size_t>(Region::Fundus)].second;
+  try {
+    dome = alongAtHeight(organ.landmarks.oesophagus.z(), incisura, organ.surface.vertices);
+  } catch (const Error&) {
+    // a tube opens on the greater curvature, where the vertices have to do
+  }
   const double canal = beginOfCanal(incisura * axis_length_, pylorus * axis_length_) / axis_length_;
   const auto set = [this](Region region, double begin, double end) {
     auto& extent = extent_[static_cast<std::size_t>(region)];
-    if (extent.first <= extent.second) extent = {begin, end};
+    // not of an organ whose landmarks are in another order along the axis
+    if (extent.first <= extent.second && begin < end) extent = {begin, end};
   };
   set(Region::Fundus, 0, dome);
   set(Region::Body, dome, incisura);
@@ -251,6 +257,7 @@ WallPoint AnatomicalMap::at(double along, double around) const {
     const double miss = (nearest - wanted).squaredNorm();
     if (miss < min) min = miss, point = {static_cast<int>(t), weightsIn(nearest, flat[0], flat[1], flat[2])};
   }
+  if (point.triangle < 0) throw Error("The organ's positions are not numbers, so it has no places; reset it.");
   const bool beside = along > kApex && std::abs(turned(this->around(point) - around)) > kFarAround;
   if (beside || std::abs(this->along(point) - along) > kFarAlong)
     throw Error("The organ has no wall at " + placeText(along, around) +

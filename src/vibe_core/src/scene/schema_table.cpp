@@ -143,8 +143,9 @@ std::vector<SchemaRow> tissueRows() {
       {"tissue.stiffness_damping", [](Scene& s) -> double& { return s.tissue.stiffness_damping; }, "s", 0, 1e-3,
        "Rayleigh damping proportional to stiffness: it damps short waves and hardly affects long ones", kChoice},
       {"tissue.iterations", [](Scene& s) -> int& { return s.tissue.iterations; }, "1", 1, 100,
-       "quasi-Newton iterations per step, of model shell; a step takes fewer once nothing moves and up to 8 more if it "
-       "does not converge, up to 16 more in the next few after one that did not arrive; even numbers are more "
+       "quasi-Newton iterations per step, of model shell; a step takes fewer once nothing moves, one where the "
+       "organ moves by itself and little changes, and up to 8 more if it does not converge, up to 16 more in the next "
+       "few after one that did not arrive; even numbers are more "
        "stable, 1 is for steps of a millisecond",
        kChoice},
       {"tissue.spectral_radius", [](Scene& s) -> double& { return s.tissue.spectral_radius; }, "1", 0, 0.5,

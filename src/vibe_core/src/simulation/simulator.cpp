@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <utility>
 
@@ -77,6 +78,10 @@ void reportPressure(const GasScene& gas, bool insufflator_on, State& state, Even
   const bool reached = insufflator_on && isAtSetPoint(state.pressure, gas.regulated_pressure, state.pressure_reached);
   if (reached && !state.pressure_reached) log.emit(Event::Kind::PressureReached, -1, state.pressure);
   state.pressure_reached = reached;
+}
+
+std::int64_t lumenSteps(double dt) {
+  return std::max<std::int64_t>(1, std::lround(kLumenPeriod / dt));
 }
 
 // The ends of the organ are open, so that a tip may go on outside of it, where no wall meets it.
@@ -201,9 +206,6 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
     storeForces(model, report, poses.end, state);
     reportContact(report.contact_count, dt, state, log);
     reportBlocked(model, report.blocking_particle, state, log);
-    const int lumen_steps = std::max(1, static_cast<int>(std::lround(kLumenPeriod / dt)));
-    if (model.scene.scope->base_from_anatomy && state.step % lumen_steps == 0)
-      reportLumen(model, poses.end[model.tip_link], state, log);
     releaseOverloadedGrip(model, state, log);
     if (workspace.marking()) updateMarking(model, poses.end, beam, state, *workspace.marking(), log);
     updateProcedure(model, state, log);
@@ -216,6 +218,8 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
     recover(model, state, log);
     report.contacts.clear();
   }
+  if (model.tool && model.scene.scope->base_from_anatomy && state.step % lumenSteps(dt) == 0)
+    reportLumen(model, poses.end[model.tip_link], state, log);
   if (stages != nullptr) report.stage_times = stages->stop();
 }
 

@@ -75,7 +75,10 @@ void StepSolve::doubtDirection() {
 void StepSolve::judgeDriven() {
   change_ = newton_.directionLength();
   goes_on_ = !loads_.held_still && change_ < newton_.safeLength();
-  if (goes_on_) newton_.judgeBy(0);
+  if (goes_on_)
+    newton_.judgeBy(0);
+  else if (newton_.referenceLength() > 0)
+    newton_.judgeBy(std::max(newton_.referenceLength(), change_));  // the way foreseen may be almost nothing
 }
 
 // Which contacts will push is known only after a direction was found.

@@ -150,7 +150,7 @@ TEST(Fields, TheListNamesFieldsAndTheirTypes) {
 /// version in state_fields.hpp, so that older files are refused by name, then put the new
 /// values here.
 TEST(Fields, AnotherListOfFieldsHasAnotherVersion) {
-  EXPECT_EQ(kStateVersion, 10U);
+  EXPECT_EQ(kStateVersion, 11U);
   EXPECT_EQ(fieldFingerprint<State>(), 1183408962930763535U) << fieldList<State>();
   EXPECT_EQ(kStepInputVersion, 3U);
   EXPECT_EQ(fieldFingerprint<StepInput>(), 3494105037122736828U) << fieldList<StepInput>();

@@ -135,4 +135,12 @@ def view(simulation, view="endoscope", size=480):
     return window
 
 
-Simulation._repr_png_ = lambda simulation: png(picture(simulation))  # notebooks show it
+def _repr_png_(simulation):
+    """What a notebook shows; None: nothing, of a simulation without scope or that is closed."""
+    try:
+        return png(picture(simulation))
+    except Error:
+        return None
+
+
+Simulation._repr_png_ = _repr_png_

@@ -92,7 +92,7 @@ int run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  int result = 0;
+  int result = vibe::ros_utils::asksForHelp(argc, argv) ? 0 : kFailure;  // a signal may come before there is a master
   const int failure = vibe::ros_utils::runNodeWithGoodbye(
       argc, argv, "sim_node", [&] { result = run(); }, kHelp);
   return failure != 0 ? failure : result;

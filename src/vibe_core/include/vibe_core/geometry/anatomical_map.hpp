@@ -44,8 +44,9 @@ class AnatomicalMap {
   AnatomicalMap(const Organ& organ, std::vector<Eigen::Vector3d> vertices);
 
   const std::vector<Eigen::Vector3d>& vertices() const { return vertices_; }  ///< as given to the constructor [m]
-  /// Position along the axis of a share of a region: of what of it is on the greater curvature, or of all of it if
-  /// nothing is, from the fundus towards the pylorus. 0: its proximal end, 1: its distal end
+  /// Position along the axis of a share of a region, from the fundus towards the pylorus: between its borders on the
+  /// greater curvature, or between its farthest vertices where it has none there, as the cardia. 0: its proximal end,
+  /// 1: its distal end
   /// @throws Error if the organ lacks the region
   double alongIn(Region region, double share) const;
   double axisLength() const { return axis_length_; }  ///< from the apex of the fundus to the duodenum [m]

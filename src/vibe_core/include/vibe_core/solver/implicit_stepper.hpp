@@ -55,9 +55,10 @@ struct StepSettings {
   /// 1: trapezoidal rule, conserves energy; 0: removes them in one step. [0, 1]
   double spectral_radius = 0.2;
   bool backward_euler = false;  ///< first order and strongly damping, for states far from any equilibrium
-  /// Quasi-Newton iterations of a step. It takes more while they do not halve what is left, or until nothing moves if
-  /// the loads are BodyLoads::held_still, up to a number of further evaluations of the energy (kSpareEvaluations,
-  /// kSpareInFallback); what remains then is left to the next steps, which start from the true forces.
+  /// Quasi-Newton iterations of a step; one where the loads are BodyLoads::driven and little changes. It takes more
+  /// while they do not halve what is left, or until nothing moves if the loads are BodyLoads::held_still, up to a
+  /// number of further evaluations of the energy (kSpareEvaluations, kSpareInFallback); what remains then is left to
+  /// the next steps, which start from the true forces.
   int iterations = 3;
   double tolerance = 1e-7;  ///< a step ends earlier when no node would move farther than this [m]
   /// A factor about other positions takes over this long after they were, and is made in the background meanwhile; a

@@ -18,7 +18,7 @@ VIBE_FIELDS(StepInput, joints, buttons, pull_particle, pull_target, breath);
 
 /// Version of the fields of State and of the layout of snapshots, which carry it. Raise it with every change of the
 /// lists below.
-constexpr std::uint32_t kStateVersion = 10;
+constexpr std::uint32_t kStateVersion = 11;
 
 VIBE_FIELDS(Bite, particle, weight, time, depth, thickness, region, wall, along);
 VIBE_FIELDS(TissueGroup, particle, offset, middle, weight, drawn);

@@ -89,8 +89,9 @@ class _Episodes:
 
     def _pictures(self):
         self._check_begun()
-        return tuple(vibe.picture(simulation, self._view, goal=goal)
-                     for simulation, goal in zip(self.task.simulation, self.task.look()["goal"]))
+        marked = self._view == "outside" and self.task.has_place
+        goals = self.task.look()["goal"] if marked else [None] * self.task.count
+        return tuple(vibe.picture(simulation, self._view, goal=goal) for simulation, goal in zip(self.task.simulation, goals))
 
     def _rendered(self):
         if self.render_mode is None:

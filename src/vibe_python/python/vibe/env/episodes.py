@@ -36,6 +36,7 @@ class Task:
     name = ""
     reward = ""  #: what is rewarded, in words
     further = {}  #: observations of the task: name to (shape, meaning)
+    has_place = True  #: the goal of the observation is a place of the wall, which pictures from outside mark
     seconds = 10.0  #: simulated time until an episode is truncated
     rate = 20  #: actions per simulated second
     rate_of_steps = 20  #: steps per simulated second, at least, where `step_period` does not say it

@@ -128,7 +128,7 @@ def range_of(name, pair, least, most):
 
 #: what reset(options=...) may choose instead of drawing it
 CHOICES = {"organ": "a pair (shape, scale), or a scene file", "varied": "a dictionary of values of what 'vary' names", "start": f"a whole number below {_organs.STARTS}", "goal": "(along, around [rad])",
-           "phase": f"a whole number below {_organs.PHASES}, of a stomach that breathes"}
+           "phase": f"a whole number below {_organs.PHASES}, of a stomach that breathes or moves"}
 
 
 def chosen(options, further=()):

@@ -44,6 +44,7 @@ class Inspect(Task):
     share = 0.6
     sight = 0.1
     further = {"seen": ((1,), "share of the area that was seen")}
+    has_place = False
 
     def begun(self, slot):
         self.mask = getattr(self, "mask", [None] * self.count)

@@ -41,19 +41,22 @@ class Gltf(Wall):
     def add(self, message):
         if message.connection.topic.endswith("measured_cp"):
             place, turn, time = message.fields.pose.position, message.fields.pose.orientation, message.time / 1e9
-            if not self._poses or time > self._poses[-1][0]:
-                self._poses.append((time, place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w))
+            pose = (time, place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w)
+            if numpy.isfinite(pose).all() and any(pose[4:]) and (not self._poses or time > self._poses[-1][0]):
+                self._poses.append(pose)
         else:
             super().add(message)
 
     def _frame(self, time, revision, points, frame):
         positions = numpy.asarray(positions_of(points), "<f4")
+        if not numpy.isfinite(positions).all():
+            raise BagError("{}: a particle is nowhere at {:.3f} s, which glTF cannot say; choose the time before with --to-time".format(self._path, time))
         if self._base is None:
             self._base, self._begin, self._revision, self._name = positions, time, revision, frame
         if revision != self._revision:
-            raise BagError("{}: another organ comes at {:.3f} s, and glTF has one; choose its time with --from and --to-time".format(self._path, time))
+            raise BagError("{}: another organ comes at {:.3f} s, and glTF has one; choose its time with --from and --to-time, in a call of its own".format(self._path, time))
         if len(self._rows) > MOST:
-            raise BagError("{}: has more than {} frames, which no viewer of glTF takes; give a lower --rate".format(self._path, MOST))
+            raise BagError("{}: has more than {} frames, which no viewer of glTF takes; give a lower --rate in a call of its own".format(self._path, MOST))
         moved = positions - self._base
         deviation = numpy.abs(self._base + moved - positions).max()
         self._rows.append("{!r},{!r},{:.3g}".format(round(time - self._begin, 9), time, deviation))

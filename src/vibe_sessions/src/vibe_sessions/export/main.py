@@ -61,6 +61,8 @@ class Folder:
     def resume(self):
         """For what is made of whole parts, which are kept, too, if they were described as those of the same call."""
         about = os.path.join(self.part, ABOUT)
+        if os.path.exists(about) and read(about) != self._about:
+            print("{}: begins again; what was there is of other options or recordings".format(self.path), flush=True)
         if not os.path.exists(about) or read(about) != self._about:
             shutil.rmtree(self.part, ignore_errors=True)
         os.makedirs(self.part, exist_ok=True)
@@ -136,6 +138,16 @@ def export_one(arguments, bag, place):
             os.makedirs(place, exist_ok=True)
             with whole(bag, about["sha256"], os.path.join(place, ".filling"), fill) as path:
                 write(arguments, path, asked)
+    shutil.rmtree(os.path.join(place, ".filling"), ignore_errors=True)  # of an export that was killed
+
+
+def pictures_digest(folder):
+    from .pictures import digest_of
+
+    try:
+        return digest_of(folder)
+    except OSError as error:
+        raise BagError("--images: '{}' is no folder of scripts/dataset ({}); name another".format(folder, error)) from None
 
 
 def export_set(arguments, bags):
@@ -143,7 +155,8 @@ def export_set(arguments, bags):
     from . import lerobot
 
     recordings = [[os.path.basename(bag), digest(bag)] for bag in bags.values()]
-    folder = Folder(arguments.output, "lerobot", arguments, "lerobot_version", "images", recordings=recordings)
+    drawn = {"pictures": pictures_digest(arguments.images)} if arguments.images else {}
+    folder = Folder(arguments.output, "lerobot", arguments, "lerobot_version", "images", recordings=recordings, **drawn)
     if folder.is_complete():
         return
     folder.resume()
@@ -162,6 +175,7 @@ def export_set(arguments, bags):
         rows.append("{},{}".format(name, before))
         with open_whole(table) as file:
             file.write("\n".join(rows) + "\n")
+    shutil.rmtree(os.path.join(arguments.output, ".filling"), ignore_errors=True)
     folder.end("{} episodes".format(before))
 
 

@@ -1,5 +1,6 @@
 """What the endoscope saw at given times: recorded pictures, or those that scripts/dataset has drawn of a session."""
 
+import hashlib
 import io
 import os
 
@@ -18,6 +19,16 @@ def load(file):
     from PIL import Image
 
     return numpy.asarray(Image.open(file).convert("RGB"))
+
+
+def digest_of(folder):
+    """SHA-256 of what Images takes from a folder, so that pictures that were drawn anew are others."""
+    found = hashlib.sha256()
+    pictures = os.path.join(folder, "image")
+    for file in [os.path.join(folder, "times.txt"), *(os.path.join(pictures, name) for name in sorted(os.listdir(pictures)))]:
+        with open(file, "rb") as stream:
+            found.update(stream.read())
+    return found.hexdigest()
 
 
 class Images:
@@ -44,30 +55,42 @@ class Images:
 
 
 def topic_of(source):
-    """The connection with pictures of the endoscope, in a list that is empty without one."""
-    found = [number for topic in TOPICS for number in source.numbers_of(topic)]
-    return [number for number in found if source.bag.connections[number].datatype in KINDS and source.bag.count(number)][:1]
+    """The connections of the topic with pictures of the endoscope, one for each start of the camera; empty: there is none."""
+    connections = source.bag.connections
+    found = [number for topic in TOPICS for number in source.numbers_of(topic)
+             if connections[number].datatype in KINDS and source.bag.count(number)]  # fmt: skip
+    return [number for number in found if connections[number].topic == connections[found[0]].topic]
 
 
 class Recorded:
-    """The pictures in a recording; they are read once, so times have to grow."""
+    """The pictures in a recording; they are read once, so times have to grow, except where the simulator was reset."""
 
     def __init__(self, source):
         self._source, self._wanted = source, topic_of(source)
         self._messages = (Message(source, *found) for found in source.bag.in_time(self._wanted))
         self._last = self._next = next(self._messages)
+        self._asked = 0
         self.shape = list(self._decoded(self._last).shape)
 
     def of(self, times, fps):
         """Those nearest to these times [ns], at most half a frame away."""
         for time in times:
+            if time < self._asked:  # a reset: pictures of the new time come after all of the old one
+                while self._next is not None and self._next.time >= self._last.time:
+                    self._advance()
+                self._advance()
+            self._asked = time
             while self._next is not None and abs(self._next.time - time) <= abs(self._last.time - time):
-                self._last, self._next = self._next, next(self._messages, None)
+                self._advance()
             apart = abs(self._last.time - time) / 1e9
             if apart > 0.51 / fps:
                 raise BagError("{}: has no picture within {:.3f} s of a frame; give the --rate with which they were recorded, or draw "
                                "them with scripts/dataset and give --images".format(self._source.path, apart))  # fmt: skip
             yield self._decoded(self._last)
+
+    def _advance(self):
+        if self._next is not None:
+            self._last, self._next = self._next, next(self._messages, None)
 
     def _decoded(self, message):
         picture = message.fields

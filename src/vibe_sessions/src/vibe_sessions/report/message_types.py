@@ -14,10 +14,9 @@ SIZES.update({"geometry_msgs/Pose": 56, "geometry_msgs/Wrench": 48})
 
 
 def message_class(connection):
-    """The class of the messages of a connection, from the definition in the bag."""
-    if connection.md5sum not in _classes:
-        classes = genpy.dynamic.generate_dynamic(connection.datatype, connection.definition)
-        _classes[connection.md5sum] = classes[connection.datatype]
+    """The class of the messages of a connection, from the definition in the bag; ValueError where that is not whole."""
+    if connection.md5sum not in _classes and not has_its_definition(connection):
+        raise ValueError("the definition of {} is not that of its MD5 sum; it may have been edited or damaged".format(connection.datatype))
     return _classes[connection.md5sum]
 
 
