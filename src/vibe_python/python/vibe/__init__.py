@@ -74,6 +74,8 @@ try:
     )
 except ImportError as error:
     raise ImportError(_unloadable(error)) from None
+import numpy as _numpy  # not before the interpreter is looked at
+
 from ._pictures import picture, view
 
 __version__ = "1.0.0"
@@ -89,6 +91,14 @@ def _shown(value):
     """A value in the sentence of an error: as Python writes it, or its type where that is long."""
     text = ascii(value)
     return text if len(text) <= 60 and "<" not in text else type(value).__name__
+
+
+def _array_of(value):
+    """A value as an array; what makes none, as lists of unequal length, as an empty one of objects."""
+    try:
+        return _numpy.asarray(value)
+    except (TypeError, ValueError, OverflowError):
+        return _numpy.empty(0, object)
 
 
 def _plain(value):

@@ -47,10 +47,7 @@ def picture(simulation, view="endoscope", size=480, goal=None):
 
 
 def _place(goal):
-    try:
-        place = np.asarray(goal)
-    except (TypeError, ValueError, OverflowError):
-        place = np.empty(0)
+    place = vibe._array_of(goal)
     if place.dtype.kind not in "iuf" or place.shape != (3,) or not np.isfinite(place).all():
         raise Error(f"'goal' is {vibe._shown(goal)}; give a place (3,) in world [m], or None.")
     return place.astype(float)

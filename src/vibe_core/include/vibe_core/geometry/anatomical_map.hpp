@@ -34,8 +34,9 @@ WallPoint nearestOn(const Eigen::Vector3d& place, const WallPoint& same_side,
                     const std::vector<std::array<int, 3>>& triangles, const std::vector<Eigen::Vector3d>& vertices);
 
 /// Anatomical coordinates of a stomach in its present shape: along its axis, around it, and in metres along its wall.
-/// They are continuous on the wall, and another mesh of the same organ gives the same places: to 1 mm, and on a coarse
-/// mesh to what its triangles lie beside the curved wall. Making one takes some 40 ms for 3,618 vertices (the axis).
+/// They are continuous on the wall, and another mesh of the same organ gives nearly the same places: with 3,000
+/// vertices to 1 mm in the mean, with 300 to 2.5 mm, beside the opening of the oesophagus to 5 mm. Making one takes 14
+/// ms of an EPYC for 3,618 vertices (the axis), and up to 40 ms for fewer than 3,500, whose surface is divided before.
 class AnatomicalMap {
  public:
   /// @param organ     rest shape and landmarks

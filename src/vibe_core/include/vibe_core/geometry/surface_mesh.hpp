@@ -38,7 +38,7 @@ struct SurfaceView {
 };
 
 /// Whether a point is within a closed surface, which may have folds that cross each other: the surface winds about it
-/// at least once. Cost: a loop over the triangles, some 3 ns each.
+/// at least once. Cost: a loop over the triangles, some 2 ns each.
 /// @param point  not on the surface, where either answer may come [m]
 bool isWithin(const SurfaceView& surface, const Eigen::Vector3d& point);
 

@@ -54,12 +54,8 @@ def whole(name, value, least, most):
 
 def numbers(action, shape):
     """An action of this shape as a new array of float from -1 to 1, or vibe.Error."""
-    try:
-        given = np.asarray(action)
-        kind = given.dtype.kind
-    except (TypeError, ValueError, OverflowError):
-        kind = ""
-    if kind not in ("b", "i", "u", "f"):
+    given = vibe._array_of(action)
+    if given.dtype.kind not in "biuf":
         raise vibe.Error(f"The action is {vibe._shown(action)}; give an array of numbers from -1 to 1.")
     if given.shape != shape:
         raise vibe.Error(f"The action has the shape {given.shape}; give one of the shape {shape}.")
@@ -70,12 +66,8 @@ def numbers(action, shape):
 
 def places(name, value):
     """Places (..., 3) as an array of float, or vibe.Error."""
-    try:
-        found = np.asarray(value)
-        kind = found.dtype.kind
-    except (TypeError, ValueError, OverflowError):
-        kind = ""
-    if kind not in ("i", "u", "f") or found.shape[-1:] != (3,) or not np.isfinite(found).all():
+    found = vibe._array_of(value)
+    if found.dtype.kind not in "iuf" or found.shape[-1:] != (3,) or not np.isfinite(found).all():
         raise vibe.Error(f"'{name}' is {vibe._shown(value)}; give places (..., 3), finite numbers [m].")
     return found.astype(float)
 
