@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Draws what Simulation.camera(tool=True) gives, after two marks were made: colour, depth, normals, labels side by side; or with
---outside an episode of Reach from before the patient."""
+--outside an episode of Reach from before the patient; or with --motion a wave that runs to the pylorus, and a breath."""
 
 import argparse
 
@@ -41,13 +41,31 @@ def marks(size):
     return np.concatenate([seen["colour"], np.stack([grey] * 3, -1), (127.5 * (seen["normal"] + 1)).astype(np.uint8), REGIONS[seen["label"]]], 1)
 
 
+def motion(size):
+    """Above: the antrum every 3 s, while the tip is held. Below: the organ through a breath of 3.75 s, from before the patient."""
+    simulation = vibe.Simulation(vibe.load(motion={"grade": 2}), impedance=False)
+    simulation.run(900, insufflate=True)
+    simulation.run(180, insertion=0.10, rotation=np.pi / 2)
+    simulation.run(240, insertion=0.168, tip_up_down=2.12)
+    waves, breath = [], []
+    for _ in range(7):
+        waves.append(vibe.picture(simulation, size=size))
+        simulation.run(180)
+    for _ in range(7):
+        breath.append(vibe.picture(simulation, "outside", size))
+        simulation.run(38)
+    return np.concatenate([np.concatenate(row, 1) for row in (waves, breath)])
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("file", help="PNG that is written")
     parser.add_argument("--size", type=int, default=256, help="of each picture [px]")
     parser.add_argument("--outside", action="store_true", help="the picture from outside instead")
+    parser.add_argument("--motion", action="store_true", help="a living stomach instead")
     options = parser.parse_args()
-    matplotlib.image.imsave(options.file, outside() if options.outside else marks(options.size))
+    pixels = outside() if options.outside else motion(options.size) if options.motion else marks(options.size)
+    matplotlib.image.imsave(options.file, pixels)
 
 
 if __name__ == "__main__":
