@@ -5,10 +5,10 @@
     learn.py clone reach.hdf5 cloned.npz     a policy that imitates them
     learn.py evaluate random expert cloned.npz    all of them on 100 seeds and organs that nobody trained on, as a table
 
-ppo.py goes on from there by reinforcement.
+ppo.py goes on from there by reinforcement. policies/ has a policy of each of several tasks, made by these commands.
 
-The task is Reach, whose actions are the tip's velocity; `demonstrate` and `evaluate random expert` take another one by
---task, with its own actions. Both go on where they were stopped."""
+The task of `demonstrate` and of `evaluate random expert` is Reach, or that of --task; demonstrations and policies know
+theirs. `demonstrate` and `evaluate` go on where they were stopped."""
 
 import argparse
 import hashlib
@@ -23,10 +23,14 @@ import vibe
 from vibe import Error
 from vibe.env import BREATHING, HELD_OUT, TRAINING, Environment, Expert, demonstrations, expert
 
-INPUTS = ("to_goal", "wrench")
-STEP_PERIOD = 1 / 60  # [s], of the tables in docs/python.md; with the default, 1/20, episodes are computed twice as fast
-# What counts as one, at least: demonstrations hardly touch the wall, and by their own deviation a touch would be far away
-SCALE = np.array([0.01] * 3 + [1.0] * 3 + [0.05] * 3)  # [m], [N], [N m]
+STEP_PERIOD = 1 / 60  # [s], of the tables in docs/python.md; with 1/20, where it is the default, episodes take half the time
+# Settings of the environment of a task, beside the step. Reach has no use for joints, and Inspect is learnt from pixels.
+SETTINGS = {"Reach": {"action": "tip"}, "Inspect": {"step_period": 1 / 20, "camera": (16, 16, 2.0), "pictures": ["depth"]}}
+# What policies see, as far as a task observes it, and what of each counts as one, at least: demonstrations hardly touch the
+# wall, and by their own deviation a touch would be far away. [m], [N, N m], [m], [rad], ...
+LEAST = {"to_goal": 0.01, "wrench": [1.0] * 3 + [0.05] * 3, "depth": 0.02, "joints": 0.05, "direction": 0.1, "holds": 0.5,
+         "held": 0.5, "tension": 0.5, "blood": 1.0, "seen": 0.1}
+UNSEEN = {"Reach": {"joints", "direction"}}
 
 
 class Random:
@@ -59,7 +63,8 @@ class Cloned:
     def __init__(self, file):
         try:
             with np.load(file) as stored:
-                self.parts = [stored[f"arr_{k}"] for k in range(len(stored.files))]
+                self.task, self.inputs = str(stored["task"]), [str(name) for name in stored["inputs"]]
+                self.parts = [stored[f"arr_{k}"].astype(float) for k in range(len(stored.files) - 2)]
         except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
             raise Error(f"{file} cannot be read as a policy ({error}); name a file of clone or ppo.py.") from None
 
@@ -67,8 +72,33 @@ class Cloned:
         pass
 
     def action(self, observation):
-        row = np.concatenate([observation[name] for name in INPUTS])[None].astype(float)
+        row = rows_of(observation, self.inputs, 1)
         return np.clip(forward(self.parts, row)[-1][0], -1, 1).astype(np.float32)
+
+
+def inputs_of(task, observed):
+    """The names of what a policy of a task sees, of those that are observed."""
+    return [name for name in LEAST if name in observed and name not in UNSEEN.get(task, ())]
+
+
+def rows_of(observation, inputs, count):
+    """The inputs of a policy, one row for each of `count` observations."""
+    return np.concatenate([np.reshape(observation[name], (count, -1)) for name in inputs], axis=1).astype(float)
+
+
+def scaling(rows, least):
+    """Mean and deviation of the inputs, the latter no less than what counts as one."""
+    return [rows.mean(0), np.maximum(rows.std(0), least)]
+
+
+def least_of(observation, inputs):
+    """What counts as one of each number that a policy sees."""
+    return np.concatenate([np.broadcast_to(LEAST[name], np.size(observation[name])) for name in inputs])
+
+
+def store(file, task, inputs, parts):
+    np.savez(file + ".part.npz", *[np.asarray(part, np.float32) for part in parts], task=task, inputs=inputs)
+    os.replace(file + ".part.npz", file)
 
 
 def forward(parts, rows):
@@ -91,10 +121,10 @@ def gradients(parts, values, error):
 
 
 def fit(rows, wanted, epochs, seed=0, batch=256, rate=1e-3, least=1e-9):
-    """Adam (Kingma and Ba 2015) on the mean square error. least: scale of each input, at least"""
+    """Adam (Kingma and Ba 2015) on the mean square error. least: see least_of()"""
     random = np.random.default_rng(seed)
     sizes = [rows.shape[1], 64, 64, wanted.shape[1]]
-    parts = [rows.mean(0), np.maximum(rows.std(0), least)]
+    parts = scaling(rows, least)
     for inner, outer in zip(sizes, sizes[1:]):
         parts += [random.normal(0, inner**-0.5, (inner, outer)), np.zeros(outer)]
     first, second, step = [0.0] * (len(parts) - 2), [0.0] * (len(parts) - 2), 0
@@ -118,11 +148,11 @@ def show(text):
 
 
 def environment_of(task, organs, **settings):
-    return Environment(task, organs=organs, action="tip" if task == "Reach" else "joints", step_period=STEP_PERIOD, **settings)
+    return Environment(task, organs=organs, **{"step_period": STEP_PERIOD, **SETTINGS.get(task, {}), **settings})
 
 
 def demonstrate(options):
-    environment = environment_of(options.task, TRAINING)
+    environment = environment_of(options.task or "Reach", TRAINING)
     kept, of = demonstrations.record(environment, Expert(environment), options.file, options.episodes, seed=options.seed,
                                      progress=lambda done, of, kept: show(f"episode {done} of {of}, {kept} succeeded"))
     print(f"\n{kept} of {of} episodes succeeded and are in {options.file}")
@@ -134,32 +164,38 @@ def clone(options):
         sys.exit(f"{options.policy} exists and is not overwritten; name another file.")
     with h5py.File(options.file, "r") as file:
         demos = list(file["data"].values())
-        rows = np.concatenate([np.hstack([demo["obs"][name] for name in INPUTS]) for demo in demos]).astype(float)
+        task = json.loads(file.attrs["begun"])["task"]["class"]
+        task = task.removeprefix("vibe.env.tasks:")
+        inputs = inputs_of(task, demos[0]["obs"])
+        rows = np.concatenate([rows_of(demo["obs"], inputs, len(demo["actions"])) for demo in demos])
         wanted = np.concatenate([demo["actions"] for demo in demos]).astype(float)
-    np.savez(options.policy + ".part.npz", *fit(rows, wanted, options.epochs, least=SCALE))
-    os.replace(options.policy + ".part.npz", options.policy)
+        least = least_of({name: demos[0]["obs"][name][0] for name in inputs}, inputs)
+    store(options.policy, task, inputs, fit(rows, wanted, options.epochs, options.seed, least=least))
     print(f"\n{len(demos)} episodes, {len(rows)} actions: {options.policy}")
 
 
-def policy_of(name):
-    """What a worker needs of a policy, and the words by which its episodes are kept."""
+def policy_of(name, task):
+    """What a worker needs of a policy, its task, and the words by which its episodes are kept."""
     if name == "random":
-        return name, name
+        return name, task or "Reach", name
     file = expert.__file__ if name == "expert" else name
     policy = name if name == "expert" else Cloned(name)
+    if name != "expert" and task not in (None, policy.task):
+        raise Error(f"{name} is a policy of {policy.task}, and --task is {task}; leave that away.")
     with open(file, "rb") as bytes_of:
-        return policy, f"{name if name == 'expert' else 'file'} {hashlib.sha1(bytes_of.read()).hexdigest()}"
+        return (policy, getattr(policy, "task", task or "Reach"),
+                f"{name if name == 'expert' else 'file'} {hashlib.sha1(bytes_of.read()).hexdigest()}")
 
 
-def conditions(options):
-    """What besides the policy decides an episode, in words; the hash is that of some actions, so that episodes of another
-    version of the simulator are not taken for those of this one."""
-    environment = environment_of(options.task, HELD_OUT[:1], breathing=options.breathing)
+def conditions(options, name):
+    """What besides the policy decides an episode of a task, in words; the hash is that of some actions, so that episodes of
+    another version of the simulator are not taken for those of this one."""
+    environment = environment_of(name, HELD_OUT[:1], breathing=options.breathing)
     environment.reset(seed=0)
     for _ in range(3):
         environment.step(np.full(environment.action_space.shape, 0.5, np.float32))
     task = environment.task
-    return (f"{options.task}, {options.breathing or 'still'}, {task.particles} particles, steps of {task.step_period:.6g} s, "
+    return (f"{name}, {options.breathing or 'still'}, {task.particles} particles, steps of {task.step_period:.6g} s, "
             f"vibe {vibe.__version__} {environment.simulation.hash():016x}")
 
 
@@ -211,27 +247,30 @@ def on_workers(address, policy, task, breathing, seeds):
 
 
 def evaluate(options):
-    policies = [(name, *policy_of(name)) for name in options.policies]
+    policies = [(name, *policy_of(name, options.task)) for name in options.policies]
     known = kept_episodes(options.episodes)
     with open(options.episodes, "a+", encoding="utf-8") as file:  # before anything is computed
         file.seek(max(0, file.tell() - 1))
         if file.read() not in ("", "\n"):  # a line that was cut
             file.write("\n")
-    under = conditions(options)
-    print(f"{under}; kept in {options.episodes}", file=sys.stderr)
-    print("| policy | success | 95 % | time [s] | greatest force [N], median |\n|---|---|---|---|---|")
-    for name, policy, key in policies:
+    words = {}
+    print("| policy | task | success | 95 % | time [s] | greatest force [N], median |\n|---|---|---|---|---|---|")
+    for name, policy, task, key in policies:
+        if task not in words:
+            words[task] = conditions(options, task)
+            print(f"{words[task]}; kept in {options.episodes}", file=sys.stderr)
+        under = words[task]
         seeds = range(options.first, options.first + options.seeds)
         missing = [seed for seed in seeds if (key, under, seed) not in known]
-        found = on_workers(options.scheduler, policy, options.task, options.breathing, missing) if options.scheduler \
-            else ((seed, episode(policy, options.task, options.breathing, seed)) for seed in missing)
+        found = on_workers(options.scheduler, policy, task, options.breathing, missing) if options.scheduler \
+            else ((seed, episode(policy, task, options.breathing, seed)) for seed in missing)
         for done, (seed, outcome) in enumerate(found):
             row = known[key, under, seed] = {"policy": key, "conditions": under, "seed": seed, **outcome}
             with open(options.episodes, "a", encoding="utf-8") as file:
                 file.write(json.dumps(row) + "\n")
             show(f"{name}: {done + 1} of {len(missing)} episodes")
         show(f"{'':60}\r")
-        print(table_row(os.path.basename(name), [known[key, under, seed] for seed in seeds]), flush=True)
+        print(table_row(f"{os.path.basename(name)} | {task}", [known[key, under, seed] for seed in seeds]), flush=True)
 
 
 def table_row(name, rows):
@@ -263,6 +302,7 @@ def main():
     one.add_argument("file")
     one.add_argument("policy")
     one.add_argument("--epochs", type=positive, default=60)
+    one.add_argument("--seed", type=int, default=0, help="of the first weights and of the order")
     one.set_defaults(run=clone)
     one = commands.add_parser("evaluate", help="prints the table")
     one.add_argument("policies", nargs="+", metavar="policy", help="random, expert, or a file of clone or ppo.py")
@@ -273,7 +313,7 @@ def main():
     one.add_argument("--episodes", default="episodes.jsonl", help="file that keeps them (default: %(default)s)")
     one.set_defaults(run=evaluate)
     for one in (commands.choices["demonstrate"], commands.choices["evaluate"]):
-        one.add_argument("--task", default="Reach", help="of vibe.env, or MODULE:NAME of your own (default: %(default)s)")
+        one.add_argument("--task", help="of vibe.env, or MODULE:NAME of your own (default: Reach, or that of a policy)")
     run(parser.parse_args())
 
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Trains a policy for the task Reach of vibe.env with PPO (Schulman 2017, arXiv 1707.06347), and draws its curve:
+"""Trains a policy for a task of vibe.env with PPO (Schulman 2017, arXiv 1707.06347), and draws its curve:
 
     ppo.py train reached.npz --start cloned.npz    goes on where it was stopped; needs python3-torch
     ppo.py curve reached.npz curve.png             needs python3-matplotlib
     learn.py evaluate reached.npz                  as every policy
 
-The policy has the form of learn.py: two layers of 64 numbers that see to_goal and wrench. Beside its mean it has one
+The policy has the form of learn.py, two layers of 64 numbers, and sees the same. Beside its mean it has one
 standard deviation per action, which is for training only. Beside POLICY.npz there are POLICY.pt, from which training goes
 on, and POLICY.jsonl with a line per round."""
 
@@ -39,26 +39,21 @@ def torch_or_exit():
 class Learner:
     """Policy and value, their optimiser, and what a round has found."""
 
-    def __init__(self, start, seed):
+    def __init__(self, task, inputs, parts, begun, seed):
+        """parts: of a policy. begun: whether it has learnt before"""
         torch = self.torch = torch_or_exit()
         torch.manual_seed(seed)
-        if start:
-            parts = learn.Cloned(start).parts
-        else:
-            parts = [np.zeros(9), learn.SCALE]
-            for inner, outer, gain in ((9, 64, 1.0), (64, 64, 1.0), (64, 3, 0.01)):
-                parts += [np.random.default_rng(seed).normal(0, gain * inner**-0.5, (inner, outer)), np.zeros(outer)]
-        self.scaling = parts[:2]
+        self.task, self.inputs, self.scaling = task, inputs, parts[:2]
         self.mean = [torch.tensor(part, dtype=torch.float32, requires_grad=True) for part in parts[2:]]
-        self.spread = torch.full((3,), -1.2 if start else -0.5, requires_grad=True)  # logarithm of the deviation
-        sizes = (9, 64, 64, 1)
+        self.spread = torch.full((len(parts[-1]),), -1.2 if begun else -0.5, requires_grad=True)  # logarithm of the deviation
+        sizes = (len(parts[0]), 64, 64, 1)
         layers = [torch.nn.Linear(*pair) for pair in zip(sizes, sizes[1:])]
         self.value = torch.nn.Sequential(layers[0], torch.nn.Tanh(), layers[1], torch.nn.Tanh(), layers[2])
         self.optimiser = torch.optim.Adam([{"params": [*self.mean, self.spread], "lr": POLICY_RATE},
                                            {"params": self.value.parameters(), "lr": VALUE_RATE}])
 
-    def rows(self, observation):
-        rows = np.concatenate([observation[name] for name in learn.INPUTS], axis=-1)
+    def rows(self, observation, count):
+        rows = learn.rows_of(observation, self.inputs, count)
         return self.torch.tensor((rows - self.scaling[0]) / self.scaling[1], dtype=self.torch.float32)
 
     def policy(self, rows):
@@ -68,9 +63,7 @@ class Learner:
         return self.torch.distributions.Normal(rows, self.spread.exp())
 
     def save(self, file, state):
-        parts = [*self.scaling, *(part.detach().numpy().astype(float) for part in self.mean)]
-        np.savez(file + ".new.npz", *parts)
-        os.replace(file + ".new.npz", file)
+        learn.store(file, self.task, self.inputs, [*self.scaling, *(part.detach().numpy() for part in self.mean)])
         self.torch.save({"mean": [part.detach() for part in self.mean], "spread": self.spread.detach(),
                          "value": self.value.state_dict(), "optimiser": self.optimiser.state_dict(),
                          "scaling": [self.torch.from_numpy(part) for part in self.scaling], **state}, file[:-4] + ".pt.new")
@@ -101,11 +94,24 @@ class Learner:
                 self.optimiser.step()
 
 
+def first_parts(environments, inputs, seed):
+    """A policy that has learnt nothing. Its inputs are scaled by those of some random actions."""
+    random, count = np.random.default_rng(seed), environments.num_envs
+    observation, rows = environments.reset(seed=seed)[0], []
+    for _ in range(STEPS):
+        action = random.uniform(-1, 1, environments.action_space.shape).astype(np.float32)
+        rows.append(learn.rows_of(environments.step(action)[0], inputs, count))
+    parts = learn.scaling(np.concatenate(rows), learn.least_of({name: observation[name][0] for name in inputs}, inputs))
+    for inner, outer, gain in ((len(parts[0]), 64, 1.0), (64, 64, 1.0), (64, environments.action_space.shape[1], 0.01)):
+        parts += [random.normal(0, gain * inner**-0.5, (inner, outer)), np.zeros(outer)]
+    return parts
+
+
 def one_round(environments, learner, observation):
     """STEPS actions in every slot. Returns what was seen, done and gained, and (successes, episodes) that ended."""
-    torch, kept, over = learner.torch, [], [0, 0]
+    torch, kept, over, count = learner.torch, [], [0, 0], environments.num_envs
     for _ in range(STEPS):
-        rows = learner.rows(observation)
+        rows = learner.rows(observation, count)
         with torch.no_grad():
             chance = learner.policy(rows)
             action = chance.sample()
@@ -114,14 +120,14 @@ def one_round(environments, learner, observation):
         reward = reward.copy()
         for slot in np.flatnonzero(truncated):  # the time was up, not the task: what would have followed counts
             with torch.no_grad():
-                row = learner.rows({name: part[None] for name, part in info["final_obs"][slot].items()})
+                row = learner.rows(info["final_obs"][slot], 1)
                 reward[slot] += DISCOUNT * float(learner.value(row))
         over[0] += int(success.sum())
         over[1] += int((success | truncated).sum())
         kept.append((rows, action, chance.log_prob(action).sum(-1), value, torch.tensor(reward, dtype=torch.float32),
                      torch.tensor(success | truncated)))
     with torch.no_grad():
-        after = learner.value(learner.rows(observation))[:, 0]
+        after = learner.value(learner.rows(observation, count))[:, 0]
     return observation, kept, after, over
 
 
@@ -143,11 +149,15 @@ def train(options):
     goes_on = os.path.exists(file[:-4] + ".pt")
     if os.path.exists(file) and not goes_on:
         sys.exit(f"{file} exists and was not made here; it is not overwritten, name another file.")
-    learner = Learner(options.start, options.seed)
+    start = learn.Cloned(options.start) if options.start else None
+    task = options.task or (start.task if start else "Reach")
+    environments = VectorEnvironment(task, options.slots, threads=options.threads, organs=TRAINING, particles=options.particles,
+                                     breathing=options.breathing, autoreset="same_step",
+                                     **{"step_period": learn.STEP_PERIOD, **learn.SETTINGS.get(task, {})})
+    inputs = start.inputs if start else learn.inputs_of(task, environments.single_observation_space)
+    parts = start.parts if start else first_parts(environments, inputs, options.seed)
+    learner = Learner(task, inputs, parts, bool(start), options.seed)
     state = learner.load(file) if goes_on else {"round": 0, "actions": 0, "seconds": 0.0}
-    environments = VectorEnvironment("Reach", options.slots, threads=options.threads, organs=TRAINING, action="tip",
-                                     particles=options.particles, breathing=options.breathing, autoreset="same_step",
-                                     step_period=learn.STEP_PERIOD)
     observation, _ = environments.reset(seed=20000 + 1000 * state["round"])
     begun, before = time.monotonic(), state["seconds"]
     while state["seconds"] < 60 * options.minutes:
@@ -199,6 +209,7 @@ def main():
     commands = parser.add_subparsers(dest="command", required=True)
     one = commands.add_parser("train", help="trains, or goes on")
     one.add_argument("policy", help="file to write, .npz")
+    one.add_argument("--task", help="of vibe.env (default: Reach, or that of --start)")
     one.add_argument("--start", help="a policy of learn.py clone to begin with (default: none)")
     one.add_argument("--minutes", type=float, default=20, help="of wall time in all (default: %(default)s)")
     one.add_argument("--slots", type=int, default=16, help="episodes side by side (default: %(default)s)")

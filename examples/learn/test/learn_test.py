@@ -67,12 +67,28 @@ class Evaluation(unittest.TestCase):
                             learn.main()
 
     def test_the_version_of_the_simulator_is_part_of_what_is_kept(self):
-        options = mock.Mock(task="Reach", breathing=None)
+        options = mock.Mock(breathing=None)
         with mock.patch.object(learn, "HELD_OUT", [("sthenic", 1.0)]):
-            first = learn.conditions(options)
-            self.assertEqual(first, learn.conditions(options))
+            first = learn.conditions(options, "Reach")
+            self.assertEqual(first, learn.conditions(options, "Reach"))
             with mock.patch.object(learn, "STEP_PERIOD", 1 / 20):
-                self.assertNotEqual(first.rsplit(" ", 1)[1], learn.conditions(options).rsplit(" ", 1)[1])
+                self.assertNotEqual(first.rsplit(" ", 1)[1], learn.conditions(options, "Reach").rsplit(" ", 1)[1])
+
+    def test_a_policy_knows_its_task_and_what_it_sees(self):
+        random = np.random.default_rng(3)
+        seen = {"seen": random.normal(size=1), "wrench": random.normal(size=6), "depth": random.normal(size=(2, 3))}
+        inputs = learn.inputs_of("Inspect", seen)
+        self.assertEqual(inputs, ["wrench", "depth", "seen"])
+        parts = [np.zeros(13), learn.least_of(seen, inputs), random.normal(size=(13, 4)), np.zeros(4)]
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "policy.npz")
+            learn.store(file, "Inspect", inputs, parts)
+            policy, task, _ = learn.policy_of(file, None)
+            self.assertEqual((task, policy.inputs), ("Inspect", inputs))
+            row = np.concatenate([seen["wrench"] / ([1.0] * 3 + [0.05] * 3), seen["depth"].ravel() / 0.02, seen["seen"] / 0.1])
+            np.testing.assert_allclose(policy.action(seen), np.clip(row @ parts[2], -1, 1), rtol=1e-5)
+            with self.assertRaisesRegex(learn.Error, "is a policy of Inspect"):
+                learn.policy_of(file, "Reach")
 
     def test_what_cannot_be_read_is_said(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -21,6 +21,8 @@ import ppo  # noqa: E402
 class Pointing:
     """Stands in for VectorEnvironment: the reward is largest where the action points to the goal; one step, four slots."""
 
+    num_envs, action_space, single_observation_space = 4, mock.Mock(shape=(4, 3)), ("to_goal", "wrench")
+
     def __init__(self, *_, sign=1, **__):
         self.random, self.sign = np.random.default_rng(3), sign
 
@@ -59,7 +61,7 @@ class PpoTest(unittest.TestCase):
         """Of the rounds of a short training."""
         file = os.path.join(folder, f"policy{sign}.npz")
         clock = iter(range(10**6))
-        options = mock.Mock(policy=file, start=None, seed=1, slots=4, threads=1, breathing=None, minutes=minutes)
+        options = mock.Mock(policy=file, start=None, task=None, seed=1, slots=4, threads=1, breathing=None, minutes=minutes)
         with mock.patch.object(ppo, "VectorEnvironment", lambda *a, **k: Pointing(sign=sign)), \
                 mock.patch.object(ppo.time, "monotonic", lambda: next(clock)), mock.patch.object(ppo.learn, "show"):
             ppo.train(options)  # a round takes a second of this clock
