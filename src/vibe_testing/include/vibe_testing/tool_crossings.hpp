@@ -6,7 +6,6 @@
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 

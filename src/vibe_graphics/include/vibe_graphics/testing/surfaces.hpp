@@ -1,7 +1,6 @@
 #pragma once
 #include <cmath>
 #include <cstdint>
-#include <vector>
 
 #include "vibe_graphics/geometry/tissue_mesh.hpp"
 
