@@ -6,6 +6,7 @@
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 

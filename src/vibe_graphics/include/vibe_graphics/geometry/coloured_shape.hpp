@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 namespace vibe::graphics {
 
 /// The part of a vertex that moves, in the layout of a vertex buffer.

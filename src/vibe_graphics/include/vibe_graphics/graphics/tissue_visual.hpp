@@ -88,6 +88,7 @@ class TissueVisual {
   /// Draws nothing until the next mesh.
   void clear();
 
+  bool hasFrame() const { return has_frame_; }  ///< since the last setMesh() or clear(); something is drawn
   /// Drawn vertices of the last frame, as DeformableSurface has them; null: none yet.
   const std::vector<MovingVertex>* vertices() const { return has_frame_ ? &surface_->vertices() : nullptr; }
   /// Of the drawn surface; 0: there is no mesh.

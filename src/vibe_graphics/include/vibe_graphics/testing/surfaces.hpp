@@ -1,6 +1,7 @@
 #pragma once
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "vibe_graphics/geometry/tissue_mesh.hpp"
 
