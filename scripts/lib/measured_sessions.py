@@ -13,7 +13,7 @@ ORGANS = {
     "stomach_large": "`stomach_large`, 1.15 times the size",
 }
 POPULATION = "population_"
-PLANNED_SETS, PLANNED_BITES = 6, 42  # of trainees/expert.yaml
+PLANNED_SETS = 6  # of trainees/expert.yaml
 CHANGES = {
     "as_cinched": "nothing",
     "sewn_empty": "sewn and cinched in the empty stomach (1 mmHg), then 15 mmHg",

@@ -55,8 +55,7 @@ std::vector<std::string> shippedCases() {
 int run(const Options& options) {
   if (options.pulling_only) {
     const std::vector<ResultRow> ways = runPulling(options.profile, std::cerr);
-    printTable(ways, std::cerr);
-    save(options.csv, [&](std::ostream& out) { writeCsv(ways, out); });
+    report(options.csv, [&](std::ostream& out) { writeCsv(ways, out); });
     return 0;
   }
   std::vector<std::string> files = options.cases;
@@ -74,8 +73,7 @@ int run(const Options& options) {
     const auto more = runCase(bench_case, std::cerr, values);
     rows.insert(rows.end(), more.begin(), more.end());
   }
-  printTable(rows, std::cerr);
-  save(options.csv, [&](std::ostream& out) { writeCsv(rows, out); });
+  report(options.csv, [&](std::ostream& out) { writeCsv(rows, out); });
   save(options.values, [&](std::ostream& out) { writeValues(values, out); });
   const bool other = std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.branch == Branch::Other; });
   return other ? kOtherBranch : 0;

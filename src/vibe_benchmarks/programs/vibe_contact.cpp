@@ -29,7 +29,7 @@ struct Options {
   std::vector<double> radius;
   // 8 iterations do not solve the steps in which a fold snaps: the end of a frame is then off by 7 % of the motion
   int reference_rate = 960, reference_iterations = 30, repeats = 1;
-  std::string steps, first_crossing;
+  std::string steps;
   std::vector<std::string> scripts;
   double duration = 1e9;
   std::vector<std::uint64_t> seeds{1};
@@ -37,7 +37,7 @@ struct Options {
   int sites = 6, poses = 30;
   double hold = 4;
   bool brief = false;
-  bool check_reference = false, no_reference = false, stages = false, real_time = false, plain_preparation = false;
+  bool no_reference = false, stages = false, real_time = false, plain_preparation = false;
 };
 
 OptionCheck rateOfFrames() {
@@ -68,7 +68,6 @@ OptionList addStates(OptionList& line, Options& o) {
   states.option("--reference-iterations", o.reference_iterations, "of the reference (default: 30)")
       .typeName("N")
       .check(wholeFrom(1, 1000));
-  states.flag("--check-reference", o.check_reference, "compare it with a reference of twice its rate");
   states.flag("--no-reference", o.no_reference, "times only");
   states
       .option("--threads", o.threads,
@@ -97,7 +96,6 @@ OptionList addHard(OptionList& line, Options& o) {
   hard.flag("--brief", o.brief, "shorter motions, fewer sets");
   hard.option("--csv", o.csv, "write the rows there (- for standard output)").typeName("FILE");
   hard.option("--steps", o.steps, "write a line per step there").typeName("FILE");
-  hard.option("--first-crossing", o.first_crossing, "snapshot of the state before the first crossing").typeName("FILE");
   return hard;
 }
 
@@ -158,7 +156,6 @@ ContactPlan planOf(const Options& o, const Scene& scene) {
   plan.names = o.names;
   plan.repeats = o.repeats;
   plan.plain_preparation = o.plain_preparation;
-  plan.check_reference = o.check_reference;
   for (std::size_t k = 0; k < o.rate.size(); ++k)
     for (const int threads : o.threads)
       plan.settings.push_back({o.rate[k],
@@ -182,9 +179,7 @@ void runStates(const Options& options) {
   const std::string urdf = readTextFile(resolveAddress(scene.scope->urdf), "URDF");
   const auto rows = runContactStates(scene, urdf, planOf(options, scene), std::cerr);
   std::cerr << "\n" << machineInfo().processor << "\n";
-  printContactHeader(std::cerr);
-  for (const ContactRow& row : rows) printContactRow(row, std::cerr);
-  save(options.csv, [&](std::ostream& out) { writeContactRows(rows, out); });
+  report(options.csv, [&](std::ostream& out) { writeContactRows(rows, out); });
 }
 
 void runHard(const Options& options) {
@@ -192,19 +187,20 @@ void runHard(const Options& options) {
   HardCases cases(scene, readTextFile(resolveAddress(scene.scope->urdf), "URDF"), options.brief, std::cerr);
   std::ostringstream steps;
   if (!options.steps.empty()) writeHardStepHeader(steps);
-  const HardOutput output{options.steps.empty() ? nullptr : &steps, nullptr, options.first_crossing};
+  const HardOutput output{options.steps.empty() ? nullptr : &steps, nullptr};
   std::vector<HardResult> results;
   const auto run = [&](const HardCase& hard) {
     results.push_back(runHardCase(hard, output));
-    printHardResult(results.back(), std::cerr);
+    const HardResult& r = results.back();
+    printTo(std::cerr, "%s: %.2f ms per step, %d crossings, %d pierced\n", r.name.c_str(), r.times.p50, r.crossings,
+            r.pierced);
   };
-  printHardHeader(std::cerr);
   const bool all = options.names.empty() && options.scripts.empty();
   for (const std::string& name : all ? hardCaseNames() : options.names)
     for (const std::uint64_t seed : name == "random" || name == "jump" ? options.seeds : std::vector<std::uint64_t>{1})
       run(cases.prepare(name, seed));
   for (const std::string& script : options.scripts) run(cases.session(script, options.duration));
-  save(options.csv, [&](std::ostream& out) { writeHardResults(results, out); });
+  report(options.csv, [&](std::ostream& out) { writeHardResults(results, out); });
   save(options.steps, [&](std::ostream& out) { out << steps.str(); });
 }
 
@@ -226,7 +222,7 @@ void runWays(const Options& options) {
     if (std::find(known.begin(), known.end(), name) != known.end())
       runContact(states.prepare(name), {60, scene.tissue.iterations, scene.tissue.spectral_radius}, &ways);
     else
-      runHardCase(cases.prepare(name), {nullptr, &ways, ""});
+      runHardCase(cases.prepare(name), {nullptr, &ways});
   }
   save(options.csv.empty() ? "-" : options.csv, [&](std::ostream& out) {
     writeWayHeader(out);
@@ -236,8 +232,7 @@ void runWays(const Options& options) {
 
 void runRefinement(const Options& options) {
   const auto rows = refineGrip(sceneOf(options), options.particles, options.sites, std::cerr);
-  printRefinement(rows, std::cerr);
-  save(options.csv, [&](std::ostream& out) { writeRefinement(rows, out); });
+  report(options.csv, [&](std::ostream& out) { writeRefinement(rows, out); });
 }
 
 void runRest(const Options& options, bool one_mesh) {

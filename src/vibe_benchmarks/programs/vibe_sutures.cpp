@@ -65,8 +65,10 @@ void runScenarios(const Options& options) {
   results.back().reference = 18.0;
   std::cerr << machineInfo().processor << ", one thread steps, one more prepares factors; the cheapest of "
             << options.repeats << (options.repeats == 1 ? " run\n" : " runs\n");
-  for (const ScenarioResult& result : results) printScenario(result, std::cerr);
-  save(options.csv, [&](std::ostream& out) { writeScenarios(results, out); });
+  for (const ScenarioResult& result : results)
+    printTo(std::cerr, "%s: %.1f times real time, walls %s\n", result.name.c_str(), result.real_time_factor,
+            result.crossed ? "CROSS one another" : "do not cross");
+  report(options.csv, [&](std::ostream& out) { writeScenarios(results, out); });
 }
 
 std::vector<OutcomeTrial> chosenTrials(const Scene& scene, const Options& options) {
@@ -89,9 +91,10 @@ void runOutcomes(const Options& options) {
   std::vector<OutcomeRow> rows;
   for (const OutcomeTrial& trial : chosenTrials(scene, options)) {
     rows.push_back(study.run(trial));
-    printOutcome(rows.back(), std::cerr);
+    std::cerr << trial.name << ", " << toString(trial.pattern) << std::endl;
     save(options.csv, [&](std::ostream& out) { writeOutcomes(rows, out); });
   }
+  report("", [&](std::ostream& out) { writeOutcomes(rows, out); });
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // The instruments of vibe_contact: what they measure is checked with motions and states that are known.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <sstream>
 
 #include "contact/bench_tools.hpp"

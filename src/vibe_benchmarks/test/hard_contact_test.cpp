@@ -51,8 +51,7 @@ class HardContact : public testing::TestWithParam<Run> {};
 ///                    1,100 particles one or two do
 void expectSound(const HardResult& result, bool may_tangle = false) {
   std::ostringstream row;
-  printHardHeader(row);
-  printHardResult(result, row);
+  writeHardResults({result}, row);
   SCOPED_TRACE(row.str());
   EXPECT_EQ(result.last_crossings, 0);
   EXPECT_TRUE(result.crossings == 0 || result.recoveries > 0);

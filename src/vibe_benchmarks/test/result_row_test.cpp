@@ -28,13 +28,19 @@ TEST(ResultRow, writesTheAgreedColumns) {
 }
 
 TEST(ResultRow, takesPercentilesFromTheSortedTimes) {
-  ResultRow row;
-  std::vector<double> times;
-  for (int i = 200; i > 0; --i) times.push_back(i);
-  setTimes(times, row);
-  EXPECT_EQ(row.ms_p50, 100);
-  EXPECT_EQ(row.ms_p99, 198);
-  EXPECT_EQ(row.ms_max, 200);
+  std::vector<double> values;
+  for (int i = 200; i > 0; --i) values.push_back(i);
+  const StepTimes times = timesOf(values);
+  EXPECT_EQ(times.p50, 100);
+  EXPECT_EQ(times.p99, 198);
+  EXPECT_EQ(times.max, 200);
+}
+
+TEST(ResultRow, printsCsvForPeopleWithTheLongSideDown) {
+  testing::internal::CaptureStderr();
+  report("", [](std::ostream& out) { out << "name,n\n\"a, b\",1\nc,20\n"; });
+  report("", [](std::ostream& out) { out << "name,n,m\nc,20,\n"; });
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "name  n \na, b  1 \nc     20\nname  c \nn     20\nm       \n");
 }
 
 }  // namespace

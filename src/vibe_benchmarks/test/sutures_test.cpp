@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <sstream>
 
 #include "suture/outcome_study.hpp"
@@ -152,15 +151,6 @@ TEST(Outcomes, TrialsChangeOneChoiceAtATime) {
                         (trial.foundation != reference.foundation) + trial.drawn.has_value();
     EXPECT_EQ(changed, trial.name == "as_cinched" ? 0 : 1) << trial.name;
   }
-}
-
-TEST(Sutures, ASlopeIsThatOfALine) {
-  const Slope line = slopeOf({1, 3, 5, 7});
-  EXPECT_NEAR(line.per_step, 2, 1e-12);
-  EXPECT_NEAR(line.error, 0, 1e-12);
-  const Slope bent = slopeOf({0, 1, 0, 1});  // by hand: 0.2, residuals 0.2, -0.6, 0.6, -0.2
-  EXPECT_NEAR(bent.per_step, 0.2, 1e-12);
-  EXPECT_NEAR(bent.error, std::sqrt(0.08), 1e-12);  // sqrt(0.8 / 2 / 5)
 }
 
 TEST(Sutures, CrossingWallsAreSeen) {

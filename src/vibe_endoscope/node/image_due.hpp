@@ -11,7 +11,17 @@ class ImageDue {
 
   /// Whether the state with this stamp is drawn. A stamp before the last one means that time was set back; counting
   /// then starts again.
-  bool isDue(const ros::Time& stamp);
+  bool isDue(const ros::Time& stamp) {
+    constexpr double kSlack = 0.1;  // of a period: stamps are rounded
+    const bool again = !any_ || stamp < last_;
+    last_ = stamp;
+    if (!again && stamp < next_ - ros::Duration(kSlack * period_)) return false;
+    // counted from the due time, so that the mean rate is right even if the rate of the states is not a multiple of it
+    const ros::Duration period(period_);
+    next_ = again || stamp > next_ + period ? stamp + period : next_ + period;
+    any_ = true;
+    return true;
+  }
 
  private:
   double period_;  ///< [s]

@@ -6,39 +6,17 @@
 #include <map>
 #include <utility>
 
+#include "vibe_graphics/testing/surfaces.hpp"
+
 namespace vibe::rviz_plugins {
 namespace {
 
 constexpr std::uint32_t kRows = 113, kAround = 32;  // and two poles
-constexpr double kLength = 0.1, kRadius = 0.045;    // half axes [m]
+constexpr float kLength = 0.1F, kRadius = 0.045F;   // half axes [m]
 constexpr double kPi = 3.14159265358979;
 constexpr double kPatch = 0.05;  // share of the particles
 constexpr double kBreath = 60;   // frames
 constexpr std::size_t kBytes = 32;
-
-void addVertices(graphics::TissueMesh& mesh) {
-  const auto add = [&mesh](double polar, double azimuth) {
-    for (const double x : {kRadius * std::sin(polar) * std::cos(azimuth), kRadius * std::sin(polar) * std::sin(azimuth),
-                           kLength * std::cos(polar)})
-      mesh.rest.push_back(static_cast<float>(x));
-  };
-  add(0, 0);
-  for (std::uint32_t r = 1; r <= kRows; ++r)
-    for (std::uint32_t a = 0; a < kAround; ++a) add(kPi * r / (kRows + 1), 2 * kPi * a / kAround);
-  add(kPi, 0);
-}
-
-void addTriangles(std::vector<std::uint32_t>& triangles) {
-  const std::uint32_t last = kRows * kAround + 1, bottom = (kRows - 1) * kAround;
-  for (std::uint32_t a = 0; a < kAround; ++a) {
-    const std::uint32_t b = (a + 1) % kAround;
-    triangles.insert(triangles.end(), {0, 1 + a, 1 + b, last, 1 + bottom + b, 1 + bottom + a});
-    for (std::uint32_t r = 0; r + 1 < kRows; ++r) {
-      const std::uint32_t upper = 1 + r * kAround, lower = upper + kAround;
-      triangles.insert(triangles.end(), {upper + a, lower + a, lower + b, upper + a, lower + b, upper + b});
-    }
-  }
-}
 
 // Each triangle in four; a new vertex follows both ends of its edge.
 void addRenderSurface(graphics::TissueMesh& mesh) {
@@ -101,13 +79,9 @@ void describe(sensor_msgs::PointCloud2& cloud) {
 }  // namespace
 
 graphics::TissueMesh benchOrgan(bool subdivided) {
-  graphics::TissueMesh mesh;
-  mesh.revision = 1;
+  graphics::TissueMesh mesh = graphics::test::ballMesh(kRows, kAround);
   mesh.name = "egg";
-  addVertices(mesh);
-  addTriangles(mesh.triangles);
-  mesh.particle_triangles = mesh.triangles;
-  mesh.particle_count = mesh.vertex_count = mesh.rest.size() / 3;
+  for (std::size_t i = 0; i < mesh.rest.size(); ++i) mesh.rest[i] *= i % 3 == 2 ? kLength : kRadius;
   mesh.particle_rest = mesh.rest;
   if (subdivided) addRenderSurface(mesh);
   return mesh;

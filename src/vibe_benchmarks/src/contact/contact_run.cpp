@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
-#include <limits>
 #include <thread>
 
 #include "contact/bench_tools.hpp"

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <ostream>
 #include <string>
 #include <vector>
 
@@ -61,10 +60,10 @@ class ContactCheck {
   explicit ContactCheck(const Model& model);
 
   /// Pairs of triangles without common vertex that intersect.
-  std::vector<test::CrossingPair> wall(const State& state);
+  std::vector<vibe::test::CrossingPair> wall(const State& state);
 
   /// The tool in the wall, without the open ends and what the helix holds.
-  test::ToolCrossing tool(const State& state);
+  vibe::test::ToolCrossing tool(const State& state);
 
  private:
   const Model& model_;

@@ -55,7 +55,6 @@ class Table {
       log_ << one.name << ": reference, " << textOf(*plan_.reference) << std::endl;
       reference = runContact(one, *plan_.reference);
     }
-    if (reference && plan_.check_reference) addCheck(one, *reference);
     for (ContactTrace& trace : runSettings(one)) add(rowOf(one.name, std::move(trace), reference));
   }
 
@@ -76,19 +75,12 @@ class Table {
     return traces;
   }
 
-  void addCheck(const ContactCase& one, const ContactTrace& reference) {
-    ContactSetting finer = *plan_.reference;
-    finer.rate *= 2;
-    log_ << one.name << ": the reference against " << textOf(finer) << std::endl;
-    add(rowOf(one.name, reference, runContact(one, finer)));
-  }
-
   void add(ContactRow row) {
     const std::string setting = textOf(row.setting);
     if (row.name == contactStateNames().front()) free_[setting] = row.times.p50;
     const auto free = free_.find(setting);
     row.ratio = free == free_.end() ? 0 : row.times.p50 / free->second;
-    printContactRow(row, log_);
+    log_ << row.name << ": " << setting << ", " << row.times.p50 << " ms per step" << std::endl << row.trace.stages;
     rows_.push_back(std::move(row));
   }
 
@@ -113,33 +105,6 @@ std::vector<ContactRow> runContactStates(const Scene& scene, const std::string& 
     table.addCase(one);
   }
   return table.takeRows();
-}
-
-void printContactHeader(std::ostream& out) {
-  out << "state        setting                      p50    p99    max  ms/frame  x free   it max fb  touch pairs cross "
-         " mm in"
-         " events   balance J    work J   motion   at end    force   at end  largest\n";
-}
-
-void printContactRow(const ContactRow& row, std::ostream& out) {
-  const ContactTrace& t = row.trace;
-  printTo(out, "%-12s %-26s %6.2f %6.2f %6.1f  %8.2f %7.2f %4.1f %3d %3d %5d %5d %5d %6.2f %6d %11.5f %9.4f",
-          row.name.c_str(), textOf(row.setting).c_str(), row.times.p50, row.times.p99, row.times.max,
-          row.times.mean * row.setting.rate / 60, row.ratio, t.iterations, t.max_iterations, t.fallback_steps,
-          t.contacts, t.pairs, t.crossings, 1e3 * t.depth, t.events, t.balance, t.work);
-  if (row.errors) {
-    const ContactErrors& e = *row.errors;
-    printTo(out, " %6.3f %% %6.3f %% %6.2f %% %6.2f %% %6.2f N", 100 * e.motion, 100 * e.motion_end, 100 * e.force,
-            100 * e.force_end, e.largest);
-  }
-  out << std::endl;
-  if (row.setting.real_time || row.setting.threads > 1) {
-    printTo(out,
-            "             wall time %.2f ms in the mean, %.2f p50, %.2f p99; CPU %.2f ms of the stepping thread, "
-            "%.2f of all\n",
-            row.wall.mean, row.wall.p50, row.wall.p99, row.times.mean, row.times.mean + t.others);
-  }
-  out << t.stages;
 }
 
 void writeContactRows(const std::vector<ContactRow>& rows, std::ostream& out) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "contact/contact_run.hpp"
-#include "suture/set_scenario.hpp"
+#include "output/result_row.hpp"
 #include "suture/wall_plan.hpp"
 
 namespace vibe::benchmarks {
@@ -56,17 +56,14 @@ struct ContactPlan {
   std::vector<std::string> names;        ///< empty: all
   std::vector<ContactSetting> settings;  ///< those that differ in threads only stand behind one another
   std::optional<ContactSetting> reference;
-  bool check_reference = false;  ///< adds a row of the reference against one with steps half as long
   int repeats = 1;
   bool plain_preparation = false;  ///< prepares with Arithmetic::Plain, which valgrind runs eight times as fast
 };
 
-/// @param log  progress and rows as they come
+/// @param log  progress, and what the steps have spent their time on
 std::vector<ContactRow> runContactStates(const Scene& scene, const std::string& urdf, const ContactPlan& plan,
                                          std::ostream& log);
 
-void printContactHeader(std::ostream& out);
-void printContactRow(const ContactRow& row, std::ostream& out);
 void writeContactRows(const std::vector<ContactRow>& rows, std::ostream& out);  ///< CSV
 
 }  // namespace vibe::benchmarks

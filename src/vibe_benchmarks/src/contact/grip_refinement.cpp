@@ -1,7 +1,6 @@
 #include "contact/grip_refinement.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <ostream>
@@ -149,36 +148,6 @@ std::vector<RefinementRow> refineGrip(const Scene& scene, const std::vector<int>
       }
   }
   return rows;
-}
-
-std::vector<RefinementMean> meansOf(const std::vector<RefinementRow>& rows) {
-  std::vector<RefinementMean> means;
-  for (const RefinementRow& row : rows) {
-    auto mean = std::find_if(means.begin(), means.end(), [&](const RefinementMean& m) {
-      return m.grip == row.grip && m.particles == row.particles;
-    });
-    if (mean == means.end()) mean = means.insert(means.end(), {row.grip, row.particles, 0, 0, 0});
-    ++mean->sites;
-    mean->force += row.force;
-    mean->spread += row.force * row.force;
-  }
-  for (RefinementMean& mean : means) {
-    mean.force /= mean.sites;
-    const double square = mean.spread - mean.sites * mean.force * mean.force;
-    mean.spread = mean.sites > 1 ? std::sqrt(std::max(0.0, square) / (mean.sites - 1)) : 0;
-  }
-  return means;
-}
-
-void printRefinement(const std::vector<RefinementRow>& rows, std::ostream& out) {
-  out << "grip   particles  sites  mean N  spread %  held\n";
-  for (const RefinementMean& mean : meansOf(rows)) {
-    double held = 0;
-    for (const RefinementRow& row : rows)
-      if (row.grip == mean.grip && row.particles == mean.particles) held += 1.0 * row.held / mean.sites;
-    printTo(out, "%-6s %9d %6d %7.3f %9.2f %5.1f\n", mean.grip.c_str(), mean.particles, mean.sites, mean.force,
-            100 * mean.spread / mean.force, held);
-  }
 }
 
 void writeRefinement(const std::vector<RefinementRow>& rows, std::ostream& out) {

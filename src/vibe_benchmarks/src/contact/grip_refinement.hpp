@@ -17,13 +17,6 @@ struct RefinementRow {
   double force = 0;     ///< along the pull, at rest [N]
 };
 
-/// Mean and standard deviation over the sites of one grip and mesh.
-struct RefinementMean {
-  std::string grip;
-  int particles = 0, sites = 0;
-  double force = 0, spread = 0;  ///< [N]
-};
-
 /// Pulls the insufflated stomach inwards by 20 mm at places beside each other on the greater curvature of the body,
 /// the same on every mesh, and waits until it rests. What differs between meshes of many particles is the error of the
 /// mesh; what differs between sites of one mesh is how grip and mesh happen to meet.
@@ -31,9 +24,6 @@ struct RefinementMean {
 std::vector<RefinementRow> refineGrip(const Scene& scene, const std::vector<int>& particles, int sites,
                                       std::ostream& log);
 
-std::vector<RefinementMean> meansOf(const std::vector<RefinementRow>& rows);
-
-void printRefinement(const std::vector<RefinementRow>& rows, std::ostream& out);
 void writeRefinement(const std::vector<RefinementRow>& rows, std::ostream& out);  ///< CSV
 
 }  // namespace vibe::benchmarks

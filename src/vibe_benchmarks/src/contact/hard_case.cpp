@@ -7,8 +7,8 @@
 #include "contact/contact_run.hpp"
 #include "contact/way_counts.hpp"
 #include "output/result_row.hpp"
+#include "suture/suture_session.hpp"
 #include "vibe_core/model/accounting.hpp"
-#include "vibe_core/simulation/snapshot.hpp"
 
 namespace vibe::benchmarks {
 namespace {
@@ -66,7 +66,6 @@ class Runner {
   }
 
   void step(const HardPhase& phase, double end) {
-    if (!output_.first_crossing.empty() && result_.first_crossing < 0) before_ = simulation_->state();
     const EnergyAccount account = simulation_->state().energy;
     const auto& events = simulation_->step(phase.input(end));
     const double ms = 1e3 * simulation_->timer().last_cpu;
@@ -116,7 +115,6 @@ class Runner {
     result_.depth = std::max(result_.depth, tool_.depth);
     if (result_.first_crossing >= 0 || (pairs == 0 && tool_.pierced == 0)) return;
     result_.first_crossing = result_.steps * simulation_->stepPeriod();
-    if (!output_.first_crossing.empty()) saveSnapshot(*model_, before_, output_.first_crossing);
   }
 
   void writeStep(const HardPhase& phase, double ms, double balance) const {
@@ -159,7 +157,6 @@ class Runner {
   std::unique_ptr<ContactCheck> check_;
   test::ToolCrossing tool_;
   HardResult result_;
-  State before_;
   std::vector<double> cpu_;
   double balance_start_ = 0;
   bool first_ = true;
@@ -177,24 +174,6 @@ HardPhase still(const std::string& name, double duration, const StepInput& input
 
 HardResult runHardCase(const HardCase& hard, const HardOutput& output) {
   return Runner(hard, output).run();
-}
-
-void printHardHeader(std::ostream& out) {
-  out << "case            p50    p99    max x real   it max   fb | cross steps last first s pierced depth mm | touch"
-         "  tool N grip N thread N slip torn broke lost |   work J  balance J    worst J  loss % | mm/s at end  mm "
-         "away\n";
-}
-
-void printHardResult(const HardResult& r, std::ostream& out) {
-  printTo(out,
-          "%-12s %6.2f %6.2f %6.1f %6.2f %4.1f %3d %4d | %5d %5d %4d %7.2f %7d %8.2f | %5d %7.2f %6.2f %8.2f %4d "
-          "%4d %5d %4d | %8.4f %10.5f %10.5f %7.2f | %11.3f %8.3f%s",
-          r.name.c_str(), r.times.p50, r.times.p99, r.times.max, r.real_time, r.iterations, r.max_iterations,
-          r.fallback_steps, r.crossings, r.crossed_steps, r.last_crossings, r.first_crossing, r.pierced, 1e3 * r.depth,
-          r.contacts, r.force, r.grip_force, r.tension, r.slips, r.tear_outs, r.breaks, r.recoveries, r.work, r.balance,
-          r.worst_balance, r.work > 0 ? 100 * r.balance / r.work : 0.0, 1e3 * r.speed, 1e3 * r.away,
-          r.returns ? "" : " (sutured)");
-  out << std::endl;
 }
 
 void writeHardResults(const std::vector<HardResult>& results, std::ostream& out) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "suture/set_scenario.hpp"
+#include "output/result_row.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
@@ -73,14 +73,11 @@ struct HardResult {
 struct HardOutput {
   std::ostream* steps = nullptr;  ///< one line of CSV per step; null: none
   WayCounts* ways = nullptr;      ///< counts the ways of the steps; null: they are not counted
-  std::string first_crossing;     ///< file for a snapshot of the state before the first crossing; empty: none
 };
 
 /// Steps a case and looks at the end of every step for walls and tools that pass through each other.
 HardResult runHardCase(const HardCase& hard, const HardOutput& output = {});
 
-void printHardHeader(std::ostream& out);
-void printHardResult(const HardResult& result, std::ostream& out);
 void writeHardResults(const std::vector<HardResult>& results, std::ostream& out);  ///< CSV
 void writeHardStepHeader(std::ostream& out);
 

@@ -1,12 +1,9 @@
 // Hard cases of threads and gas.
-#include <algorithm>
-#include <cmath>
 
 #include "contact/bench_tools.hpp"
 #include "contact/hard_cases.hpp"
 #include "suture/suture_session.hpp"
 #include "suture/wall_plan.hpp"
-#include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks {
 namespace {

@@ -1,11 +1,9 @@
 #include "fem/case_reader.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "fem/bench_mesh.hpp"
-#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/words.hpp"
 
 namespace vibe::benchmarks {

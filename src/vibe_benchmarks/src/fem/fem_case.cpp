@@ -1,7 +1,6 @@
 #include "fem/fem_case.hpp"
 
 #include "fem/case_reader.hpp"
-#include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/words.hpp"
 
 namespace vibe::benchmarks {

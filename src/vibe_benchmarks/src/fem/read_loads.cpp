@@ -1,4 +1,3 @@
-#include <cmath>
 
 #include "fem/case_reader.hpp"
 

@@ -1,5 +1,4 @@
 #include "fem/case_reader.hpp"
-#include "vibe_core/scene/unit.hpp"
 
 namespace vibe::benchmarks {
 namespace {

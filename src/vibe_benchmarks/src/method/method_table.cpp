@@ -1,6 +1,5 @@
 #include "method/method_table.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -83,15 +82,9 @@ void addPull(const Trajectory& trajectory, const Truth& truth, const std::string
   compare(trajectory, truth.motion, truth.equilibrium, rows.back());
 }
 
-double median(std::vector<double> times) {
-  const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
-  std::nth_element(times.begin(), middle, times.end());
-  return *middle;
-}
-
 /// Repeats the run and keeps the smaller times: other load on the machine only makes it slower.
 void keepQuicker(const Trajectory& again, Trajectory& trajectory) {
-  if (median(again.times) < median(trajectory.times)) trajectory.times = again.times;
+  if (timesOf(again.times).p50 < timesOf(trajectory.times).p50) trajectory.times = again.times;
 }
 
 /// The pull of 20 mm in 0.5 s with every setting of the shell in its default configuration.

@@ -1,5 +1,4 @@
 #pragma once
-#include <memory>
 #include <vector>
 
 #include "vibe_core/geometry/surface_mesh.hpp"

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cinttypes>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <iomanip>
 #include <iostream>
+#include <numeric>
 #include <sstream>
 
 #include "vibe_core/clocks/step_timer.hpp"
@@ -40,24 +43,57 @@ std::string field(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string percent(double fraction) {
-  if (std::isinf(fraction)) return "inf";
-  return std::isfinite(fraction)
-             ? show(std::abs(fraction) < 1e-4 || std::abs(fraction) > 100 ? "%.1e" : "%.3f", 100 * fraction)
-             : "-";
+/// The cells of a line of CSV.
+std::vector<std::string> cellsOf(const std::string& line) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') {
+      quoted = !quoted;
+    } else if (c == ',' && !quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += c;
+    }
+  }
+  return cells;
+}
+
+/// Columns side by side, or below one another where there are more of them than rows.
+void printTable(std::istream& csv, std::ostream& out) {
+  std::vector<std::vector<std::string>> cells;
+  for (std::string line; std::getline(csv, line);) cells.push_back(cellsOf(line));
+  const bool turned = cells.front().size() > cells.size();
+  const std::size_t rows = turned ? cells.front().size() : cells.size();
+  const std::size_t columns = turned ? cells.size() : cells.front().size();
+  const auto at = [&](std::size_t r, std::size_t c) { return turned ? cells[c].at(r) : cells[r].at(c); };
+  std::vector<std::size_t> width(columns, 0);
+  for (std::size_t r = 0; r < rows; ++r)
+    for (std::size_t c = 0; c < columns; ++c) width[c] = std::max(width[c], at(r, c).size());
+  for (std::size_t r = 0; r < rows; ++r)
+    for (std::size_t c = 0; c < columns; ++c)
+      out << std::left << std::setw(static_cast<int>(width[c])) << at(r, c) << (c + 1 < columns ? "  " : "\n");
 }
 
 }  // namespace
 
-void setTimes(std::vector<double> times, ResultRow& row) {
-  if (times.empty()) return;
+double meanOf(const std::vector<double>& values) {
+  return values.empty() ? 0 : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+StepTimes timesOf(std::vector<double> times) {
+  if (times.empty()) return {};
   std::sort(times.begin(), times.end());
   const auto at = [&](double part) {
     return times[static_cast<std::size_t>(std::ceil(part * static_cast<double>(times.size()))) - 1];
   };
-  row.ms_p50 = at(0.5);
-  row.ms_p99 = at(0.99);
-  row.ms_max = times.back();
+  return {meanOf(times), at(0.5), at(0.99), times.back()};
+}
+
+void setTimes(std::vector<double> times, ResultRow& row) {
+  if (times.empty()) return;
+  const StepTimes found = timesOf(std::move(times));
+  row.ms_p50 = found.p50, row.ms_p99 = found.p99, row.ms_max = found.max;
 }
 
 void writeCsv(const std::vector<ResultRow>& rows, std::ostream& out) {
@@ -80,25 +116,19 @@ void writeValues(const std::vector<CaseValue>& values, std::ostream& out) {
         << ',' << show("%.4f", v.cpu_ms) << '\n';
 }
 
-void printTable(const std::vector<ResultRow>& rows, std::ostream& out) {
-  printTo(out, "%-26s %-16s %-24s %7s %8s %8s %8s | %9s %9s %9s %9s %9s  %-6s %s\n", "case", "method", "setting",
-          "nodes", "ms p50", "p99", "max", "motion %", "static %", "force %", "ref %", "drift %", "branch", "hash");
-  for (const ResultRow& row : rows) {
-    const auto ms = [](double value) { return std::isfinite(value) ? show("%.3f", value) : std::string("-"); };
-    printTo(out, "%-26.26s %-16.16s %-24.24s %7d %8s %8s %8s | %9s %9s %9s %9s %9s  %-6s %s\n", row.bench_case.c_str(),
-            row.method.c_str(), row.setting.c_str(), row.particles, ms(row.ms_p50).c_str(), ms(row.ms_p99).c_str(),
-            ms(row.ms_max).c_str(), percent(row.motion_error).c_str(), percent(row.static_error).c_str(),
-            percent(row.force_error).c_str(), percent(row.reference_error).c_str(), percent(row.energy_drift).c_str(),
-            branchName(row.branch), showHash(row.state_hash).c_str());
-  }
-}
-
 void save(const std::string& file, const std::function<void(std::ostream&)>& write) {
   if (file.empty()) return;
   if (file == "-") return write(std::cout);
   std::ostringstream text;
   write(text);
   writeFile(file, text.str(), "The table");
+}
+
+void report(const std::string& file, const std::function<void(std::ostream&)>& write) {
+  std::stringstream csv;
+  write(csv);
+  printTable(csv, std::cerr);
+  save(file, [&](std::ostream& out) { out << csv.str(); });
 }
 
 void printTo(std::ostream& out, const char* format, ...) {

@@ -1,5 +1,4 @@
 #pragma once
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -37,6 +36,13 @@ struct CaseValue {
   double cpu_ms = kNotApplicable;  ///< thread CPU time from the value before to this one [ms]
 };
 
+/// Statistics of step times [ms].
+struct StepTimes {
+  double mean = 0, p50 = 0, p99 = 0, max = 0;
+};
+StepTimes timesOf(std::vector<double> times);
+double meanOf(const std::vector<double>& values);  ///< 0 of none
+
 /// Sets the three times from those of all steps [ms].
 void setTimes(std::vector<double> times, ResultRow& row);
 
@@ -44,12 +50,13 @@ void setTimes(std::vector<double> times, ResultRow& row);
 void writeCsv(const std::vector<ResultRow>& rows, std::ostream& out);
 /// Writes "case,sample,at,value,cpu_ms" and one line per value; empty where a value does not exist.
 void writeValues(const std::vector<CaseValue>& values, std::ostream& out);
-/// Prints the same as a readable table, with errors in percent.
-void printTable(const std::vector<ResultRow>& rows, std::ostream& out);
 
 /// Gives `write` the file of an option --csv, the standard output for "-", and nothing if it is empty.
 /// @throws Error if the file cannot be written
 void save(const std::string& file, const std::function<void(std::ostream&)>& write);
+
+/// Prints a CSV table with its columns aligned to the standard error output, and saves it as save() does.
+void report(const std::string& file, const std::function<void(std::ostream&)>& write);
 
 /// Writes as std::printf() does, at most 1,000 characters.
 [[gnu::format(printf, 2, 3)]] void printTo(std::ostream& out, const char* format, ...);

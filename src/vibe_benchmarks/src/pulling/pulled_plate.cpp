@@ -10,7 +10,6 @@
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/procedure/procedure_registry.hpp"
 #include "vibe_core/procedure/stitch.hpp"
-#include "vibe_core/program/error.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/solver/implicit_stepper.hpp"
 #include "vibe_core/suture/technique.hpp"

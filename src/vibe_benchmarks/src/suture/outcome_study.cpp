@@ -50,11 +50,6 @@ WallMeasures measure(const SutureSession& session, OrganRuler& ruler) {
           meanStress(session.model(), state)};
 }
 
-/// reduction() for a table: 0 where there is none [%].
-double percentLess(std::optional<double> before, std::optional<double> now) {
-  return 100 * reduction(before, now).value_or(0);
-}
-
 std::shared_ptr<const Model> modelFor(Scene scene, const OutcomeTrial& trial, double pressure) {
   scene.geometry.particles = trial.particles;
   scene.gas->regulated_pressure = pressure;
@@ -184,25 +179,6 @@ std::vector<OutcomeTrial> outcomeTrials(const Scene& scene, bool quick) {
   add("no_friction", all, [](OutcomeTrial& t) { t.thread_friction = 0; });
   add("no_foundation", all, [](OutcomeTrial& t) { t.foundation = false; });
   return trials;
-}
-
-void printOutcome(const OutcomeRow& row, std::ostream& out) {
-  const OrganMeasures &a = row.before.organ, &b = row.after.organ;
-  printTo(out,
-          "%-14s %-2s %6d | volume %5.0f mL %6.2f %% less | length %5.2f %% | curvature %6.2f %% | area %6.2f %% "
-          "least %5.1f "
-          "%% | "
-          "strain %4.1f to %4.1f %% | stress %4.1f to %4.1f kPa | %4.2f N least %4.2f | drawn %4.0f mm | %2.0f "
-          "s, %.2f %% | "
-          "%d of %d, %d torn, %d broken, %d loose%s\n",
-          row.trial.name.c_str(), toString(row.trial.pattern), row.trial.particles, 1e6 * a.volume,
-          percentLess(a.volume, b.volume), percentLess(a.length, b.length),
-          percentLess(a.greater_curvature, b.greater_curvature), percentLess(a.mean_area, b.mean_area),
-          percentLess(a.min_area, b.min_area), 100 * row.before.mean_strain, 100 * row.after.mean_strain,
-          1e-3 * row.before.mean_stress, 1e-3 * row.after.mean_stress, row.mean_tension, row.min_tension,
-          1e3 * row.drawn, row.settled, 100 * row.change, row.recognised, kOutcomeSets, row.torn_out, row.broken,
-          row.loose, row.crossed ? ", walls CROSS" : "");
-  out << std::flush;
 }
 
 void writeOutcomes(const std::vector<OutcomeRow>& rows, std::ostream& out) {

@@ -81,7 +81,6 @@ class OutcomeStudy {
 /// loose cinch, and with one modelling choice changed at a time. Quick: only the first three.
 std::vector<OutcomeTrial> outcomeTrials(const Scene& scene, bool quick);
 
-void printOutcome(const OutcomeRow& row, std::ostream& out);
 void writeOutcomes(const std::vector<OutcomeRow>& rows, std::ostream& out);  ///< CSV
 
 }  // namespace vibe::benchmarks

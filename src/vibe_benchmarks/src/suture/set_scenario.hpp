@@ -4,22 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "output/result_row.hpp"
 #include "suture/suture_session.hpp"
 #include "suture/wall_plan.hpp"
 
 namespace vibe::benchmarks {
-
-/// Statistics of step times [ms].
-struct StepTimes {
-  double mean = 0, p50 = 0, p99 = 0, max = 0;
-};
-StepTimes timesOf(std::vector<double> costs);
-
-/// A least-squares line through (0, y[0]), (1, y[1]), ....
-struct Slope {
-  double per_step = 0, error = 0;  ///< standard error; 0 for fewer than 3 points
-};
-Slope slopeOf(const std::vector<double>& y);
 
 /// One set of a scenario. The runs differ only in time. Other load on the machine makes a step slower, never faster, so
 /// the minimum over the runs counts for each step. `median` is that of the runs, step by step.
@@ -32,7 +21,6 @@ struct ScenarioRow {
 
 struct ScenarioResult {
   std::string name;
-  SetLayout layout;
   double reference = 0;  ///< solver ms per frame that the ViBE prototype reports
   std::vector<ScenarioRow> rows;
   double real_time_factor = 0;  ///< simulated time over the wall time of the sets, all steps of one thread in sequence
@@ -45,7 +33,6 @@ struct ScenarioResult {
 ScenarioResult runScenario(const std::shared_ptr<const Model>& model, const SetLayout& layout, const std::string& name,
                            int repeats, std::ostream& log);
 
-void printScenario(const ScenarioResult& result, std::ostream& out);
 void writeScenarios(const std::vector<ScenarioResult>& results, std::ostream& out);  ///< CSV, a line per set
 
 }  // namespace vibe::benchmarks

@@ -2,10 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <array>
 #include <functional>
-#include <memory>
 #include <random>
 #include <string>
 #include <utility>

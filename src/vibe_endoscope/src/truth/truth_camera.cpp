@@ -1,7 +1,6 @@
 #include "truth/truth_camera.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace vibe::endoscope {

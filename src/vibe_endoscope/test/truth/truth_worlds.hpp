@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>

@@ -4,7 +4,6 @@
 #include <array>
 #include <iosfwd>
 #include <memory>
-#include <string>
 
 #include "axis_plant.hpp"
 #include "cosim_frame.hpp"

@@ -1,5 +1,4 @@
 #pragma once
-#include <cstdint>
 
 #include "vibe_firmware/hal/byte_queue.hpp"
 

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vibe_firmware/core/passivity.hpp"
-
 namespace vibe_firmware::axis_control_test {
 namespace {
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -152,21 +151,6 @@ TEST_F(Endpoint, StallsWhatItDoesNotKnow) {
   EXPECT_EQ(get(0xA1, 3, 0), kStalled);             // GET_PROTOCOL: no boot protocol
   EXPECT_FALSE(set(0x00, 3, 1));                    // remote wakeup
   EXPECT_EQ(get(0x80, 10, 0), kStalled);
-}
-
-TEST(HapticFunctionReports, ComeEveryTenTicksWithoutGaps) {
-  HapticFunction function{HapticConfig{}};
-  std::uint8_t bytes[kInputReportSize];
-  int count = 0;
-  for (int i = 0; i < 1000; ++i) {
-    function.tick({});
-    if (!function.nextReport(bytes)) continue;
-    InputReport report;
-    ASSERT_TRUE(unpack(bytes, sizeof bytes, report));
-    EXPECT_EQ(report.sequence, count++);
-    EXPECT_EQ(i % 10, 0);
-  }
-  EXPECT_EQ(count, 100);
 }
 
 TEST(InputFunctionReports, HaveNoParameters) {

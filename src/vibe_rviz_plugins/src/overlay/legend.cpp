@@ -11,7 +11,6 @@
 
 #include <QPainter>
 #include <QPainterPath>
-#include <algorithm>
 #include <cmath>
 
 #include "vibe_graphics/graphics/resources.hpp"

@@ -1,7 +1,6 @@
 #include "camera/picture_reader.hpp"
 
 #include <algorithm>
-#include <cctype>
 
 #include <glob.h>
 #include <sys/stat.h>
@@ -11,39 +10,6 @@
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
-
-namespace {
-
-bool isDigit(char c) {
-  return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
-
-/// The digits from `at` on, without leading zeros.
-std::string numberAt(const std::string& text, std::size_t& at) {
-  while (at < text.size() && text[at] == '0') ++at;
-  const std::size_t begin = at;
-  while (at < text.size() && isDigit(text[at])) ++at;
-  return text.substr(begin, at - begin);
-}
-
-}  // namespace
-
-bool isBefore(const std::string& a, const std::string& b) {
-  std::size_t i = 0, j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (isDigit(a[i]) && isDigit(b[j])) {
-      const std::string m = numberAt(a, i), n = numberAt(b, j);
-      if (m.size() != n.size()) return m.size() < n.size();
-      if (m != n) return m < n;
-      continue;
-    }
-    if (a[i] != b[j]) return a[i] < b[j];
-    ++i;
-    ++j;
-  }
-  if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
-  return a < b;  // equal but for leading zeros
-}
 
 ImageListReader::ImageListReader(const std::string& pattern) {
   glob_t found{};
@@ -55,7 +21,9 @@ ImageListReader::ImageListReader(const std::string& pattern) {
     throw Error(pattern +
                 ": no file matches; put the pattern in quotes and check it with ls, such as images:DIR/*.png.");
   }
-  std::sort(files_.begin(), files_.end(), isBefore);
+  std::sort(files_.begin(), files_.end(), [](const std::string& a, const std::string& b) {
+    return ::strverscmp(a.c_str(), b.c_str()) < 0;  // frame_9 is before frame_10
+  });
 }
 
 PictureReader::Result ImageListReader::next(cv::Mat& picture) {

@@ -24,9 +24,6 @@ class PictureReader {
   virtual std::string complaint() const = 0;
 };
 
-/// Numbers in names count by their value: frame_9 is before frame_10.
-bool isBefore(const std::string& a, const std::string& b);
-
 class ImageListReader : public PictureReader {
  public:
   /// @throws Error if no file matches

@@ -3,7 +3,6 @@
 
 #include <cstdio>
 #include <memory>
-#include <string>
 
 #include "camera/host_time.hpp"
 #include "vibe_core/program/error.hpp"

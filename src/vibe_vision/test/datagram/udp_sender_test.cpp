@@ -6,7 +6,7 @@
 
 #include <chrono>
 
-#include "vibe_core/program/error.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::vision::udp_sender_test {
 namespace {
@@ -38,15 +38,6 @@ class Receiver {
   int socket_;
   int port_ = 0;
 };
-
-std::string messageOf(const std::string& target) {
-  try {
-    UdpSender sender(target);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
 
 TEST(UdpSender, DeliversTheBytes) {
   const Receiver receiver;
@@ -98,7 +89,7 @@ TEST(UdpSender, NeverWaitsForAReceiverThatDoesNotRead) {
 TEST(UdpSender, WrongAddressesAreNamed) {
   for (const char* target : {"", "9870", ":9870", "localhost:", "localhost:0", "localhost:65536", "localhost:12x",
                              "localhost:-1", "a:b:9870", "no such host:9870"}) {
-    const std::string message = messageOf(target);
+    const std::string message = errorOf([&] { UdpSender sender(target); });
     EXPECT_NE(message.find("'" + std::string(target) + "'"), std::string::npos) << target << ": " << message;
     EXPECT_NE(message.find("write host:port"), std::string::npos) << message;
   }

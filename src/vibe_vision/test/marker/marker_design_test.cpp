@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-#include "vibe_core/program/error.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::vision::marker_design_test {
 namespace {
@@ -46,18 +46,8 @@ TEST(MarkerDesign, DefaultMarkersAreAccepted) {
   EXPECT_NO_THROW(checkMarker(RingDesign(), "here"));
 }
 
-/// @return the sentence, empty if the design is accepted
-std::string complaint(const MarkerDesign& design) {
-  try {
-    checkMarker(design, "rig.yaml:12");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
-
 void expectSentence(const MarkerDesign& design, const std::string& part) {
-  const std::string sentence = complaint(design);
+  const std::string sentence = errorOf([&] { checkMarker(design, "rig.yaml:12"); });
   EXPECT_EQ(sentence.rfind("rig.yaml:12: ", 0), 0U) << sentence;
   EXPECT_NE(sentence.find(part), std::string::npos) << sentence;
 }

@@ -43,7 +43,7 @@ TEST(TakeBoards, APictureIsTakenWhenTheBoardStandsStillWhereItIsNeeded) {
   const cv::Mat saved = cv::imread(folder / "board_000.png", cv::IMREAD_GRAYSCALE);
   EXPECT_EQ(saved.cols, 364);
   EXPECT_FALSE(std::filesystem::exists(folder / "board_001.png"));
-  EXPECT_NE(errorOf([&] { BoardTaker(kBoard, 750, folder); }).find("give another folder"), std::string::npos);
+  EXPECT_ERROR(BoardTaker(kBoard, 750, folder), "give another folder");
   std::filesystem::remove_all(folder);
 }
 

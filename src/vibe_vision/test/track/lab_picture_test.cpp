@@ -1,7 +1,6 @@
 // Pictures as a laboratory takes them: bold print, noise, dirt, too much light.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>

@@ -26,9 +26,8 @@ struct MarkerPose {
   /// which shows the sign too. A flat marker has log_aspect and keystone instead.
   double slant = 0;
 };
-constexpr int kPoseParameters = 9;                             ///< in MarkerPose
-using PoseVector = Eigen::Matrix<double, kPoseParameters, 1>;  ///< in the order of MarkerPose
-/// Places in PoseVector and in the arrays below.
+constexpr int kPoseParameters = 9;  ///< in MarkerPose
+/// Places in the arrays below.
 enum PoseIndex { kAlong, kLateral, kRotation, kLogScale, kTilt, kLogAspect, kBlur, kKeystone, kSlant };
 
 /// Vectors of floats are filled up to a multiple of this.
