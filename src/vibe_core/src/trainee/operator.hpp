@@ -55,6 +55,8 @@ class TraineeHand {
 
   /// Called before the coroutine goes on.
   void perceive(const Observation& seen);
+  /// Called when the end of a step has been perceived, before the coroutine goes on; may be empty.
+  std::function<void()> on_step;
 
   const Model& model() const { return model_; }
   const Skill& skill() const { return skill_; }
@@ -169,6 +171,7 @@ WallPoint find(const Place& place, const AnatomicalMap& map);
 // One file each. All return when the goal is reached or given up.
 GoalResult perform(const InsufflateGoal& goal, Operator& me);
 GoalResult perform(const InspectGoal& goal, Operator& me);
+GoalResult perform(const SurveyGoal& goal, Operator& me);
 GoalResult perform(const MarkGoal& goal, Operator& me);
 GoalResult perform(const BiteGoal& goal, Operator& me);
 GoalResult perform(const SutureSetGoal& goal, Operator& me);
