@@ -81,12 +81,13 @@ const std::vector<int>& InspectionLens::look(const Eigen::Isometry3d& tip, const
   seen_.clear();
   const Eigen::Vector3d lens = tip * lens_in_tip_.translation(), axis = (tip * lens_in_tip_).linear().col(2);
   const Eigen::Isometry3d to_tip = tip.inverse();
-  wall_.moveTo(wall.x, wall.y, wall.z);
   findNormals(wall, normal_);
+  bool moved = false;  // the tree, which nobody needs who has seen all that is before the lens
   for (std::size_t i = 0; i < normal_.size(); ++i) {
     if (leave_out[i] != 0) continue;
     const Eigen::Vector3d place = wall.position(static_cast<int>(i)), way = place - lens;
     if (!isInPicture(way, axis, normal_[i])) continue;
+    if (!moved) wall_.moveTo(wall.x, wall.y, wall.z), moved = true;
     const double distance = way.norm();
     if (distance > clear_ && wall_.isBetween(lens, lens + (1 - clear_ / distance) * way)) continue;
     if (!device_.isBetween(lens_in_tip_.translation(), to_tip * place)) seen_.push_back(static_cast<int>(i));
