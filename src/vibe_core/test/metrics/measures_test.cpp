@@ -207,9 +207,15 @@ const std::vector<Row> kExpected = {{"time", "s", 1},
                                     {"volume_reduction", "1", 76},
                                     {"length_reduction", "1", 77},
                                     {"coverage", "1", 0.5},
+                                    {"coverage.cardia", "1", 0.1},
                                     {"coverage.fundus", "1", 0.2},
+                                    {"coverage.body", "1", 0.3},
+                                    {"coverage.antrum", "1", 0.4},
                                     {"coverage.pylorus", "1", 0.6},
-                                    {"coverage.greater_curvature", "1", 0.8}};
+                                    {"coverage.anterior", "1", 0.7},
+                                    {"coverage.greater_curvature", "1", 0.8},
+                                    {"coverage.posterior", "1", 0.9},
+                                    {"coverage.lesser_curvature", "1", 1}};
 
 TEST(Measures, eachHasTheValueOfASessionMadeForIt) {
   std::map<std::string, Measure> measures;
