@@ -176,6 +176,16 @@ py::array_t<bool> sees(SimulationHandle& handle, const py::object& leave_out, co
 }  // namespace
 
 void bindCamera(SimulationClass& simulation) {
+  simulation.def_property_readonly(
+      "first_seen",
+      [](SimulationHandle& handle) -> py::object {
+        const Use use(handle);
+        const WallCoverage* coverage = use->simulation.coverage();
+        if (coverage == nullptr) return py::none();
+        return listOf(coverage->firstSeen());
+      },
+      "New array (particles,) float32: when the lens saw each particle first since the start or the last restore() [s], "
+      "NaN: not yet. None in scenes without inspection, and with metrics=False.");
   simulation.def(
       "camera", &camera, py::arg("width") = 128, py::arg("height") = 128, py::arg("field_of_view") = 1.7,
       flag("normals", false), flag("colour", false), flag("tool", false), py::arg("pose") = py::none(),

@@ -26,7 +26,6 @@ void TraineeHand::perceive(const Observation& seen) {
   if (view_ == nullptr) command_.joints = seen.joints;
   view_ = &seen;
   events_.insert(events_.end(), seen.events.begin(), seen.events.end());
-  if (on_step) on_step();
 }
 
 void TraineeHand::wait(double seconds) {

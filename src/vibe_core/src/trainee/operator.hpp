@@ -13,6 +13,7 @@
 
 #include "vibe_core/events/event.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
+#include "vibe_core/simulation/wall_coverage.hpp"
 #include "vibe_core/tool/tool_model.hpp"
 #include "vibe_core/trainee/observation.hpp"
 #include "vibe_core/trainee/protocol.hpp"
@@ -55,8 +56,6 @@ class TraineeHand {
 
   /// Called before the coroutine goes on.
   void perceive(const Observation& seen);
-  /// Called when the end of a step has been perceived, before the coroutine goes on; may be empty.
-  std::function<void()> on_step;
 
   const Model& model() const { return model_; }
   const Skill& skill() const { return skill_; }
@@ -154,6 +153,9 @@ struct Operator {
   /// What the needle missed in the last bite beyond what had been imagined: distal, anterior [m].
   Eigen::Vector2d surprise = Eigen::Vector2d::Zero();
 
+  /// What it has seen since it was first told to look everywhere; null: it was not.
+  std::shared_ptr<WallCoverage> coverage{};
+
   int bites_taken = 0;                ///< for the present goal
   std::vector<WallPoint> stitches{};  ///< where bites of earlier sets are, whose threads hold the wall
   TriesOfBite tries{};                ///< of the present bite
@@ -164,6 +166,9 @@ struct Operator {
   /// aims beside the organ: where the error leads out of it, the target itself.
   WallPoint withAimError(const WallPoint& target);
 };
+
+/// Adds to `coverage`, where there is one, what is seen now. To be called after each step.
+void lookAround(Operator& me);
 
 /// Point of the wall at a place, now.
 WallPoint find(const Place& place, const AnatomicalMap& map);

@@ -20,27 +20,22 @@ constexpr double kPause = 0.2;      // that the lens rests on a place, after the
 constexpr double kAllButSeen = 0.995;  // of a region, of which nothing is said
 constexpr double kNearer = 0.5;     // of the distance, in the second round
 
-/// A trainee that looks everywhere. It remembers what it has seen since the goal began, from its own pictures.
+/// A trainee that looks everywhere.
 class Survey {
  public:
   Survey(const SurveyGoal& goal, Operator& me)
       : goal_(goal),
         me_(me),
         begin_(me.view().time),
-        coverage_(me.model(), me.model().scene.inspection.value_or(InspectionScene{})),
+        coverage_(*me.coverage),
         triangle_(me.view().wall.size(), -1),
         given_up_(me.view().wall.size()) {
     const auto& triangles = me.model().organ.surface.triangles;
     for (std::size_t t = 0; t < triangles.size(); ++t)
       for (const int corner : triangles[t]) triangle_[corner] = static_cast<int>(t);
-    me_.hand.on_step = [this] { look(); };
   }
-  ~Survey() { me_.hand.on_step = {}; }
-  Survey(const Survey&) = delete;
-  Survey& operator=(const Survey&) = delete;
 
   GoalResult pursue() {
-    look();
     for (const double distance : {goal_.distance, kNearer * goal_.distance}) {
       std::fill(given_up_.begin(), given_up_.end(), 0);
       for (std::optional<int> next = choose(); next && !isOver(); next = choose()) visit(*next, distance);
@@ -53,15 +48,6 @@ class Survey {
   }
 
  private:
-  void look() {
-    const Observation& view = me_.view();
-    if (!WallCoverage::isDue(view.step, me_.model().scene.step_period)) return;
-    x_.clear(), y_.clear(), z_.clear();
-    for (const Eigen::Vector3d& p : view.wall) x_.push_back(p.x()), y_.push_back(p.y()), z_.push_back(p.z());
-    const Eigen::Isometry3d tip = Eigen::Translation3d(view.tip) * view.tip_turn;
-    coverage_.look(tip, {me_.model().organ.surface.triangles, x_, y_, z_}, view.time);
-  }
-
   double share() const {
     const CoverageSkill shares = coverage_.shares();
     return (goal_.region ? shares.region[static_cast<std::size_t>(*goal_.region)] : shares.whole).value_or(1);
@@ -137,13 +123,21 @@ class Survey {
   const SurveyGoal& goal_;
   Operator& me_;
   const double begin_;  // [s]
-  WallCoverage coverage_;
+  const WallCoverage& coverage_;
   std::vector<int> triangle_;   // a triangle of each particle
   std::vector<char> given_up_;  // (particles)
-  std::vector<double> x_, y_, z_;
 };
 
 }  // namespace
+
+void lookAround(Operator& me) {
+  const Observation& view = me.view();
+  if (!me.coverage || !WallCoverage::isDue(view.step, me.model().scene.step_period)) return;
+  std::vector<double> x, y, z;
+  for (const Eigen::Vector3d& p : view.wall) x.push_back(p.x()), y.push_back(p.y()), z.push_back(p.z());
+  const Eigen::Isometry3d tip = Eigen::Translation3d(view.tip) * view.tip_turn;
+  me.coverage->look(tip, {me.model().organ.surface.triangles, x, y, z}, view.time);
+}
 
 GoalResult perform(const SurveyGoal& goal, Operator& me) {
   return Survey(goal, me).pursue();

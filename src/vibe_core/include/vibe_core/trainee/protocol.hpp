@@ -34,7 +34,7 @@ struct InspectGoal {
   double time = 1;          ///< that it stays there [s]
 };
 
-/// Looks everywhere: turns to what it has not seen since the goal began until enough is seen.
+/// Looks everywhere: turns to what it has not seen since the first such goal was added, until enough is seen.
 struct SurveyGoal {
   double coverage = 0.9;                        ///< share of the area of the wall to be seen, 0 to 1; see WallCoverage
   std::optional<Region> region = std::nullopt;  ///< of which it is a share; empty: of the whole wall
