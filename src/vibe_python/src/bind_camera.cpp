@@ -184,7 +184,8 @@ void bindCamera(SimulationClass& simulation) {
         if (coverage == nullptr) return py::none();
         return listOf(coverage->firstSeen());
       },
-      "New array (particles,) float32: when the lens saw each particle first since the start or the last restore() [s], "
+      "New array (particles,) float32: when the lens saw each particle first since the start or the last restore() "
+      "[s], "
       "NaN: not yet. None in scenes without inspection, and with metrics=False.");
   simulation.def(
       "camera", &camera, py::arg("width") = 128, py::arg("height") = 128, py::arg("field_of_view") = 1.7,

@@ -18,7 +18,7 @@ constexpr int kCandidates = 200;    // places that are weighed against each othe
 constexpr double kTurning = 0.5;    // what no turn at all costs, so that the next place is not always the nearest [rad]
 constexpr double kPause = 0.2;      // that the lens rests on a place, after the hand [s]
 constexpr double kAllButSeen = 0.995;  // of a region, of which nothing is said
-constexpr double kNearer = 0.5;     // of the distance, in the second round
+constexpr double kNearer = 0.5;        // of the distance, in the second round
 
 /// A trainee that looks everywhere.
 class Survey {
@@ -111,7 +111,9 @@ class Survey {
     std::string text;
     for (int k = 0; k < kRegionCount; ++k) {
       const std::optional<double>& seen = region[static_cast<std::size_t>(k)];
-      if (!seen || *seen >= goal_.coverage || *seen > kAllButSeen || (goal_.region && static_cast<int>(*goal_.region) != k)) continue;
+      if (!seen || *seen >= goal_.coverage || *seen > kAllButSeen ||
+          (goal_.region && static_cast<int>(*goal_.region) != k))
+        continue;
       char part[60];
       std::snprintf(part, sizeof part, "%s%s %.0f %%", text.empty() ? "; not seen: " : ", ",
                     toString(static_cast<Region>(k)), 100 * (1 - *seen));

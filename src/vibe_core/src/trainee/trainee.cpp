@@ -151,8 +151,7 @@ Trainee::~Trainee() = default;
 int Trainee::add(const Goal& goal) {
   const Model& model = *impl_->model;
   if (std::holds_alternative<SurveyGoal>(goal) && !impl_->me.coverage)
-    impl_->me.coverage =
-        std::make_shared<WallCoverage>(model, model.scene.inspection.value_or(InspectionScene{}));
+    impl_->me.coverage = std::make_shared<WallCoverage>(model, model.scene.inspection.value_or(InspectionScene{}));
   impl_->goals.push_back(goal);
   return static_cast<int>(impl_->goals.size()) - 1;
 }
