@@ -75,6 +75,8 @@ check 'gallery: a replay, and one of a recording that was edited' findsTheEdit
 
 readsASurface() { prints '^[0-9]+ mL, [0-9]+ mL at (9\.9|10\.0|10\.1) mmHg$' "$gallery/own_mesh.py" "$scratch/flat.obj" "$scratch/own.png" && isPicture "$scratch/own.png"; }
 check 'gallery: your own mesh' readsASurface
+sees() { prints '^body +[7-9][0-9]\.[0-9] % seen$' "$gallery/inspection.py" "$scratch/inspection.png" && isPicture "$scratch/inspection.png"; }
+check 'gallery: what was not seen' sees
 sweeps() { prints '^110 kPa: 3[0-9]\.[0-9] mL/mmHg$' "$gallery/sweep.py" "$scratch/sweep.png" && isPicture "$scratch/sweep.png"; }
 check 'gallery: a sweep' sweeps
 makesACohort() { prints ',1,1$' "$gallery/cohort.sh" "$scratch/cohort" 1 && isPicture "$scratch/cohort/cohort.png"; }

@@ -1,6 +1,11 @@
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
+#include <cmath>
+#include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -9,6 +14,7 @@
 #include "tool.hpp"
 #include "tool_picture.hpp"
 #include "unlocked.hpp"
+#include "vibe_core/simulation/tool_queries.hpp"
 
 namespace vibe::python {
 
@@ -125,9 +131,62 @@ py::dict camera(SimulationHandle& handle, int width, int height, double field_of
   return found;
 }
 
+/// The scene's, or the defaults, but for what is given.
+InspectionScene inspectionOf(const Model& model, const py::object& field_of_view, const py::object& distance,
+                             const py::object& angle) {
+  InspectionScene inspection = model.scene.inspection.value_or(InspectionScene{});
+  const auto take = [](const py::object& given, const char* name, double high, double& value) {
+    if (given.is_none()) return;
+    value = number(given, name);
+    if (!(value > 0 && value <= high))
+      throw Error(std::string("'") + name + "' is not above 0 and at most " + std::to_string(high) +
+                  "; give it in rad or metres, or None.");
+  };
+  take(field_of_view, "field_of_view", M_PI, inspection.field_of_view);
+  take(distance, "distance", 1, inspection.distance);
+  take(angle, "angle", M_PI / 2, inspection.angle);
+  return inspection;
+}
+
+std::vector<char> flagsOf(const py::object& given, std::size_t count) {
+  std::vector<char> flags(count, 0);
+  if (given.is_none()) return flags;
+  const auto array = numbers(given, "leave_out", {static_cast<py::ssize_t>(count)});
+  for (std::size_t i = 0; i < count; ++i) flags[i] = array.data()[i] != 0 ? 1 : 0;
+  return flags;
+}
+
+py::array_t<bool> sees(SimulationHandle& handle, const py::object& leave_out, const py::object& field_of_view,
+                       const py::object& distance, const py::object& angle) {
+  const Use use(handle);
+  const Model& model = use.model();
+  const State& state = use.state();
+  needTool(model);
+  const InspectionScene inspection = inspectionOf(model, field_of_view, distance, angle);
+  const std::vector<char> left_out = flagsOf(leave_out, state.x.size());
+  py::array_t<bool> seen(static_cast<py::ssize_t>(state.x.size()));
+  std::fill_n(seen.mutable_data(), state.x.size(), false);
+  const Unlocked others;
+  if (!use->lens || !use->lens->isOf(inspection)) use->lens = std::make_unique<InspectionLens>(model, inspection);
+  const SurfaceView wall{model.organ.surface.triangles, state.x, state.y, state.z};
+  for (const int i : use->lens->look(tipPose(model, state), wall, left_out)) seen.mutable_data()[i] = true;
+  return seen;
+}
+
 }  // namespace
 
 void bindCamera(SimulationClass& simulation) {
+  simulation.def_property_readonly(
+      "first_seen",
+      [](SimulationHandle& handle) -> py::object {
+        const Use use(handle);
+        const WallCoverage* coverage = use->simulation.coverage();
+        if (coverage == nullptr) return py::none();
+        return listOf(coverage->firstSeen());
+      },
+      "New array (particles,) float32: when the lens saw each particle first since the start or the last restore() "
+      "[s], "
+      "NaN: not yet. None in scenes without inspection, and with metrics=False.");
   simulation.def(
       "camera", &camera, py::arg("width") = 128, py::arg("height") = 128, py::arg("field_of_view") = 1.7,
       flag("normals", false), flag("colour", false), flag("tool", false), py::arg("pose") = py::none(),
@@ -143,6 +202,13 @@ void bindCamera(SimulationClass& simulation) {
       "is "
       "not the look of rviz. pose: (4, 4) of a camera elsewhere in world, z along its optical axis, x to the right, "
       "y down [m]; from outside it sees through the near wall, and tool is the whole scope.");
+  simulation.def(
+      "sees", &sees, py::arg("leave_out") = py::none(), py::arg("field_of_view") = py::none(),
+      py::arg("distance") = py::none(), py::arg("angle") = py::none(),
+      "New array (particles,) bool: which particles of the wall the lens sees now, as docs/metrics.md#coverage defines "
+      "it: within the field_of_view of the round picture [rad], no farther than distance [m], within angle of the "
+      "normal [rad], hidden by no fold and not by the device; None: as the section inspection of the scene says, else "
+      "its defaults. leave_out: (particles,) True where nobody wants to know, which saves time.");
 }
 
 }  // namespace vibe::python

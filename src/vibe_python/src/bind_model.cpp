@@ -134,6 +134,9 @@ void bindModel(py::module_& module) {
           "wall", [](const ModelHandle& m) { return codes(m.model->organ.wall, m); },
           "View (particles,) uint8: 0 anterior, 1 greater curvature, 2 posterior, 3 lesser curvature.")
       .def_property_readonly(
+          "end", [](const ModelHandle& m) { return codes(m.model->organ.end, m); },
+          "View (particles,) uint8: 0 none, 1 oesophagus, 2 duodenum, which hold the organ.")
+      .def_property_readonly(
           "mass", [](const ModelHandle& m) { return view(m.model->mass, m.model); }, "View (particles,) [kg].")
       .def_property_readonly(
           "area", [](const ModelHandle& m) { return view(m.model->area, m.model); },

@@ -6,13 +6,15 @@
 #include <vector>
 
 #include "vibe_core/simulation/simulation.hpp"
+#include "vibe_core/simulation/wall_coverage.hpp"
 
 namespace vibe::python {
 
 /// What a Python object `Simulation` and its views share. It lives until the last of them is gone.
 struct Session {
   Simulation simulation;
-  std::vector<Event> events;  ///< of all steps of the last call
+  std::vector<Event> events;             ///< of all steps of the last call
+  std::unique_ptr<InspectionLens> lens;  ///< of what `sees` asked for last; null: nobody has asked
 
   Session(std::shared_ptr<const Model> model, const SimulationSettings& settings);
   /// One step; appends its events.

@@ -139,6 +139,27 @@ class CameraTest(unittest.TestCase):
         simulation.run(1, apc_pedal=True)  # the probe comes out
         self.assertGreater((simulation.camera(96, 96, ANGLE, tool=True)["label"] == 6).sum(), before)
 
+    def test_particles_that_are_seen_are_in_the_picture(self):
+        simulation, size = self.simulation, 192
+        picture, pose = simulation.camera(size, size, ANGLE, tool=True), simulation.link_pose("scope_camera_optical")
+        place = (simulation.positions - pose[:3, 3]) @ pose[:3, :3]
+        pixel = np.floor(size / (2 * np.tan(ANGLE / 2)) * place[:, 1::-1] / place[:, 2:] + size / 2).astype(int)
+        within = (place[:, 2] > 0) & np.all((pixel >= 1) & (pixel < size - 1), axis=1)
+        row, column = pixel[within].T
+        shown = np.abs(picture["depth"][row, column] - place[within, 2]) < 4e-3
+        seen = simulation.sees(distance=1, angle=np.pi / 2)[within]
+        self.assertGreater(seen.sum(), 20)
+        self.assertGreater((seen == shown).mean(), 0.95)
+        self.assertLess((simulation.sees(distance=1, angle=np.pi / 2, field_of_view=0.8)[within] == shown).mean(), 0.9)  # control
+        known = simulation.sees()
+        self.assertFalse(simulation.sees(known).any())
+        np.testing.assert_array_equal(simulation.sees(~known), known)
+        np.testing.assert_array_equal(simulation.sees(distance=0.1), known)
+        with self.assertRaisesRegex(vibe.Error, "'distance' is not above 0"):
+            simulation.sees(distance=-1)
+        with self.assertRaisesRegex(vibe.Error, "'leave_out' has the shape"):
+            simulation.sees(known[:-1])
+
     def test_meshes_have_the_scale_of_the_urdf(self):
         here = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../vibe_description/urdf/scope.urdf")
         with open(here, encoding="utf-8") as file, tempfile.NamedTemporaryFile("w", suffix=".urdf", encoding="utf-8") as wide:

@@ -166,7 +166,7 @@ class SyntheticSession:
         for window in self.windows or ():
             self._statistics(window, 0.0, stamp)
         skill = SkillMetrics(time=self.duration, max_force=6.0, path_length=0.314, full_thickness_share=0.5,
-                             log_dimensionless_jerk=math.nan)  # fmt: skip
+                             log_dimensionless_jerk=math.nan, coverage=math.nan)  # fmt: skip
         for name, value in self.metrics.items():
             setattr(skill, name, value)
         self.put("procedure/skill_metrics", skill, stamp)

@@ -18,6 +18,7 @@ from vibe_sessions.report.message_types import StepReader
 from vibe_sessions.report.numbers import numbers_of, row_of
 from vibe_sessions.report.recording import read_recording
 from vibe_sessions.report.references import REFERENCES, verdict
+from vibe_sessions.report.tables import coverage_rows
 
 import numpy
 
@@ -58,6 +59,16 @@ class NumbersTest(InFolder):
         self.assertAlmostEqual(measures["share_above"], 0.25)
         self.assertEqual(measures["bites_per_set"], 2)
         self.assertEqual(measures["bites_per_5_min"], 5)  # one further bite in a minute
+
+    def test_coverage(self):
+        _, numbers = self.read(duration=2)
+        self.assertEqual((numbers["measures"]["coverage"], coverage_rows(numbers)), (None, []))
+        region, wall = [0.1, 0.4, 0.9, 0.8, math.nan], [0.5, 0.6, 0.7, 0.55]
+        _, numbers = self.read(duration=2, metrics={"coverage": 0.62, "coverage_region": region, "coverage_wall": wall})
+        self.assertEqual(numbers["measures"]["coverage"], 0.62)
+        rows = coverage_rows(numbers)
+        self.assertEqual((rows[0], rows[-1], len(rows)), (("cardia", "10.0"), ("body", "90.0"), 8))
+        self.assertIn(("greater curvature", "60.0"), rows)
 
     def test_set(self):
         _, numbers = self.read(duration=2)

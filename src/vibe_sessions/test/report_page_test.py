@@ -115,6 +115,14 @@ class SessionPageTest(PageTest):
             self.assertIn(part, text)
         self.assertEqual(len([link for link in page.links if link.startswith("data:image/")]), 4)
 
+    def test_which_part_of_the_wall_was_missed(self):
+        metrics = {"coverage": 0.62, "coverage_region": [0.1, 0.4, 0.9, 0.8, 0.7], "coverage_wall": [0.5, 0.6, 0.7, 0.55]}
+        self.report(self.make("a.bag", metrics=metrics))
+        text = " ".join(" ".join(self.check_whole("index.html").text).split())
+        self.assertRegex(text, r"62\.0 % of the wall seen .* Wall seen, by region and by side .* cardia 10\.0 fundus 40\.0 ")
+        self.report(self.make("b.bag"))
+        self.assertNotIn("by region and by side", " ".join(self.check_whole("index.html").text))  # control
+
     def test_organ_to_turn(self):
         pages.viewer_script = lambda: "look();"
         self.report(self.make("a.bag"))

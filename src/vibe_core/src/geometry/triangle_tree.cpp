@@ -34,8 +34,10 @@ double hitTriangle(const Eigen::Vector3d& start, const Eigen::Vector3d& directio
   return t > 0.0 ? t : miss;
 }
 
-bool rayMeetsBox(const Eigen::Vector3d& start, const Eigen::Vector3d& direction, const Eigen::AlignedBox3d& box) {
-  double near = 0.0, far = std::numeric_limits<double>::infinity();
+/// @param far  where the ray ends, in lengths of `direction`
+bool rayMeetsBox(const Eigen::Vector3d& start, const Eigen::Vector3d& direction, const Eigen::AlignedBox3d& box,
+                 double far = std::numeric_limits<double>::infinity()) {
+  double near = 0.0;
   for (int k = 0; k < 3; ++k) {
     if (direction[k] == 0.0) {
       if (start[k] < box.min()[k] || start[k] > box.max()[k]) return false;
@@ -162,6 +164,40 @@ double TriangleTree::firstHit(const Eigen::Vector3d& start, const Eigen::Vector3
     }
   }
   return nearest;
+}
+
+bool TriangleTree::isBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+  const Eigen::Vector3d way = to - from;
+  std::array<int, 64> open;  // halving leaves one entry per level at most
+  std::size_t count = 0;
+  if (!nodes_.empty()) open[count++] = 0;
+  while (count > 0) {
+    const Node& n = nodes_[open[--count]];
+    if (!rayMeetsBox(from, way, n.box, 1)) continue;
+    if (n.left >= 0) {
+      open[count++] = n.left;
+      open[count++] = n.right;
+      continue;
+    }
+    for (int k = n.begin; k < n.end; ++k) {
+      const auto& t = mesh_.triangles[order_[k]];
+      if (hitTriangle(from, way, mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]) < 1) return true;
+    }
+  }
+  return false;
+}
+
+void TriangleTree::moveTo(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z) {
+  for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) mesh_.vertices[v] = {x[v], y[v], z[v]};
+  for (std::size_t k = nodes_.size(); k-- > 0;) {  // children come after their parents
+    Node& n = nodes_[k];
+    if (n.left >= 0) {
+      n.box = nodes_[n.left].box.merged(nodes_[n.right].box);
+      continue;
+    }
+    n.box.setEmpty();
+    for (int i = n.begin; i < n.end; ++i) n.box.extend(triangleBox(order_[i]));
+  }
 }
 
 void TriangleTree::overlappingPairs(const std::function<bool(int, int)>& visit) const {

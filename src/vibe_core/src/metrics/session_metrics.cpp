@@ -125,6 +125,23 @@ std::string doubtsOf(const SessionMetrics& m) {
   return lines;
 }
 
+// What was seen, a line with a newline at its end; empty where nobody looked.
+std::string summariseCoverage(const CoverageSkill& coverage) {
+  if (!coverage.whole) return {};
+  const auto percent = [](double share) { return rounded(100 * share, 1); };
+  char text[80];
+  std::snprintf(text, sizeof text, "wall seen          %8.1f %%    ", percent(*coverage.whole));
+  std::string line = text;
+  for (int k = 0; k < kRegionCount; ++k) {
+    const std::optional<double>& share = coverage.region[static_cast<std::size_t>(k)];
+    if (!share) continue;
+    std::snprintf(text, sizeof text, "%s %.1f %%   ", toString(static_cast<Region>(k)), percent(*share));
+    line += text;
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line + "\n";
+}
+
 }  // namespace
 
 std::string summarise(const SessionMetrics& m) {
@@ -138,12 +155,13 @@ std::string summarise(const SessionMetrics& m) {
                 "force on the tool  %8.2f N max   %.2f N mean\n"
                 "lumen              %8.1f mL now   %.1f mL max   at %.1f mmHg now   %.1f mmHg max\n"
                 "strain of the wall %8.1f %% max\n"
-                "%s"
+                "%s%s"
                 "warnings           %8d",
                 m.time, m.contact_time, m.grip_time, m.insufflation_time, m.path_length, m.events.of(Kind::Grab),
                 m.events.of(Kind::GrabMissed), m.events.of(Kind::Release), m.events.of(Kind::Slip), m.max_force,
                 m.mean_force, m.volume * 1e6, m.max_volume * 1e6, m.pressure / 133.322, m.max_pressure / 133.322,
-                100 * m.max_strain, (summariseEnergy(m.energy, m.energy_balance) + doubtsOf(m)).c_str(), m.warnings());
+                100 * m.max_strain, summariseCoverage(m.coverage).c_str(),
+                (summariseEnergy(m.energy, m.energy_balance) + doubtsOf(m)).c_str(), m.warnings());
   return text + ("\n" + summarise(m.skill));
 }
 

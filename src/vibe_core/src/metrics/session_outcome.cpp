@@ -1,5 +1,6 @@
 #include "vibe_core/metrics/session_outcome.hpp"
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -163,6 +164,15 @@ void addOrgan(const OrganSkill& organ, Table& table) {
   table.add("length_reduction", "1", organ.length_reduction);
 }
 
+void addCoverage(const CoverageSkill& coverage, Table& table) {
+  table.add("coverage", "1", coverage.whole);
+  for (int k = 0; k < kRegionCount; ++k)
+    table.add(std::string("coverage.") + toString(static_cast<Region>(k)), "1",
+              coverage.region[static_cast<std::size_t>(k)]);
+  const std::array<const char*, kWallCount> walls{"anterior", "greater_curvature", "posterior", "lesser_curvature"};
+  for (std::size_t k = 0; k < walls.size(); ++k) table.add(std::string("coverage.") + walls[k], "1", coverage.wall[k]);
+}
+
 }  // namespace
 
 std::vector<Measure> measuresOf(const SessionMetrics& metrics, const std::vector<Suture>& sutures) {
@@ -177,6 +187,7 @@ std::vector<Measure> measuresOf(const SessionMetrics& metrics, const std::vector
   addSets(metrics.skill.sets, sutures, table);
   addBleeding(metrics.skill.bleeding, table);
   addOrgan(metrics.skill.organ, table);
+  addCoverage(metrics.coverage, table);
   return std::move(table.rows);
 }
 

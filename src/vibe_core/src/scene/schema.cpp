@@ -99,6 +99,7 @@ Scene completeScene(const Scene& scene) {
   if (!full.suture) full.suture.emplace();
   if (!full.bleeding) full.bleeding.emplace();
   if (!full.marking) full.marking.emplace();
+  if (!full.inspection) full.inspection.emplace();
   return full;
 }
 
@@ -210,6 +211,11 @@ const std::vector<SchemaSection>& sceneSections() {
           "Argon plasma coagulation from a probe in the scope: marks and burns ([marking.md](marking.md)); needs "
           "`scope`. Without this section the pedal has no effect.",
           "scope", "whose tip carries the probe"),
+      optionalSection<&Scene::inspection>(
+          "inspection",
+          "What of the inside of the wall counts as seen ([coverage](metrics.md#coverage)): it is measured in scenes "
+          "with this section, and changes nothing else; needs `scope`.",
+          "scope", "whose lens sees the wall"),
   };
   return sections;
 }

@@ -149,11 +149,24 @@ std::vector<SchemaRow> burnRows() {
   };
 }
 
+std::vector<SchemaRow> inspectionRows() {
+  return {
+      {"inspection.field_of_view", [](Scene& s) -> double& { return s.inspection->field_of_view; }, "rad", 0.1, 3,
+       "of the lens, from side to side of its round picture",
+       "140 degrees, as of most gastroscopes and of the endoscope camera"},
+      {"inspection.distance", [](Scene& s) -> double& { return s.inspection->distance; }, "m", 5e-3, 1,
+       "distance from the lens up to which the wall is lit and in focus",
+       "design choice, of the order of the far end of a gastroscope's depth of field"},
+      {"inspection.angle", [](Scene& s) -> double& { return s.inspection->angle; }, "rad", 0.1, 1.5708,
+       "angle between line of sight and normal of the wall up to which it is not too oblique", kChoice},
+  };
+}
+
 }  // namespace
 
 std::vector<SchemaRow> procedureRows() {
   std::vector<SchemaRow> all;
-  for (auto* group : {helixRows, threadRows, setRows, bleedingRows, probeRows, burnRows}) {
+  for (auto* group : {helixRows, threadRows, setRows, bleedingRows, probeRows, burnRows, inspectionRows}) {
     for (const SchemaRow& row : group()) all.push_back(row);
   }
   return all;

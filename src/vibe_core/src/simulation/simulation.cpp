@@ -6,6 +6,7 @@
 #include "vibe_core/program/floating_point.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
+#include "vibe_core/simulation/tool_queries.hpp"
 
 namespace vibe {
 namespace {
@@ -35,6 +36,19 @@ Simulation::Simulation(std::shared_ptr<const Model> model, const SimulationSetti
       input_(holdingInput(state_)) {
   if (settings.metrics) recorder_.emplace(*model_, state_);
   if (settings.stages) stages_ = std::make_unique<StageSummary>();
+  coverage_ = coverageFor(*model_);
+  forgetSeen();
+}
+
+std::unique_ptr<WallCoverage> Simulation::coverageFor(const Model& model) const {
+  const std::optional<InspectionScene>& inspection = model.scene.inspection;
+  return settings_.metrics && inspection ? std::make_unique<WallCoverage>(model, *inspection) : nullptr;
+}
+
+void Simulation::forgetSeen() {
+  if (!coverage_) return;
+  coverage_->forget();
+  recorder_->setCoverage(coverage_->shares());
 }
 
 std::unique_ptr<Workspace> Simulation::workspaceFor(const Model& model, const SimulationSettings& settings) {
@@ -69,7 +83,11 @@ void Simulation::warmUp() {
 }
 
 void Simulation::record(const std::vector<Event>& events) {
-  if (recorder_) recorder_->record(*model_, state_, insufflatorIsOn(*model_, input_), events);
+  if (!recorder_) return;
+  recorder_->record(*model_, state_, insufflatorIsOn(*model_, input_), events);
+  if (!coverage_ || !WallCoverage::isDue(state_.step, stepPeriod())) return;
+  coverage_->look(tipPose(*model_, state_), {model_->organ.surface.triangles, state_.x, state_.y, state_.z}, time());
+  recorder_->setCoverage(coverage_->shares());
 }
 
 void Simulation::run(std::int64_t steps, const InputSource& source, const Observer& observer) {
@@ -109,6 +127,7 @@ void Simulation::replaceState(State state) {
   state_ = std::move(state);
   input_ = holdingInput(state_);
   if (recorder_) recorder_->restart(*model_, state_);
+  forgetSeen();
   forgetStep();
 }
 
@@ -120,8 +139,10 @@ void Simulation::forgetStep() {
 void Simulation::replaceModel(std::shared_ptr<const Model> model) {
   State state = initialState(*model, model->scene.seed);
   auto workspace = workspaceFor(*model, settings_);
+  auto coverage = coverageFor(*model);
   if (recorder_) recorder_.emplace(*model, state);
   walls_.reset();
+  coverage_ = std::move(coverage);
   workspace_ = std::move(workspace);  // before the model goes, which it refers to
   model_ = std::move(model);
   replaceState(std::move(state));

@@ -26,6 +26,10 @@ std::vector<Eigen::Isometry3d> linkPoses(const Model& model, const State& state)
 
 }  // namespace
 
+Eigen::Isometry3d tipPose(const Model& model, const State& state) {
+  return model.tool_base * linkPoses(model, state)[model.tip_link];
+}
+
 // A link that turns by w moves the end of an arm r by w x r, and w is half the sum of e x (w x e) over three axes e.
 TipJacobian tipJacobian(const Model& model, const State& state) {
   const std::vector<Eigen::Isometry3d> poses = linkPoses(model, state);
@@ -48,7 +52,7 @@ TipJacobian tipJacobian(const Model& model, const State& state) {
 }
 
 std::optional<WallSight> lookAhead(const Model& model, const State& state) {
-  const Eigen::Isometry3d tip = model.tool_base * linkPoses(model, state)[model.tip_link];
+  const Eigen::Isometry3d tip = tipPose(model, state);
   const Eigen::Vector3d view = tip.linear().col(0);
   const SurfaceView wall{model.organ.surface.triangles, state.x, state.y, state.z};
   const Ray ray(tip.translation() - model.particle_radius * view, view, model.particle_radius + kSightReach);

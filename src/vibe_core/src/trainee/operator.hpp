@@ -13,6 +13,7 @@
 
 #include "vibe_core/events/event.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
+#include "vibe_core/simulation/wall_coverage.hpp"
 #include "vibe_core/tool/tool_model.hpp"
 #include "vibe_core/trainee/observation.hpp"
 #include "vibe_core/trainee/protocol.hpp"
@@ -152,6 +153,9 @@ struct Operator {
   /// What the needle missed in the last bite beyond what had been imagined: distal, anterior [m].
   Eigen::Vector2d surprise = Eigen::Vector2d::Zero();
 
+  /// What it has seen since it was first told to look everywhere; null: it was not.
+  std::shared_ptr<WallCoverage> coverage{};
+
   int bites_taken = 0;                ///< for the present goal
   std::vector<WallPoint> stitches{};  ///< where bites of earlier sets are, whose threads hold the wall
   TriesOfBite tries{};                ///< of the present bite
@@ -163,12 +167,16 @@ struct Operator {
   WallPoint withAimError(const WallPoint& target);
 };
 
+/// Adds to `coverage`, where there is one, what is seen now. To be called after each step.
+void lookAround(Operator& me);
+
 /// Point of the wall at a place, now.
 WallPoint find(const Place& place, const AnatomicalMap& map);
 
 // One file each. All return when the goal is reached or given up.
 GoalResult perform(const InsufflateGoal& goal, Operator& me);
 GoalResult perform(const InspectGoal& goal, Operator& me);
+GoalResult perform(const SurveyGoal& goal, Operator& me);
 GoalResult perform(const MarkGoal& goal, Operator& me);
 GoalResult perform(const BiteGoal& goal, Operator& me);
 GoalResult perform(const SutureSetGoal& goal, Operator& me);

@@ -31,6 +31,12 @@ std::string at(const Place& place) {
 struct Describer {
   std::string operator()(const InsufflateGoal&) const { return "insufflate"; }
   std::string operator()(const InspectGoal& goal) const { return "inspect" + at(goal.place); }
+  std::string operator()(const SurveyGoal& goal) const {
+    char text[80];
+    std::snprintf(text, sizeof text, "inspect %.0f %% of the %s", 100 * goal.coverage,
+                  goal.region ? toString(*goal.region) : "wall");
+    return text;
+  }
   std::string operator()(const MarkGoal& goal) const { return "mark" + at(goal.place); }
   std::string operator()(const BiteGoal& goal) const { return "bite" + at(goal.place); }
   std::string operator()(const SutureSetGoal& goal) const {
@@ -142,7 +148,6 @@ class ProtocolReader {
 
   void readGoal(const YamlField& verb) {
     InsufflateGoal insufflate;
-    InspectGoal inspect;
     MarkGoal mark;
     BiteGoal bite;
     WithdrawGoal withdraw;
@@ -156,8 +161,7 @@ class ProtocolReader {
     };
     const std::vector<std::pair<std::string, std::function<void()>>> goals{
         {"insufflate", add(insufflate, {number("patience", "s", 1, kLongestTime, insufflate.patience)})},
-        {"inspect", add(inspect, placeKeys(inspect.place, {number("distance", "m", 5e-3, 0.2, inspect.distance),
-                                                           number("for", "s", 0, kLongestTime, inspect.time)}))},
+        {"inspect", [&] { readInspect(verb); }},
         {"mark", add(mark, placeKeys(mark.place, {number("for", "s", 0.1, kLongestTime, mark.time)}))},
         {"marks", [&] { readMarks(verb); }},
         {"bite", add(bite, placeKeys(bite.place))},
@@ -172,6 +176,22 @@ class ProtocolReader {
       names.push_back(name);
     }
     source_.fail(verb, "'" + printable(verb.key, 40) + "' is not a goal; " + suggestKey(verb.key, names));
+  }
+
+  // A place, or as much of the wall as `coverage` says.
+  void readInspect(const YamlField& field) {
+    InspectGoal place;
+    SurveyGoal survey;
+    if (!field.value.IsMap() || !field.value["coverage"]) {
+      readMap(field, placeKeys(place.place, {number("distance", "m", 5e-3, 0.2, place.distance),
+                                             number("for", "s", 0, kLongestTime, place.time)}));
+      protocol_.goals.emplace_back(place);
+      return;
+    }
+    readMap(field, {number("coverage", "1", 0, 1, survey.coverage), region(survey.region),
+                    number("distance", "m", 5e-3, 0.2, survey.distance),
+                    number("patience", "s", 1, kLongestTime, survey.patience)});
+    protocol_.goals.emplace_back(survey);
   }
 
   // One set, or a row of them.

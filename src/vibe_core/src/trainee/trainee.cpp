@@ -149,6 +149,9 @@ Trainee::Trainee(std::shared_ptr<const Model> model, const Skill& skill, std::ui
 Trainee::~Trainee() = default;
 
 int Trainee::add(const Goal& goal) {
+  const Model& model = *impl_->model;
+  if (std::holds_alternative<SurveyGoal>(goal) && !impl_->me.coverage)
+    impl_->me.coverage = std::make_shared<WallCoverage>(model, model.scene.inspection.value_or(InspectionScene{}));
   impl_->goals.push_back(goal);
   return static_cast<int>(impl_->goals.size()) - 1;
 }
@@ -166,6 +169,7 @@ StepInput Trainee::next(Observation seen) {
     return still;
   }
   me.hand.perceive(me.seen);
+  lookAround(me.me);
   if (me.decided.empty()) me.decided.assign(static_cast<std::size_t>(me.delay), me.hand.command());
   me.resume();
   me.decided.push_back(me.hand.command());

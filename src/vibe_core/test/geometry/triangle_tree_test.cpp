@@ -55,6 +55,28 @@ TEST(TriangleTree, rayLeavesABoxAtItsSide) {
   EXPECT_EQ(tree.firstHit({1, 0, 0}, Eigen::Vector3d::UnitX()), std::numeric_limits<double>::infinity());
 }
 
+TEST(TriangleTree, whatIsBetweenTwoPlacesIsFoundAlsoWhereTheSurfaceHasMoved) {
+  SurfaceMesh surface = makeUvSphere(0.05, 13, 21);
+  TriangleTree tree(surface);
+  std::vector<double> x, y, z;
+  for (Eigen::Vector3d& v : surface.vertices) {
+    v = Eigen::Vector3d(v.z(), 2 * v.x() + 0.01, v.y());
+    x.push_back(v.x()), y.push_back(v.y()), z.push_back(v.z());
+  }
+  tree.moveTo(x, y, z);
+  const TriangleTree made_there(surface);
+  std::mt19937 random(2);
+  int between = 0;
+  for (int k = 0; k < 400; ++k) {
+    const Eigen::Vector3d a = randomPoint(random, 0.1), b = randomPoint(random, 0.1);
+    const bool expected = made_there.firstHit(a, (b - a).normalized()) < (b - a).norm();
+    EXPECT_EQ(tree.isBetween(a, b), expected);
+    between += expected ? 1 : 0;
+  }
+  EXPECT_GT(between, 50);
+  EXPECT_LT(between, 350) << "control";
+}
+
 TEST(TriangleTree, pairsAreThoseWithOverlappingBoxesAndComeOnce) {
   const SurfaceMesh sphere = makeUvSphere(0.05, 8, 9);
   const TriangleTree tree(sphere);

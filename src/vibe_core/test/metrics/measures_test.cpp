@@ -103,6 +103,7 @@ SessionMetrics session() {
   setCounts(m);
   setProcedure(m.skill);
   setOrgan(m.skill.organ);
+  m.coverage = {0.5, {0.1, 0.2, 0.3, 0.4, 0.6}, {0.7, 0.8, 0.9, 1}};
   return m;
 }
 
@@ -204,7 +205,17 @@ const std::vector<Row> kExpected = {{"time", "s", 1},
                                     {"organ_length", "m", 74},
                                     {"area_reduction", "1", 75},
                                     {"volume_reduction", "1", 76},
-                                    {"length_reduction", "1", 77}};
+                                    {"length_reduction", "1", 77},
+                                    {"coverage", "1", 0.5},
+                                    {"coverage.cardia", "1", 0.1},
+                                    {"coverage.fundus", "1", 0.2},
+                                    {"coverage.body", "1", 0.3},
+                                    {"coverage.antrum", "1", 0.4},
+                                    {"coverage.pylorus", "1", 0.6},
+                                    {"coverage.anterior", "1", 0.7},
+                                    {"coverage.greater_curvature", "1", 0.8},
+                                    {"coverage.posterior", "1", 0.9},
+                                    {"coverage.lesser_curvature", "1", 1}};
 
 TEST(Measures, eachHasTheValueOfASessionMadeForIt) {
   std::map<std::string, Measure> measures;

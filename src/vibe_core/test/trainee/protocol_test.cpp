@@ -62,6 +62,20 @@ TEST(Protocol, ReadsEveryGoal) {
   EXPECT_EQ(look.time, 4);
 }
 
+TEST(Protocol, InspectLooksAtAPlaceOrAtSoMuchOfTheWall) {
+  const Protocol protocol =
+      parse("goals:\n  - inspect: {coverage: 80 %, region: antrum, patience: 60 s}\n  - inspect\n");
+  const SurveyGoal survey = std::get<SurveyGoal>(protocol.goals[0]);
+  EXPECT_DOUBLE_EQ(survey.coverage, 0.8);
+  EXPECT_EQ(survey.region, Region::Antrum);
+  EXPECT_EQ(survey.patience, 60);
+  EXPECT_EQ(describe(protocol.goals[0]), "inspect 80 % of the antrum");
+  EXPECT_TRUE(std::holds_alternative<InspectGoal>(protocol.goals[1]));
+  EXPECT_NE(errorOf("goals:\n  - inspect: {coverage: 0.9, along: 0.2}\n").find("along: is not a known key"),
+            std::string::npos);
+  EXPECT_NE(errorOf("goals:\n  - inspect: {coverage: 120 %}\n").find("coverage"), std::string::npos);
+}
+
 TEST(Protocol, PlacesMayBeSharesOfARegion) {
   const Protocol protocol = parse(
       "goals:\n  - bite: {region: antrum, along: 20 %}\n  - sleeve: {sets: 2, region: body}\n  - marks: {region: "

@@ -77,6 +77,19 @@ TEST(Trainee, LooksAtPlaces) {
   EXPECT_GT(offAxis(back), 0.87);
 }
 
+TEST(Trainee, LooksEverywhereUntilEnoughIsSeenOrItsPatienceIsOver) {
+  Session session;
+  session.trainee.add(InsufflateGoal{});
+  session.trainee.add(SurveyGoal{0.8, Region::Body});
+  session.trainee.add(SurveyGoal{1.0, {}, 60e-3, 2});
+  session.perform();
+  const std::vector<GoalResult>& results = session.trainee.results();
+  ASSERT_EQ(results.size(), 3u);
+  EXPECT_TRUE(results[1].reached) << results[1].reason;
+  EXPECT_FALSE(results[2].reached) << "nobody sees all in two seconds";
+  EXPECT_NE(results[2].reason.find("not seen: "), std::string::npos) << results[2].reason;
+}
+
 TEST(Trainee, TheSameSeedMovesTheSameWay) {
   const auto hashOf = [](std::uint64_t seed) {
     Session session(Skill::expert(), seed);

@@ -1,5 +1,7 @@
 #include "vibe_graphics/geometry/surface_colours.hpp"
 
+#include <cmath>
+
 namespace vibe::graphics {
 namespace {
 
@@ -31,6 +33,14 @@ const std::vector<PackedColour>& wallColours() {
       packed(0.90, 0.62, 0.00),  // greater curvature
       packed(0.00, 0.62, 0.45),  // posterior
       packed(0.80, 0.47, 0.65),  // lesser curvature
+  };
+  return colours;
+}
+
+const std::vector<PackedColour>& seenColours() {
+  static const std::vector<PackedColour> colours{
+      packed(0.84, 0.37, 0.00),  // not seen
+      packed(0.34, 0.71, 0.91),  // seen
   };
   return colours;
 }
@@ -71,6 +81,9 @@ PackedColour SurfaceColours::particleColour(std::size_t particle, const TissueFr
       return alpha | valueColour(frame.dose, particle);
     case Colouring::Thickness:
       return alpha | valueColour(thickness_, particle);
+    case Colouring::Seen:
+      if (frame.first_seen.empty()) break;
+      return alpha | (seenColours()[std::isnan(frame.first_seen[particle]) ? 0 : 1] & kWhite);
     case Colouring::Tissue:
       break;
   }

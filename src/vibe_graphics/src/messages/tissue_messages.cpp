@@ -127,7 +127,7 @@ std::string readTopology(const vibe_msgs::TissueTopology& message, TissueMesh& m
 
 std::string readParticles(const sensor_msgs::PointCloud2& message, const TissueMesh& mesh, TissueFrame& frame) {
   const std::size_t count = std::size_t{message.width} * message.height;
-  CloudField x, y, z, revision, strain, grade, dose;
+  CloudField x, y, z, revision, strain, grade, dose, first_seen;
   std::string wrong = checkLayout(message);
   if (wrong.empty()) wrong = findField(message, "x", sensor_msgs::PointField::FLOAT32, true, x);
   if (wrong.empty()) wrong = findField(message, "y", sensor_msgs::PointField::FLOAT32, true, y);
@@ -136,6 +136,7 @@ std::string readParticles(const sensor_msgs::PointCloud2& message, const TissueM
   if (wrong.empty()) wrong = findField(message, "strain", sensor_msgs::PointField::FLOAT32, false, strain);
   if (wrong.empty()) wrong = findField(message, "grade", sensor_msgs::PointField::UINT8, false, grade);
   if (wrong.empty()) wrong = findField(message, "thermal_dose", sensor_msgs::PointField::FLOAT32, false, dose);
+  if (wrong.empty()) wrong = findField(message, "first_seen", sensor_msgs::PointField::FLOAT32, false, first_seen);
   if (wrong.empty()) wrong = checkRevision(revision, count, mesh.revision);
   if (!wrong.empty()) return wrong;
   if (count != mesh.particle_count)
@@ -156,6 +157,7 @@ std::string readParticles(const sensor_msgs::PointCloud2& message, const TissueM
   take(strain, count, frame.strain);
   take(grade, count, frame.grade);
   take(dose, count, frame.dose);
+  take(first_seen, count, frame.first_seen);
   for (std::uint8_t& value : frame.grade) value = std::min(value, kMaxGrade);
   return {};
 }

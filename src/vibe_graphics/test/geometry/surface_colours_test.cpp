@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "vibe_graphics/testing/surfaces.hpp"
 
 namespace vibe::graphics::surface_colours_test {
@@ -62,12 +64,24 @@ TEST(SurfaceColours, StrainFollowsTheMapAndItsRange) {
   EXPECT_NE(colours.colours()[2], colours.colours()[3]);
 }
 
+TEST(SurfaceColours, WhatWasSeenHasTheColourOfIt) {
+  const TissueMesh mesh = test::ballMesh(10, 12);
+  SurfaceColours colours(mesh);
+  colours.choose(Colouring::Seen, ColourMap());
+  TissueFrame frame = frameOf(mesh);
+  frame.first_seen.assign(mesh.particle_count, std::nanf(""));
+  frame.first_seen[3] = 0;
+  colours.update(frame);
+  EXPECT_EQ(colours.colours()[2], seenColours()[0]);
+  EXPECT_EQ(colours.colours()[3], seenColours()[1]);
+}
+
 TEST(SurfaceColours, MissingDataIsDrawnAsNaturalTissue) {
   const TissueMesh mesh = test::ballMesh(10, 12);  // without anatomy
   TissueFrame frame;
   frame.positions = mesh.rest;
-  for (const Colouring colouring :
-       {Colouring::Region, Colouring::Wall, Colouring::Strain, Colouring::Heat, Colouring::Thickness}) {
+  for (const Colouring colouring : {Colouring::Region, Colouring::Wall, Colouring::Strain, Colouring::Heat,
+                                    Colouring::Thickness, Colouring::Seen}) {
     SurfaceColours colours(mesh);
     colours.choose(colouring, ColourMap());
     colours.update(frame);

@@ -86,6 +86,9 @@ class Model:
     @property
     def area(self) -> ndarray:
         """View (particles,): wall at rest [m^2]."""
+    @property
+    def end(self) -> ndarray:
+        """View (particles,) uint8: 0 none, 1 oesophagus, 2 duodenum, which hold the organ."""
     def forward_kinematics(self, joints: Any) -> ndarray:
         """New array (4, 4): pose of scope_tip in world with the joints (7,), while nothing bends the scope [m]."""
     def inverse_kinematics(self, position: Any, direction: Any, start: Any) -> ndarray:
@@ -156,6 +159,9 @@ class Simulation:
     @property
     def events(self) -> list[Event]:
         """What happened in the last call of step(), run() or follow()."""
+    @property
+    def first_seen(self) -> ndarray:
+        """New array (particles,) float32: when the lens saw each particle first since the start or the last restore() [s], NaN: not yet. None in scenes without inspection, and with metrics=False."""
     def follow(self, trainee: InputSource, seconds: Optional[float] = None) -> list[Event]:
         """Lets a Trainee or a Script give the input, until it has ended, or for simulated seconds. Returns what happened."""
     def hash(self) -> int:
@@ -218,6 +224,8 @@ class Simulation:
         Returns what happened. Ctrl+C ends it after a step."""
     def save(self, file: str) -> None:
         """Writes a snapshot."""
+    def sees(self, leave_out: Any = None, field_of_view: Any = None, distance: Any = None, angle: Any = None) -> ndarray:
+        """New array (particles,) bool: which particles of the wall the lens sees now, as docs/metrics.md#coverage defines it: within the field_of_view of the round picture [rad], no farther than distance [m], within angle of the normal [rad], hidden by no fold and not by the device; None: as the section inspection of the scene says, else its defaults. leave_out: (particles,) True where nobody wants to know, which saves time."""
     def snapshot(self, prepared: bool = False) -> Snapshot:
         """The present state, in memory. prepared=True, for states that many simulations go back to: keeps what the first step after restore() takes long to make, too (a megabyte with 1,000 particles), with the same results."""
     def step(self, **kwargs: Any) -> list[Event]:

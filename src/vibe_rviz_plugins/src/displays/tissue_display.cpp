@@ -55,6 +55,8 @@ QImage legendOf(graphics::Colouring colouring, const graphics::ColourMap& map) {
       return list("Region", graphics::regionColours(), {"cardia", "fundus", "body", "antrum", "pylorus"});
     case graphics::Colouring::Wall:
       return list("Wall", graphics::wallColours(), {"anterior", "greater curvature", "posterior", "lesser curvature"});
+    case graphics::Colouring::Seen:
+      return list("Wall", graphics::seenColours(), {"not seen", "seen"});
     case graphics::Colouring::Heat:
       return drawnLegend("Heat [J]", map);
     case graphics::Colouring::Thickness:
@@ -204,7 +206,7 @@ class TissueDisplay : public rviz::Display {
     colouring_ =
         new rviz::EnumProperty("Colour by", "Tissue",
                                "What the colour of the surface shows: natural tissue, region, wall, strain, heat "
-                               "received, or wall thickness.",
+                               "received, wall thickness, or what the lens has seen in a scene with inspection.",
                                this, SLOT(changeColouring()), this);
     colouring_->addOption("Tissue", static_cast<int>(graphics::Colouring::Tissue));
     colouring_->addOption("Region", static_cast<int>(graphics::Colouring::Region));
@@ -212,6 +214,7 @@ class TissueDisplay : public rviz::Display {
     colouring_->addOption("Strain", static_cast<int>(graphics::Colouring::Strain));
     colouring_->addOption("Heat", static_cast<int>(graphics::Colouring::Heat));
     colouring_->addOption("Thickness", static_cast<int>(graphics::Colouring::Thickness));
+    colouring_->addOption("Seen", static_cast<int>(graphics::Colouring::Seen));
     map_ = new rviz::EnumProperty("Colour map", "viridis",
                                   "Perceptually uniform map from values to colours; cividis looks the same with "
                                   "and without colour vision deficiency.",

@@ -71,14 +71,22 @@ void addPlace(const vibe_msgs::TraineeGoal& message, YAML::Emitter& out) {
   add("anterior", message.anterior, out);
 }
 
+void addSurvey(const vibe_msgs::TraineeGoal& message, YAML::Emitter& out) {
+  add("coverage", message.coverage, out);
+  if (!message.region.empty()) out << YAML::Key << "region" << YAML::Value << message.region;
+  addIfGiven("patience", message.time, out);
+}
+
 // The language of protocols has one reader, with its ranges, defaults and sentences.
 std::string toProtocol(const vibe_msgs::TraineeGoal& message) {
   YAML::Emitter out;
   const GoalKind* kind = findKind(message.kind);
   out << YAML::Flow << YAML::BeginMap << YAML::Key << "name" << YAML::Value << "message" << YAML::Key << "goals"
       << YAML::Value << YAML::BeginSeq << YAML::BeginMap << YAML::Key << message.kind << YAML::Value << YAML::BeginMap;
-  if (kind && kind->has_place) addPlace(message, out);
-  if (kind && kind->time) addIfGiven(kind->time, message.time, out);
+  const bool everywhere = message.kind == "inspect" && message.coverage != 0;
+  if (everywhere) addSurvey(message, out);
+  if (kind && kind->has_place && !everywhere) addPlace(message, out);
+  if (kind && kind->time && !everywhere) addIfGiven(kind->time, message.time, out);
   if (message.kind == "suture_set") addSet(message, out);
   if (message.kind == "inspect") addIfGiven("distance", message.distance, out);
   if (message.kind == "withdraw") addIfGiven("insertion", message.insertion, out);

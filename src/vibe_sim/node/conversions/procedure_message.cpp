@@ -159,6 +159,12 @@ void addOrgan(const OrganSkill& organ, vibe_msgs::SkillMetrics& message) {
   message.length_reduction = valueOrNan(organ.length_reduction);
 }
 
+void addCoverage(const CoverageSkill& coverage, vibe_msgs::SkillMetrics& message) {
+  message.coverage = valueOrNan(coverage.whole);
+  std::transform(coverage.region.begin(), coverage.region.end(), message.coverage_region.begin(), valueOrNan);
+  std::transform(coverage.wall.begin(), coverage.wall.end(), message.coverage_wall.begin(), valueOrNan);
+}
+
 void addSkill(const SkillMetrics& skill, vibe_msgs::SkillMetrics& message) {
   addPhases(skill.phases, message);
   addMarks(skill.marks, message);
@@ -227,6 +233,7 @@ vibe_msgs::SkillMetrics makeSkillMetrics(const TimedSimulation& simulation) {
   message.warnings = static_cast<std::uint32_t>(metrics.warnings());
   addCounts(metrics.events, message);
   addSkill(metrics.skill, message);
+  addCoverage(metrics.coverage, message);
   return message;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "conversions/conversions.hpp"
 #include "vibe_core/constraints/breathing.hpp"
@@ -65,7 +66,9 @@ std::vector<std::uint32_t> flatten(const std::vector<std::array<int, 3>>& triang
 }  // namespace
 
 ParticleCloud::ParticleCloud(const Model& model, const State& start, std::uint32_t revision)
-    : strain_(static_cast<std::size_t>(model.particle_count)), with_marks_(!start.procedure.dose.empty()) {
+    : strain_(static_cast<std::size_t>(model.particle_count)),
+      with_marks_(!start.procedure.dose.empty()),
+      with_seen_(model.scene.inspection.has_value()) {
   using Field = sensor_msgs::PointField;
   message_.header.frame_id = kTissueFrame;
   message_.fields = {field("x", offsetof(Point, x), Field::FLOAT32),
@@ -79,9 +82,11 @@ ParticleCloud::ParticleCloud(const Model& model, const State& start, std::uint32
     message_.fields.push_back(field("grade", offsetof(Point, grade), Field::UINT8));
     message_.fields.push_back(field("thermal_dose", offsetof(Point, thermal_dose), Field::FLOAT32));
   }
+  const std::size_t bytes = with_marks_ ? sizeof(Point) : kPlainBytes;
+  if (with_seen_) message_.fields.push_back(field("first_seen", bytes, Field::FLOAT32));
   message_.height = 1;
   message_.width = static_cast<std::uint32_t>(model.particle_count);
-  message_.point_step = static_cast<std::uint32_t>(with_marks_ ? sizeof(Point) : kPlainBytes);
+  message_.point_step = static_cast<std::uint32_t>(bytes + (with_seen_ ? sizeof(float) : 0));
   message_.row_step = message_.width * message_.point_step;
   message_.is_dense = true;
   message_.data.resize(message_.row_step);
@@ -90,11 +95,13 @@ ParticleCloud::ParticleCloud(const Model& model, const State& start, std::uint32
     point.id = i;
     point.revision = revision;
     point.region = static_cast<std::uint8_t>(model.organ.region[i]);
-    std::memcpy(&message_.data[i * message_.point_step], &point, message_.point_step);
+    std::memcpy(&message_.data[i * message_.point_step], &point, bytes);
   }
+  if (with_seen_) updateSeen(std::vector<float>(message_.width, std::numeric_limits<float>::quiet_NaN()));
 }
 
-const sensor_msgs::PointCloud2& ParticleCloud::update(const Model& model, const State& state, std::int64_t stamp) {
+const sensor_msgs::PointCloud2& ParticleCloud::update(const Model& model, const State& state, std::int64_t stamp,
+                                                      const WallCoverage* coverage) {
   message_.header.stamp = toRosTime(stamp);
   model.tissue->strain(state, strain_.data());
   for (std::size_t i = 0; i < strain_.size(); ++i) {
@@ -104,7 +111,14 @@ const sensor_msgs::PointCloud2& ParticleCloud::update(const Model& model, const 
     std::memcpy(&message_.data[i * message_.point_step], moving, sizeof moving);
   }
   if (with_marks_) updateMarks(state.procedure);
+  if (with_seen_ && coverage != nullptr) updateSeen(coverage->firstSeen());
   return message_;
+}
+
+// The last field.
+void ParticleCloud::updateSeen(const std::vector<float>& first_seen) {
+  for (std::size_t i = 0; i < first_seen.size(); ++i)
+    std::memcpy(&message_.data[(i + 1) * message_.point_step - sizeof(float)], &first_seen[i], sizeof(float));
 }
 
 void ParticleCloud::updateMarks(const ProcedureState& procedure) {

@@ -8,6 +8,7 @@
 #include <vibe_msgs/TissueTopology.h>
 
 #include "vibe_core/model/model.hpp"
+#include "vibe_core/simulation/wall_coverage.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe::sim {
@@ -18,20 +19,24 @@ namespace vibe::sim {
 ///   id        UINT32   particle number
 ///   revision  UINT32   of the tissue/topology it belongs to
 ///   region    UINT8    vibe_msgs/TissueTopology REGION_*
+/// With marks grade UINT8 and thermal_dose FLOAT32, with `inspection` first_seen FLOAT32 follow.
 /// What does not move is filled once per model; update() writes the rest.
 class ParticleCloud {
  public:
   /// @param start  its marks, or their absence, decide whether there are fields for them
   ParticleCloud(const Model& model, const State& start, std::uint32_t revision);
 
-  const sensor_msgs::PointCloud2& update(const Model& model, const State& state, std::int64_t stamp);
+  /// @param coverage  what was seen; null: nothing, or nobody looks
+  const sensor_msgs::PointCloud2& update(const Model& model, const State& state, std::int64_t stamp,
+                                         const WallCoverage* coverage = nullptr);
 
  private:
   sensor_msgs::PointCloud2 message_;
   std::vector<float> strain_;
-  bool with_marks_;
+  bool with_marks_, with_seen_;
 
   void updateMarks(const ProcedureState& procedure);
+  void updateSeen(const std::vector<float>& first_seen);
 };
 
 /// What moves the organ by itself.

@@ -300,7 +300,7 @@ void Publishers::particles(const TimedSimulation& simulation, std::int64_t stamp
   last_particles_ = stamp;
   particles_missed_ = particles_.getNumSubscribers() == 0;
   if (particles_missed_) return;
-  particles_.publish(cloud_->update(simulation.model(), simulation.state(), stamp));
+  particles_.publish(cloud_->update(simulation.model(), simulation.state(), stamp, simulation.simulation().coverage()));
 }
 
 void Publishers::clock(std::int64_t stamp) {

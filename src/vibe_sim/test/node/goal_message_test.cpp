@@ -48,6 +48,23 @@ TEST(GoalMessage, ZeroStandsForTheDefault) {
   EXPECT_EQ(std::get<InsufflateGoal>(readGoal(message("insufflate"))).patience, InsufflateGoal{}.patience);
 }
 
+TEST(GoalMessage, InspectIsOfAPlaceOrOfSoMuchOfTheWall) {
+  vibe_msgs::TraineeGoal goal = message("inspect");
+  goal.along = 0.3;
+  goal.time = 7;
+  EXPECT_EQ(std::get<InspectGoal>(readGoal(goal)).place.along, 0.3);
+  EXPECT_EQ(std::get<InspectGoal>(readGoal(goal)).time, 7);
+  goal.coverage = 0.8;
+  goal.region = "antrum";
+  const auto survey = std::get<SurveyGoal>(readGoal(goal));
+  EXPECT_EQ(survey.coverage, 0.8);
+  EXPECT_EQ(survey.region, Region::Antrum);
+  EXPECT_EQ(survey.patience, 7);
+  EXPECT_EQ(survey.distance, SurveyGoal{}.distance);
+  goal.coverage = 1.5;
+  EXPECT_NE(errorOf(goal).find("coverage"), std::string::npos);
+}
+
 TEST(GoalMessage, ASetHasAllItsFields) {
   vibe_msgs::TraineeGoal goal = message("suture_set");
   goal.along = 0.4;

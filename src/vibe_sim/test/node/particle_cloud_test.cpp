@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <sensor_msgs/point_cloud2_iterator.h>
 
+#include <cmath>
+
 #include "conversions/conversions.hpp"
 #include "vibe_testing/worlds.hpp"
 
@@ -58,6 +60,28 @@ TEST(ParticleCloud, carriesMarksWhereThereAreAny) {
     EXPECT_EQ(*grade, i == 100 ? 1 : 0);
     EXPECT_EQ(*region, vibe_msgs::TissueTopology::REGION_BODY);
     EXPECT_EQ(*id, i);
+  }
+}
+
+TEST(ParticleCloud, carriesWhatWasSeenWhereTheSceneAsks) {
+  for (const bool marks : {false, true}) {
+    World world = balloon();
+    if (marks) world.state.procedure.dose.assign(162, 7), world.state.procedure.grade.assign(162, 1);
+    Model asked = *world.model;
+    asked.scene.inspection.emplace();
+    const sensor_msgs::PointCloud2 message = ParticleCloud(asked, world.state, 5).update(asked, world.state, 1);
+    EXPECT_EQ(message.point_step, marks ? 36u : 32u);
+    sensor_msgs::PointCloud2ConstIterator<float> x(message, "x"), seen(message, "first_seen");
+    sensor_msgs::PointCloud2ConstIterator<std::uint32_t> id(message, "id"), revision(message, "revision");
+    for (std::uint32_t i = 0; i < message.width; ++i, ++x, ++seen, ++id, ++revision) {
+      EXPECT_TRUE(std::isnan(*seen)) << "nobody has looked";
+      EXPECT_EQ(*x, static_cast<float>(world.state.x[i]));
+      EXPECT_EQ(*id, i);
+      EXPECT_EQ(*revision, 5u);
+    }
+    const sensor_msgs::PointCloud2 plain =
+        ParticleCloud(*world.model, world.state, 1).update(*world.model, world.state, 1);
+    EXPECT_EQ(plain.fields.size() + 1, message.fields.size()) << "control";
   }
 }
 

@@ -129,11 +129,28 @@ TEST_F(ProcedureMessage, sessionMeasuresAndStateHaveTheSameTime) {
 
 TEST_F(ProcedureMessage, whatIsNotDefinedYetIsNan) {
   const vibe_msgs::SkillMetrics m = skill();
-  for (double value :
-       {m.economy, m.log_dimensionless_jerk, m.spectral_arc_length, m.bite_spacing_mean, m.bite_spacing_sd,
-        m.bite_depth_mean, m.bite_depth_sd, m.full_thickness_share, m.bites_proximal, m.sets_proximal, m.lumen_area,
-        m.organ_length, m.area_reduction, m.length_reduction, m.phase_economy[0], m.phase_max_force[4],
-        m.phase_mean_force[2], m.phase_log_dimensionless_jerk[1], m.phase_spectral_arc_length[3]})
+  for (double value : {m.economy,
+                       m.log_dimensionless_jerk,
+                       m.spectral_arc_length,
+                       m.bite_spacing_mean,
+                       m.bite_spacing_sd,
+                       m.bite_depth_mean,
+                       m.bite_depth_sd,
+                       m.full_thickness_share,
+                       m.bites_proximal,
+                       m.sets_proximal,
+                       m.lumen_area,
+                       m.organ_length,
+                       m.area_reduction,
+                       m.length_reduction,
+                       m.phase_economy[0],
+                       m.phase_max_force[4],
+                       m.phase_mean_force[2],
+                       m.coverage,
+                       m.coverage_region[1],
+                       m.coverage_wall[3],
+                       m.phase_log_dimensionless_jerk[1],
+                       m.phase_spectral_arc_length[3]})
     EXPECT_TRUE(std::isnan(value));
   EXPECT_EQ(m.phase_time[0] + m.time_above + m.volume_reduction, 0);
   EXPECT_EQ(m.mark_zones + m.mild_bleedings + m.broken_threads + m.submovements, 0u);

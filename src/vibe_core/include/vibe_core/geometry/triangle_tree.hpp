@@ -35,6 +35,14 @@ class TriangleTree {
   /// Distance along the unit direction to the first triangle hit beyond `start`; infinity if none is hit [m].
   double firstHit(const Eigen::Vector3d& start, const Eigen::Vector3d& direction) const;
 
+  /// Whether a triangle meets the straight line between two points; one that meets it at `to` does not count.
+  bool isBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+
+  /// The vertices go to these places. The boxes follow, and keep the triangles that they had: queries stay right, and
+  /// become slower the more the surface has changed.
+  /// @param x, y, z  (vertices) [m]
+  void moveTo(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z);
+
   /// Calls visit(a, b) with a < b for every pair of triangles whose boxes overlap, in a fixed order,
   /// until visit returns false.
   void overlappingPairs(const std::function<bool(int, int)>& visit) const;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "vibe_core/events/event.hpp"
+#include "vibe_core/metrics/coverage_skill.hpp"
 #include "vibe_core/metrics/skill_metrics.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
@@ -28,6 +29,7 @@ struct SessionMetrics {
   bool balance_closes = true;    ///< the solver has an account of all that it loses; shape matching has not
   EventCounts events;            ///< since the start, by kind
   SkillMetrics skill;            ///< measures of the procedure
+  CoverageSkill coverage;        ///< what the lens has seen; empty in scenes without `inspection`
 
   int warnings() const;  ///< warnings and recoveries
 };
@@ -43,6 +45,9 @@ class MetricsRecorder {
 
   /// Call after every step() with its events.
   void record(const Model& model, const State& state, bool insufflator_on, const std::vector<Event>& events);
+
+  /// What has been seen, by who looks; restart() forgets it.
+  void setCoverage(const CoverageSkill& coverage) { metrics_.coverage = coverage; }
 
   /// Warnings of the program about its inputs, which no step has seen.
   void addWarnings(int count) { metrics_.events.record(std::vector<Event>(static_cast<std::size_t>(count))); }

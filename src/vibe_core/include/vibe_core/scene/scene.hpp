@@ -169,6 +169,13 @@ struct MarkingScene {
   std::string deformation = "solver";
 };
 
+/// What of the inside of the wall counts as seen by the endoscope.
+struct InspectionScene {
+  double field_of_view = 140 * 0.017453292519943295;  ///< of the lens, across its picture [rad]
+  double distance = 0.1;                              ///< from the lens, farther is too dark [m]
+  double angle = 75 * 0.017453292519943295;  ///< between line of sight and normal; beyond, it is too oblique [rad]
+};
+
 /// Factor of a grade on amplitudes: 0, 0.5, 1, 1.25. Between waves of one person the depth has a standard deviation of
 /// a quarter (58 +- 14 % of the lumen: Neurogastroenterol Motil 2001, doi 10.1046/j.1365-2982.2001.00285.x).
 double gradeOf(const MotionScene& motion);
@@ -193,6 +200,7 @@ struct Scene {
   std::optional<SutureScene> suture;          ///< empty: the needle takes no bites; needs `helix`
   std::optional<BleedingScene> bleeding;      ///< empty: no bite bleeds; needs `suture`
   std::optional<MarkingScene> marking;        ///< empty: the pedal has no effect; needs `scope`
+  std::optional<InspectionScene> inspection;  ///< empty: nobody measures what was seen; needs `scope`
   bool render_surface = false;                ///< finer render surface
 };
 

@@ -17,6 +17,7 @@
 #include "vibe_core/simulation/simulator.hpp"
 #include "vibe_core/simulation/stage_summary.hpp"
 #include "vibe_core/simulation/thread_contacts.hpp"
+#include "vibe_core/simulation/wall_coverage.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {
@@ -113,6 +114,9 @@ class Simulation {
   std::vector<ThreadContact> threadContacts() const { return vibe::threadContacts(state_); }
   /// Since the state was last replaced; zero without SimulationSettings::metrics.
   const SessionMetrics& metrics() const;
+  /// What the lens has seen since then, looked for ten times a second; null without SimulationSettings::metrics, and in
+  /// scenes without `inspection`.
+  const WallCoverage* coverage() const { return coverage_.get(); }
   /// Counts warnings of the program about its inputs among those of the metrics.
   void addWarnings(int count);
   /// Durations of vibe::step(), without metrics, since the simulation was made. Windows are the caller's to clear.
@@ -152,6 +156,7 @@ class Simulation {
   State state_;
   std::unique_ptr<Workspace> workspace_;
   std::optional<MetricsRecorder> recorder_;
+  std::unique_ptr<WallCoverage> coverage_;  // null: nobody asks
   StepInput input_;
   std::vector<Event> events_;
   StepTimer timer_;
@@ -159,6 +164,8 @@ class Simulation {
   std::unique_ptr<WallContacts> walls_;  // null until somebody asks
 
   void forgetStep();
+  void forgetSeen();
+  std::unique_ptr<WallCoverage> coverageFor(const Model& model) const;
   static std::unique_ptr<Workspace> workspaceFor(const Model& model, const SimulationSettings& settings);
 };
 

@@ -12,6 +12,10 @@
 
 namespace vibe {
 
+/// Pose of scope_tip in world.
+/// @param model  with a tool
+Eigen::Isometry3d tipPose(const Model& model, const State& state);
+
 /// Rows: linear velocity of the origin of scope_tip, angular velocity of the link, both in world. Columns: the joints
 /// of the scope in the order of vibe::Joint. Units [m/m], [m/rad], [rad/m], [rad/rad].
 using TipJacobian = Eigen::Matrix<double, 6, kScopeJointCount>;

@@ -34,6 +34,14 @@ struct InspectGoal {
   double time = 1;          ///< that it stays there [s]
 };
 
+/// Looks everywhere: turns to what it has not seen since the first such goal was added, until enough is seen.
+struct SurveyGoal {
+  double coverage = 0.9;                        ///< share of the area of the wall to be seen, 0 to 1; see WallCoverage
+  std::optional<Region> region = std::nullopt;  ///< of which it is a share; empty: of the whole wall
+  double distance = 60e-3;                      ///< of the tip from where it looks; half of it in a second round [m]
+  double patience = 180;                        ///< time after which the goal is given up [s]
+};
+
 struct MarkGoal {
   Place place;      ///< at which the beam is aimed
   double time = 2;  ///< that the pedal is pressed [s]
@@ -66,8 +74,8 @@ struct WaitGoal {
 };
 
 /// One thing that a trainee is to do.
-using Goal =
-    std::variant<InsufflateGoal, InspectGoal, MarkGoal, BiteGoal, SutureSetGoal, CinchGoal, WithdrawGoal, WaitGoal>;
+using Goal = std::variant<InsufflateGoal, InspectGoal, SurveyGoal, MarkGoal, BiteGoal, SutureSetGoal, CinchGoal,
+                          WithdrawGoal, WaitGoal>;
 
 /// One line for people: "suture set u at 45 %, 0 deg".
 std::string describe(const Goal& goal);

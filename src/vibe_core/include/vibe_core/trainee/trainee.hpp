@@ -30,6 +30,7 @@ class Trainee {
   Trainee& operator=(const Trainee&) = delete;
 
   /// @return the number of the goal, from 0
+  /// @throws Error if it is a SurveyGoal and a mesh of the device cannot be read
   int add(const Goal& goal);
   /// Gives a goal up, now or when its turn comes: lets go of everything, draws back, and goes on with the next. No
   /// effect on goals that have ended.

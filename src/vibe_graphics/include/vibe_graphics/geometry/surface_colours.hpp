@@ -8,12 +8,13 @@
 namespace vibe::graphics {
 
 /// What the colour of tissue shows.
-enum class Colouring { Tissue, Region, Wall, Strain, Heat, Thickness };
+enum class Colouring { Tissue, Region, Wall, Strain, Heat, Thickness, Seen };
 
 /// Regions and walls, in the order of their numbers in vibe_msgs/TissueTopology: colours that are distinct with any
 /// colour vision deficiency (Okabe & Ito 2008).
 const std::vector<PackedColour>& regionColours();
 const std::vector<PackedColour>& wallColours();  ///< one per WALL_*, likewise
+const std::vector<PackedColour>& seenColours();  ///< of what the lens has not seen, and of what it has
 
 /// Colours of the vertices of an organ. Red, green and blue depend on the Colouring and are white for natural tissue;
 /// alpha encodes the effect of heat as media/tissue.frag draws it: 255 none, 170 mark, 85 burn scar, 0 deep burn. Only

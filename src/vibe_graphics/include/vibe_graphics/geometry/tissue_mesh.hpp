@@ -37,8 +37,9 @@ struct TissueFrame {
   std::vector<float> positions;  ///< x y z per particle [m]
   std::vector<float> strain;     ///< mean in-plane stretch minus 1; empty if not given
   std::vector<std::uint8_t>
-      grade;                ///< 0 none, 1 mark, 2 burn scar, 3 muscularis at risk; empty in scenes without marks
-  std::vector<float> dose;  ///< largest heat so far, as energy of a whole spot [J]; empty like grade
+      grade;                      ///< 0 none, 1 mark, 2 burn scar, 3 muscularis at risk; empty in scenes without marks
+  std::vector<float> dose;        ///< largest heat so far, as energy of a whole spot [J]; empty like grade
+  std::vector<float> first_seen;  ///< by the lens [s], not a number: not yet; empty in scenes without `inspection`
 };
 
 }  // namespace vibe::graphics

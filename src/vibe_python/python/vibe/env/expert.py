@@ -73,6 +73,7 @@ class Inspecting:
 
     apart = 0.06  # of the lens from what it looks at [m]
     cone = np.cos(0.8)  # half of what the camera sees about its axis
+    sight = 0.1  # [m]
     decay = 0.03  # of the worth of what is farther than the camera sees [m]
     patience, rest = 1.5, 15.0  # after which a place is left, and looked for again [s]
     gentle = 1.0  # force that it gives way to [N]
@@ -80,7 +81,7 @@ class Inspecting:
 
     def reset(self, task):
         self.target, self.until, self.touched, self.free = None, 0.0, 0.0, 0.0
-        self.later = np.zeros(len(task.mask[0]))  # simulated time from which a triangle is looked for
+        self.later = np.zeros(len(task.mask[0]))  # simulated time from which a particle is looked for
 
     def action(self, task, observation):
         simulation = task.simulation[0]
@@ -91,7 +92,7 @@ class Inspecting:
             self.touched, self.free = now + self.freeing, now + self.freeing
         if now < self.free:  # out, and straight
             return np.clip(np.array([-1, 0, *-simulation.joints[2:4]]), -1, 1)
-        centre = simulation.positions[task.organ[0].model.triangles].mean(1)
+        centre = simulation.positions
         if self.target is not None and now > self.until:
             self.later[np.linalg.norm(centre - centre[self.target], axis=1) < 0.02] = now + self.rest
         if self.target is None or task.mask[0][self.target] or now > self.until:
@@ -99,14 +100,14 @@ class Inspecting:
         return self._look_at(task, simulation, centre[self.target], force)
 
     def _choose(self, task, simulation, centre):
-        """The unseen triangle about which most is unseen, for the angle that the camera has to turn."""
+        """The unseen particle about which most is unseen, for the angle that the camera has to turn."""
         apart = centre - simulation.tip_pose[:3, 3]
         distance = np.linalg.norm(apart, axis=1)
         unseen = np.flatnonzero(~task.mask[0] & (self.later <= simulation.time))
         if len(unseen) == 0:
             unseen = np.flatnonzero(~task.mask[0])
         direction = (apart / distance[:, None])[unseen]
-        worth = task.area[0][unseen] * np.exp(-np.maximum(distance[unseen] - task.sight, 0) / self.decay)
+        worth = task.area[0][unseen] * np.exp(-np.maximum(distance[unseen] - self.sight, 0) / self.decay)
         gain = (direction @ direction.T > self.cone) @ worth
         turn = np.arccos(np.clip(direction @ simulation.tip_pose[:3, 0], -1, 1))
         self.target, self.until = unseen[np.argmax(gain / (0.5 + turn))], simulation.time + self.patience

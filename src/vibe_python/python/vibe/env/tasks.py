@@ -35,14 +35,13 @@ class Reach(Task):
 
 
 class Inspect(Task):
-    """60 % of the wall's area seen. A picture of 64 x 64 pixels is taken after every action, and the triangles in it that
-    are not farther than 0.1 m count as seen. The goal of the observation has no meaning here."""
+    """60 % of the wall's area seen (`Simulation.sees()`), looked for after every action. The goal of the observation has no
+    meaning here."""
 
     name = "Inspect"
     reward = "10 times the share of the area that is seen anew"
     seconds = 30.0
     share = 0.6
-    sight = 0.1
     further = {"seen": ((1,), "share of the area that was seen")}
     has_place = False
 
@@ -51,17 +50,14 @@ class Inspect(Task):
         self.covered = getattr(self, "covered", np.zeros(self.count))
         self.area = getattr(self, "area", [None] * self.count)
         model = self.organ[slot].model
-        corner = model.rest_positions[model.triangles]
-        area = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+        area = np.where(model.end == 0, model.area, 0)
         self.area[slot] = area / area.sum()
         self.mask[slot] = np.zeros(len(area), bool)
         self.covered[slot] = 0
         self._see(slot)
 
     def _see(self, slot):
-        picture = self.simulation[slot].camera(64, 64, 2.0)
-        near = (picture["triangle"] >= 0) & (np.nan_to_num(picture["depth"], nan=np.inf) <= self.sight)
-        self.mask[slot][picture["triangle"][near]] = True
+        self.mask[slot] |= self.simulation[slot].sees(self.mask[slot])
         self.covered[slot] = self.area[slot][self.mask[slot]].sum()
 
     def judge(self, before, after):

@@ -17,6 +17,8 @@ INFO_FIELDS = (
     "scene_hash", "urdf_hash", "model_hash",
 )  # fmt: skip
 SET_STAGES = ("open", "tagged", "cinching", "cinched", "broken")
+REGIONS = ("cardia", "fundus", "body", "antrum", "pylorus")
+WALLS = ("anterior", "greater_curvature", "posterior", "lesser_curvature")
 STATE_FIELDS = (
     "pressure", "volume", "marks", "burns", "deep_burns", "beam_energy", "thread_used", "bites", "partial_bites",
     "tear_outs", "sutures", "sutures_open", "sutures_cinched", "sutures_loose", "sutures_broken", "bleeding",
@@ -119,7 +121,17 @@ def measures_of(recording):
     tagged = [s for s in recording.sutures.sutures if s.stage > 0] if recording.sutures is not None else []
     values["bites_per_set"] = ratio(sum(len(s.bites) for s in tagged), len(tagged))
     values["recorded_max_tension"] = recording.max_tension
+    values.update(coverage_of(recording.skill))
     return values
+
+
+def coverage_of(skill):
+    """Shares of the wall that the lens has seen, by the names of the measures of vibe_core; none in a scene without
+    inspection, and in recordings of releases that did not look."""
+    if skill is None or finite(getattr(skill, "coverage", math.nan)) is None:
+        return {}
+    parts = zip(REGIONS + WALLS, [*skill.coverage_region, *skill.coverage_wall])
+    return {"coverage." + name: finite(share) for name, share in parts}
 
 
 def largest(values):

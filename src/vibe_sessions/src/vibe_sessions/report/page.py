@@ -31,6 +31,7 @@ def session_page(recording, numbers, name, back=""):
         facts=tables.facts(numbers),
         tiles=tables.tiles(numbers),
         references=tables.reference_rows(numbers),
+        coverage=tables.coverage_rows(numbers),
         phases=tables.phase_rows(numbers),
         sets=tables.set_rows(numbers),
         solver=tables.solver_rows(numbers),

@@ -134,6 +134,8 @@ def tiles(numbers):
         (shown(get("blood_lost"), 1e6, 1), "mL", "blood lost", bool(get("overdue_bleedings"))),
         (shown(mistakes), "", "slips, misses, tears", mistakes > 0),
     ]
+    if get("coverage") is not None:
+        found.insert(1, (shown(get("coverage"), 100, 1), "%", "of the wall seen", False))
     if goals["given"]:
         failed = goals["failed"] > 0
         found.insert(1, ("{} / {}".format(goals["reached"], goals["given"]), "", "goals reached", failed))
@@ -148,6 +150,13 @@ def reference_rows(numbers):
         words = {"value": shown(scaled, 1, reference.digits), "verdict": verdict(reference, scaled)}
         rows.append({**dataclasses.asdict(reference), **words})
     return rows
+
+
+def coverage_rows(numbers):
+    """(part of the wall, share that was seen), the least seen first."""
+    prefix = "coverage."
+    shares = {name[len(prefix) :]: share for name, share in numbers["measures"].items() if name.startswith(prefix) and share is not None}
+    return [(name.replace("_", " "), shown(shares[name], 100, 1)) for name in sorted(shares, key=shares.get)]
 
 
 def cells(row, columns):
