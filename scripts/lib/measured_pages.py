@@ -22,6 +22,7 @@ OTHER_TABLES = {
     "Energy balance": "definitions, and bounds of energy_test",
     "Default stomach compared with published values": "published values",
     "Numerical damping": "analysis, numerical_damping_test",
+    "Relaxation": "bounds, relaxation_test",
 }
 
 

@@ -31,6 +31,9 @@ std::unique_ptr<ConstraintBlock> makeBreathingBlock(const Model& model);
 /// The contraction waves of the wall, see WallMuscle. Their work is MotionState::muscle_work. Null in a scene without.
 std::unique_ptr<ConstraintBlock> makePeristalsisBlock(const Model& model);
 
+/// The stress that the wall has lost by relaxation, see RelaxationScene. Null where the wall is elastic.
+std::unique_ptr<ConstraintBlock> makeRelaxationBlock(const Model& model);
+
 /// The gas in the lumen, isothermal, and the insufflator. Null in a scene without gas.
 std::unique_ptr<ConstraintBlock> makeGasBlock(const Model& model);
 

@@ -17,11 +17,12 @@ struct Entry {
 };
 
 // A new kind of constraint is one line here, its own two files, and a test. The order is that of the solver's rows and
-// of the sums over forces and energies; self-contact is first because it corrects positions before the tool does.
+// of the sums over forces and energies; self-contact is before the tool because it corrects positions first, and
+// relaxation before all that moves a held node.
 const Entry kBuiltIn[] = {
-    {"self_contact", makeSelfContactBlock}, {"grip", makeGripBlock},     {"pull_spring", makePullSpringBlock},
-    {"tool_contact", makeToolContactBlock}, {"thread", makeThreadBlock}, {"breathing", makeBreathingBlock},
-    {"peristalsis", makePeristalsisBlock},  {"gas", makeGasBlock},
+    {"relaxation", makeRelaxationBlock},  {"self_contact", makeSelfContactBlock}, {"grip", makeGripBlock},
+    {"pull_spring", makePullSpringBlock}, {"tool_contact", makeToolContactBlock}, {"thread", makeThreadBlock},
+    {"breathing", makeBreathingBlock},    {"peristalsis", makePeristalsisBlock},  {"gas", makeGasBlock},
 };
 
 struct Added {

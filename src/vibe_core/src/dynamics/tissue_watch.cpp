@@ -59,7 +59,9 @@ bool TissueWatch::isHeldByGas(const std::vector<float>& elastic_gradient) const 
     tension += elastic_gradient[4 * i] * state_.x[i] + elastic_gradient[4 * i + 1] * state_.y[i] +
                elastic_gradient[4 * i + 2] * state_.z[i];
   const double volume = lumenVolume(model_.organ.surface, state_.x, state_.y, state_.z);
-  return 3 * state_.pressure * volume > stepPolicy().held_part * tension && volume > 0;
+  const std::optional<RelaxationScene>& relaxation = model_.scene.tissue.relaxation;
+  const double kept = relaxation ? 1 - relaxingShare(*relaxation) : 1;  // of the tension, at least
+  return 3 * state_.pressure * volume > stepPolicy().held_part * kept * tension && volume > 0;
 }
 
 void TissueWatch::leadToRest() {

@@ -74,6 +74,7 @@ void MetricsRecorder::sample(const Model& model, const State& state) {
   model.tissue->strain(state, strain_.data());
   for (float strain : strain_) metrics_.max_strain = std::max(metrics_.max_strain, static_cast<double>(strain));
   metrics_.energy = state.energy;
+  metrics_.relaxation_loss = state.relaxation.loss;
   metrics_.energy_balance = energyBalance(model, state) - start_balance_;
 }
 
@@ -96,6 +97,12 @@ std::string summariseEnergy(const EnergyAccount& e, double balance) {
                 shown(e.damping_loss), shown(e.viscous_loss), shown(e.contact_loss), shown(e.numerical_loss),
                 shown(e.correction_work), shown(e.residual_work), shown(balance));
   return text;
+}
+
+std::string summariseRelaxation(double loss) {
+  char text[64];
+  std::snprintf(text, sizeof text, "                   relaxation of the wall %.4f J\n", rounded(loss, 4));
+  return loss != 0 ? text : "";
 }
 
 // What of these energies a reader should not take for mechanics, a line each with a newline at its end.
@@ -161,7 +168,8 @@ std::string summarise(const SessionMetrics& m) {
                 m.events.of(Kind::GrabMissed), m.events.of(Kind::Release), m.events.of(Kind::Slip), m.max_force,
                 m.mean_force, m.volume * 1e6, m.max_volume * 1e6, m.pressure / 133.322, m.max_pressure / 133.322,
                 100 * m.max_strain, summariseCoverage(m.coverage).c_str(),
-                (summariseEnergy(m.energy, m.energy_balance) + doubtsOf(m)).c_str(), m.warnings());
+                (summariseEnergy(m.energy, m.energy_balance) + summariseRelaxation(m.relaxation_loss) + doubtsOf(m)).c_str(),
+                m.warnings());
   return text + ("\n" + summarise(m.skill));
 }
 

@@ -36,7 +36,8 @@ Energies energies(const Model& model, const State& state) {
 double energyBalance(const Model& model, const State& state) {
   const EnergyAccount& e = state.energy;
   const double put_in = e.tool_work + e.gas_work + e.thread_work + e.pull_work + state.motion.muscle_work;
-  const double lost = e.friction_loss + e.damping_loss + e.viscous_loss + e.contact_loss + e.numerical_loss;
+  const double lost =
+      e.friction_loss + e.damping_loss + e.viscous_loss + e.contact_loss + e.numerical_loss + state.relaxation.loss;
   return energies(model, state).total() - put_in + lost - e.correction_work - e.residual_work;
 }
 

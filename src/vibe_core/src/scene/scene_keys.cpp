@@ -66,6 +66,11 @@ struct Reader {
     const Eigen::Vector3d value = readVector(source, field, row);
     at(scene) = {value.x(), value.y(), value.z()};
   }
+  void operator()(std::vector<double>& (*at)(Scene&)) const {
+    at(scene).clear();
+    for (const YamlField& item : source.list(field))
+      at(scene).push_back(source.quantity(item, row.unit, row.low, row.high));
+  }
   void operator()(GeometryScene::Kind& (*at)(Scene&)) const {
     const auto& names = geometryKindNames();
     const std::string word = source.choice(field, {names.begin(), names.end()});
@@ -80,8 +85,10 @@ struct Reader {
 };
 
 template <typename Vector>
-std::string vectorText(const Vector& value) {
-  return "[" + showQuantity(value[0], "") + ", " + showQuantity(value[1], "") + ", " + showQuantity(value[2], "") + "]";
+std::string vectorText(const Vector& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "[" : ", ") + showQuantity(value, "");
+  return text + "]";
 }
 
 /// In single quotes YAML keeps every printable text unchanged.
@@ -101,6 +108,7 @@ struct Writer {
   std::string operator()(double& (*at)(Scene&)) const { return showQuantity(at(scene), ""); }
   std::string operator()(Eigen::Vector3d& (*at)(Scene&)) const { return vectorText(at(scene)); }
   std::string operator()(std::array<double, 3>& (*at)(Scene&)) const { return vectorText(at(scene)); }
+  std::string operator()(std::vector<double>& (*at)(Scene&)) const { return vectorText(at(scene)); }
   std::string operator()(std::optional<Eigen::Vector3d>& (*at)(Scene&)) const {
     return at(scene) ? vectorText(*at(scene)) : "";
   }

@@ -54,6 +54,7 @@ class SceneReader {
     checkApplies();
     checkRequired();
     checkNeeds();
+    checkRelaxation();
     checkProcedure();
     scene_.file = source_.place();
     if (seen_.count("geometry.file") > 0) resolve(scene_.geometry.file);
@@ -183,6 +184,17 @@ class SceneReader {
       source_.fail(seen_.at(section.name),
                    "needs the section '" + needed + "', " + section.needs_why + "; add '" + needed + ": {}'");
     }
+  }
+
+  void checkRelaxation() const {
+    if (!scene_.tissue.relaxation) return;
+    const auto section = seen_.find("tissue.relaxation");
+    const YamlField& field = section != seen_.end() ? section->second : seen_.at("");
+    if (scene_.tissue.model != "shell")
+      source_.fail(field, "needs tissue.model 'shell', and the model is '" + scene_.tissue.model +
+                              "'; remove it or write 'model: shell'");
+    const std::string fault = relaxationFault(*scene_.tissue.relaxation, scene_.step_period);
+    if (!fault.empty()) source_.fail(field, fault);
   }
 
   /// Checks values against each other.

@@ -31,6 +31,7 @@ std::string unitText(const SchemaRow& row) {
                      std::holds_alternative<std::array<double, 3>& (*)(Scene&)>(row.access) ||
                      std::holds_alternative<std::optional<Eigen::Vector3d>& (*)(Scene&)>(row.access);
   const std::string unit = row.unit;
+  if (std::holds_alternative<std::vector<double>& (*)(Scene&)>(row.access)) return "list of " + unit;
   if (unit.empty() || unit == "1") return unit;
   return three ? "3 x " + unit : unit;
 }
@@ -88,6 +89,7 @@ const SchemaSection* findSection(const std::string& name) {
 Scene completeScene(const Scene& scene) {
   Scene full = scene;
   if (!full.tissue.fibres) full.tissue.fibres.emplace();
+  if (!full.tissue.relaxation) full.tissue.relaxation.emplace();
   if (!full.gas) full.gas.emplace();
   if (!full.gravity) full.gravity.emplace();
   if (!full.foundation) full.foundation.emplace();
@@ -166,6 +168,12 @@ const std::vector<SchemaSection>& sceneSections() {
        "Fibres in the wall, of model shell (Holzapfel, Gasser, Ogden 2000). Without this section there are none.",
        [](Scene& s) { s.tissue.fibres.emplace(); }, [](const Scene& s) { return s.tissue.fibres.has_value(); },
        [](Scene& s) { s.tissue.fibres.reset(); }},
+      {"tissue.relaxation",
+       "Stress that relaxes while the strain stays, of model shell: quasi-linear viscoelasticity (Fung) with a Prony "
+       "series, see [Computation](computation.md#relaxation). The law is then that of fast strains. Without this "
+       "section the wall is elastic.",
+       [](Scene& s) { s.tissue.relaxation.emplace(); }, [](const Scene& s) { return s.tissue.relaxation.has_value(); },
+       [](Scene& s) { s.tissue.relaxation.reset(); }},
       {"attachments", "Ends that are fixed. Without any the organ is free.", nothing, always},
       optionalSection<&Scene::gas>(
           "gas", "Gas in the lumen, and an insufflator. Without this section there is no pressure in the lumen."),

@@ -124,6 +124,7 @@ void recover(const Model& model, State& state, EventLog log) {
   state.volume = fresh.volume;
   state.energy = fresh.energy;
   state.motion.muscle_work = 0;
+  state.relaxation = fresh.relaxation;
   state.grip.clear();
   state.pull = PullSpring();
   slackenThreads(model, state);

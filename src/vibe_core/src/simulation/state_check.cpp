@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tissue/shell_tissue.hpp"
 #include "vibe_core/suture/technique.hpp"
 
 namespace vibe {
@@ -163,6 +164,21 @@ std::string holdDamage(const State& state, const Model& model) {
   return "";
 }
 
+std::string relaxationDamage(const RelaxationMemory& memory, const Model& model) {
+  const auto* tissue = dynamic_cast<const ShellTissue*>(model.tissue.get());
+  const auto& relaxation = model.scene.tissue.relaxation;
+  const std::size_t terms = tissue != nullptr && relaxation ? relaxation->ratios.size() : 0;
+  const std::size_t count = terms > 0 && !memory.held.empty() ? tissue->elements()->stressCount() : 0;
+  if (memory.stress.size() != count || memory.overstress.size() != terms * count ||
+      (count > 0 && memory.held.size() != terms))
+    return "its wall has relaxed as another one";
+  double sum = memory.energy + memory.loss;
+  for (const std::vector<float>* stresses : {&memory.stress, &memory.overstress})
+    for (const float stress : *stresses) sum += 0 * static_cast<double>(stress);
+  for (const double held : memory.held) sum += held;
+  return std::isfinite(sum) ? "" : "its wall has stresses that are not numbers";
+}
+
 }  // namespace
 
 std::string findDamage(const State& state, const Model& model) {
@@ -175,6 +191,7 @@ std::string findDamage(const State& state, const Model& model) {
   if (damage.empty()) damage = pullDamage(state.pull, count);
   if (damage.empty() && !(std::isfinite(state.motion.held_time) && std::isfinite(state.motion.muscle_work)))
     damage = "its own motion is not a number";
+  if (damage.empty()) damage = relaxationDamage(state.relaxation, model);
   if (damage.empty() && model.scene.marking && state.procedure.dose.empty()) damage = "its marks are missing";
   return damage;
 }

@@ -31,8 +31,9 @@ class HashArchive {
 // Fields of these types were added later. They count only where they are not as they were made, so that hashes of what
 // has no use for them stay.
 template <class T>
-constexpr bool kLater = std::is_same_v<T, MotionState> || std::is_same_v<T, HoldMemory> ||
-                        std::is_same_v<T, LumenState> || std::is_same_v<T, Breath>;
+constexpr bool kLater =
+    std::is_same_v<T, MotionState> || std::is_same_v<T, HoldMemory> || std::is_same_v<T, LumenState> ||
+    std::is_same_v<T, RelaxationMemory> || std::is_same_v<T, Breath>;
 
 /// @param later  the fields in a row that were added later, as fieldList() has them: "name:type;"
 template <class T>
@@ -57,7 +58,8 @@ void addFields(const T& object, const std::string& later, HashArchive& archive) 
 
 std::uint64_t hash(const State& state) {
   static const std::string later = "motion:" + fieldList<MotionState>() + ";hold:" + fieldList<HoldMemory>() +
-                                   ";lumen:" + fieldList<LumenState>() + ";";
+                                   ";lumen:" + fieldList<LumenState>() +
+                                   ";relaxation:" + fieldList<RelaxationMemory>() + ";";
   HashArchive archive;
   addFields(state, later, archive);
   return archive.result();

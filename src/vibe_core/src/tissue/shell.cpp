@@ -178,6 +178,37 @@ double ShellElements::muscleWork(const float* displacement4, const float* contra
   return energy;
 }
 
+// The sum of a function of the kernel over all runs.
+double ShellElements::sweepRuns(double (*function)(ShellSweep&), ShellSweep sweep) const {
+  double sum = 0;
+  sweep.node = batch_node_.data();
+  for (const Run& run : runs_) {
+    sweep.first = run.first, sweep.last = run.last;
+    setRun(run, sweep);
+    if (!batch_fibre_.empty()) sweep.fibre = batch_fibre_.data() + static_cast<std::size_t>(kFibreRows * run.first);
+    sweep.fibre_stiffening = mesh_.fibres.stiffening;
+    sum += function(sweep);
+  }
+  return sum;
+}
+
+std::size_t ShellElements::stressCount() const {
+  return static_cast<std::size_t>(batch_count_) * kStressRows * kBatchLanes;
+}
+
+double ShellElements::stress(const float* displacement4, float* out) const {
+  ShellSweep sweep{};
+  sweep.displacement4 = displacement4, sweep.stress_out = out;
+  const double energy = sweepRuns(kernel_->stress, sweep);
+  return batch_fibre_.empty() ? energy : energy + sweepRuns(kernel_->fibre_stress, sweep);
+}
+
+double ShellElements::stressWork(const float* stress, const float* displacement4, float* gradient4) const {
+  ShellSweep sweep{};
+  sweep.displacement4 = displacement4, sweep.gradient4 = gradient4, sweep.stress = stress;
+  return sweepRuns(kernel_->stress_work, sweep);
+}
+
 double ShellElements::evaluatePiece(int piece, ShellSweep sweep, int first_node_batch, double* volume) const {
   const int first = firstBatch(piece), last = firstBatch(piece + 1);
   double energy = 0;

@@ -38,15 +38,14 @@ template <class B>
   return out;
 }
 
-/// Twice the energy of the fibres at the midpoint of a side, and the derivatives with respect to e and d; see
-/// sideEnergy.
+/// Twice the energy per volume of the fibres at the midpoint of a side, and their stress, see sideStress(), per volume.
 template <class B, class Rest, class Fibre>
-[[gnu::always_inline]] inline B fibreSide(const B& stiffening, const B& reach, const Rest& rest, const Fibre& fibre,
-                                          int side, const B (&e)[3], const B (&d)[3], const B (&ue)[3],
-                                          const B (&ud)[3], B (&fe)[3], B (&fd)[3]) {
+[[gnu::always_inline]] inline B fibreStress(const B& stiffening, const B& reach, const Rest& rest, const Fibre& fibre,
+                                            int side, const B (&e)[3], const B (&d)[3], const B (&ue)[3],
+                                            const B (&ud)[3], B (&a)[3]) {
   const int row = kShellSide + 4 * side;
   const B two = constant<B>(2), t[3] = {rest(row), rest(row + 1), rest(row + 2)};
-  B s[3], g[3] = {constant<B>(0), constant<B>(0), constant<B>(0)}, a[3], energy = constant<B>(0);
+  B s[3], g[3] = {constant<B>(0), constant<B>(0), constant<B>(0)}, energy = constant<B>(0);
   sideStrain(t, e, d, ue, ud, s);
   for (int family = 0; family < 2; ++family) {
     const int at = kFibreSide + 4 * side + 2 * family;
@@ -57,12 +56,20 @@ template <class B, class Rest, class Fibre>
     g[0] = mulAdd(w.first, cc, g[0]), g[1] = mulAdd(w.first, cn, g[1]), g[2] = mulAdd(w.first, nn, g[2]);
   }
   pushForward(t, g, a);
-  const B volume = rest(row + 3);
-  for (int r = 0; r < 3; ++r) {
-    const B now_e = e[r] + ue[r], now_d = d[r] + ud[r];
-    fe[r] = volume * mulAdd(a[0], now_e, B(a[1] * now_d));
-    fd[r] = volume * mulAdd(a[1], now_e, B(a[2] * now_d));
-  }
+  return energy;
+}
+
+/// Twice the energy of the fibres at the midpoint of a side, and the derivatives with respect to e and d; see
+/// sideEnergy.
+template <class B, class Rest, class Fibre>
+[[gnu::always_inline]] inline B fibreSide(const B& stiffening, const B& reach, const Rest& rest, const Fibre& fibre,
+                                          int side, const B (&e)[3], const B (&d)[3], const B (&ue)[3],
+                                          const B (&ud)[3], B (&fe)[3], B (&fd)[3]) {
+  B a[3];
+  const B energy = fibreStress(stiffening, reach, rest, fibre, side, e, d, ue, ud, a);
+  const B volume = rest(kShellSide + 4 * side + 3);
+  stressForces(a, e, d, ue, ud, fe, fd);
+  for (int r = 0; r < 3; ++r) fe[r] = volume * fe[r], fd[r] = volume * fd[r];
   return volume * energy;
 }
 

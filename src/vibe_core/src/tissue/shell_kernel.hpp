@@ -27,6 +27,9 @@ constexpr int kFibreSide = 0;      ///< per side and family: the direction in th
 constexpr int kFibreModulus = 12;  ///< [Pa]
 constexpr int kFibreRows = 13;
 
+/// Numbers that ShellElements::stress() gives per triangle: stresses, three per side, then three moments.
+constexpr int kStressRows = 12;
+
 /// Arguments for evaluating some batches of triangles of one material. Uses plain pointers, so that the translation
 /// units of the kernel share no inline code that one of them could compile for the wrong machine.
 struct ShellSweep {
@@ -43,6 +46,8 @@ struct ShellSweep {
   float* gradient4;            ///< added to [N]
   float* volume_gradient4;     ///< added to [m^2]; null: not computed
   const float* next;           ///< per node, what the contraction becomes; for the work of the muscle only (ratio)
+  const float* stress;         ///< (all batches * kStressRows * kBatchLanes); for its work only [N/m]
+  float* stress_out;           ///< the same; for the stress only [N/m]
   double volume;               ///< out, added to, if requested [m^3]
 };
 
@@ -55,6 +60,9 @@ struct ShellKernel {
   ShellSweepFunction sweep;
   ShellSweepFunction fibres;  ///< contribution of fibres to the above, without the volume
   ShellSweepFunction muscle;  ///< by how much the energy grows while nothing moves and the contraction becomes the next
+  ShellSweepFunction stress;  ///< writes stress and moments, without fibres, and returns the energy
+  ShellSweepFunction fibre_stress;  ///< contribution of fibres to the above
+  ShellSweepFunction stress_work;   ///< returns the work of a constant stress from rest to here and adds its gradient
 };
 ShellKernel shellKernelSse2();       ///< plain arithmetic
 ShellKernel shellKernelFusedSse2();  ///< the bits of AVX2 and AVX-512; slow

@@ -89,7 +89,13 @@ struct ShellKernelOfPairs {
 
 ShellKernel shellKernelAvx512() {
   using Single = ShellKernelOfPairs::Single;
-  return {"avx512", sweepShell<ShellKernelOfPairs>, Single::sweepFibres, sweepMuscle<Single>};
+  return {"avx512",
+          sweepShell<ShellKernelOfPairs>,
+          Single::sweepFibres,
+          sweepMuscle<Single>,
+          sweepStress<Single>,
+          Single::sweepFibreStress,
+          Single::sweepStressWork};
 }
 
 }  // namespace vibe

@@ -138,6 +138,95 @@ struct ShellKernelOf {
   static double sweepFibres(ShellSweep& s) {
     return s.rows == kShellGhostRows ? sweepFibresOf<true>(s) : sweepFibresOf<false>(s);
   }
+
+  template <Law law, int kRows>
+  static double sweepStressOf(ShellSweep& s) {
+    const WallTerms<Pack> terms(*s.constants, s.poisson_ratio);
+    typename Lanes::Sum energy;
+    const BatchReals* rows = s.rest;
+    for (int batch = s.first; batch < s.last; ++batch, rows += kRows)
+      for (int part = 0; part < kParts; ++part) {
+        const int lane = part * kWidth;
+        const BatchOffsets* offset = s.node + batch * 6;
+        float* const numbers = s.stress_out + batch * kStressRows * kBatchLanes + lane;
+        const auto rest = [=](int row) { return Pack::load_aligned(rows[row].lane + lane); };
+        Pack u1[3], u[5][3], found[kStressRows], shorter(0.0f);
+        gather(s, offset, lane, u1, u);
+        if constexpr (kRows == kShellMuscleRows) shorter = contraction(s, offset, lane);
+        if constexpr (kRows == kShellGhostRows) placeGhosts(rest, u);
+        energy.add(shellStress<law, LawFormula<law>::kThicknessSteps, kRows>(terms, rest, shorter, u, found), part);
+        for (int row = 0; row < kStressRows; ++row) found[row].store_unaligned(numbers + row * kBatchLanes);
+      }
+    return energy.total();
+  }
+
+  // Adds that of the fibres.
+  static double sweepFibreStress(ShellSweep& s) {
+    const Pack stiffening(static_cast<float>(s.fibre_stiffening));
+    const Pack reach(static_cast<float>(fibreReach(s.fibre_stiffening)));
+    typename Lanes::Sum twice;
+    const BatchReals *rows = s.rest, *fibres = s.fibre;
+    for (int batch = s.first; batch < s.last; ++batch, rows += s.rows, fibres += kFibreRows)
+      for (int part = 0; part < kParts; ++part) {
+        const int lane = part * kWidth;
+        float* const numbers = s.stress_out + batch * kStressRows * kBatchLanes + lane;
+        const auto rest = [=](int row) { return Pack::load_aligned(rows[row].lane + lane); };
+        const auto fibre = [=](int row) { return Pack::load_aligned(fibres[row].lane + lane); };
+        const auto side = [&](int k, const Pack(&e)[3], const Pack(&d)[3], const Pack(&ue)[3], const Pack(&ud)[3],
+                              Pack(&fe)[3], Pack(&fd)[3]) __attribute__((always_inline)) {
+          Pack a[3];
+          const Pack volume = rest(kShellSide + 4 * k + 3);
+          const Pack value = fibreStress(stiffening, reach, rest, fibre, k, e, d, ue, ud, a);
+          for (int c = 0; c < 3; ++c) {
+            float* const at = numbers + (3 * k + c) * kBatchLanes;
+            (Pack::load_unaligned(at) + volume * a[c]).store_unaligned(at);
+          }
+          for (int r = 0; r < 3; ++r) fe[r] = fd[r] = Pack(0.0f);
+          return Pack(volume * value);
+        };
+        Pack u1[3], u[5][3], x[5][3], unused[5][3];
+        gather(s, s.node + batch * 6, lane, u1, u);
+        if (s.rows == kShellGhostRows) placeGhosts(rest, u);
+        for (int a = 0; a < 5; ++a)
+          for (int r = 0; r < 3; ++r) x[a][r] = rest(kShellPatch + 3 * a + r), unused[a][r] = Pack(0.0f);
+        twice.add(overSides(side, x, u, unused), part);
+      }
+    return 0.5 * twice.total();
+  }
+
+  template <Law law>
+  static double sweepStress(ShellSweep& s) {
+    if (s.rows == kShellMuscleRows) return sweepStressOf<law, kShellMuscleRows>(s);
+    if (s.rows == kShellGhostRows) return sweepStressOf<law, kShellGhostRows>(s);
+    return sweepStressOf<law, kShellRows>(s);
+  }
+
+  template <bool ghosts>
+  static double sweepStressWorkOf(ShellSweep& s) {
+    typename Lanes::Sum work;
+    const BatchReals* rows = s.rest;
+    for (int batch = s.first; batch < s.last; ++batch, rows += s.rows) {
+      const BatchOffsets* offset = s.node + batch * 6;
+      Pack f[kParts][5][3];
+      for (int part = 0; part < kParts; ++part) {
+        const int lane = part * kWidth;
+        const float* const numbers = s.stress + batch * kStressRows * kBatchLanes + lane;
+        const auto rest = [=](int row) { return Pack::load_aligned(rows[row].lane + lane); };
+        const auto stress = [=](int row) { return Pack::load_unaligned(numbers + row * kBatchLanes); };
+        Pack u1[3], u[5][3];
+        gather(s, offset, lane, u1, u);
+        if constexpr (ghosts) placeGhosts(rest, u);
+        work.add(shellStressWork<ghosts>(rest, stress, u, f[part]), part);
+        if constexpr (ghosts) returnGhosts(rest, f[part]);
+      }
+      scatter(s, offset, f);
+    }
+    return work.total();
+  }
+
+  static double sweepStressWork(ShellSweep& s) {
+    return s.rows == kShellGhostRows ? sweepStressWorkOf<true>(s) : sweepStressWorkOf<false>(s);
+  }
 };
 
 /// Kernel::sweepAll() of the law and the rows of a sweep.
@@ -157,6 +246,12 @@ double sweepMuscle(ShellSweep& s) {
   return withLaw(s.law, [&](auto tag) { return Kernel::template sweepMuscle<decltype(tag)::value>(s); });
 }
 
+/// Kernel::sweepStress() of the law of a sweep.
+template <class Kernel>
+double sweepStress(ShellSweep& s) {
+  return withLaw(s.law, [&](auto tag) { return Kernel::template sweepStress<decltype(tag)::value>(s); });
+}
+
 #ifdef VIBE_KERNEL_SET  // not in the kernel for AVX-512, which has a source of its own
 template <class Set>
 constexpr const char* kSetName = "sse2";
@@ -172,7 +267,8 @@ constexpr const char* kSetName<KernelSets::Avx2> = "avx2";
 ShellKernel VIBE_KERNEL(shellKernel)() {
   using Set = KernelSets::VIBE_KERNEL_SET;
   using Kernel = ShellKernelOf<Set>;
-  return {kSetName<Set>, sweepShell<Kernel>, Kernel::sweepFibres, sweepMuscle<Kernel>};
+  return {kSetName<Set>,       sweepShell<Kernel>,       Kernel::sweepFibres,    sweepMuscle<Kernel>,
+          sweepStress<Kernel>, Kernel::sweepFibreStress, Kernel::sweepStressWork};
 }
 #endif
 

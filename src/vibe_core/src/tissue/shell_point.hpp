@@ -44,14 +44,24 @@ template <class B>
   out[2] = t[2] * t[2] * g[2];
 }
 
+/// By how much the products of two vectors change: e.e, e.d, d.d.
+template <class B>
+[[gnu::always_inline]] inline void metricChange(const B (&e)[3], const B (&d)[3], const B (&ue)[3], const B (&ud)[3],
+                                                B (&change)[3]) {
+  const B half = constant<B>(0.5), two = constant<B>(2);
+  B sum_e[3], sum_d[3];
+  for (int r = 0; r < 3; ++r) sum_e[r] = mulAdd(two, e[r], ue[r]), sum_d[r] = mulAdd(two, d[r], ud[r]);
+  change[0] = dot(ue, sum_e);
+  change[1] = half * (dot(ue, sum_d) + dot(sum_e, ud));
+  change[2] = dot(ud, sum_d);
+}
+
 /// The strain S = C - 1 at the midpoint of a side.
 template <class B>
 [[gnu::always_inline]] inline void sideStrain(const B (&t)[3], const B (&e)[3], const B (&d)[3], const B (&ue)[3],
                                               const B (&ud)[3], B (&s)[3]) {
-  const B half = constant<B>(0.5), two = constant<B>(2);
-  B sum_e[3], sum_d[3];
-  for (int r = 0; r < 3; ++r) sum_e[r] = mulAdd(two, e[r], ue[r]), sum_d[r] = mulAdd(two, d[r], ud[r]);
-  const B change[3] = {dot(ue, sum_e), half * (dot(ue, sum_d) + dot(sum_e, ud)), dot(ud, sum_d)};
+  B change[3];
+  metricChange(e, d, ue, ud, change);
   pullBack(t, change, s);
 }
 
@@ -74,14 +84,15 @@ template <class B>
   t[2] = t[2] * m22;
 }
 
-/// Twice the membrane energy at the midpoint of a side, and the derivatives with respect to e and d.
+/// Twice the membrane energy at the midpoint of a side, and the stress there: its components along e and d, ee, ed, dd,
+/// times the volume of the side. They are the same in every frame.
 /// @tparam rows   of the triangle
 /// @param e, d    the side, and the vector from the opposite node to the apex beyond it; at rest
 /// @param ue, ud  their displacements
 template <Law law, int Steps, int rows, class B, class Rest>
-[[gnu::always_inline]] inline B sideEnergy(const WallTerms<B>& terms, const Rest& rest, const B& contraction, int side,
+[[gnu::always_inline]] inline B sideStress(const WallTerms<B>& terms, const Rest& rest, const B& contraction, int side,
                                            const B (&e)[3], const B (&d)[3], const B (&ue)[3], const B (&ud)[3],
-                                           B (&fe)[3], B (&fd)[3]) {
+                                           B (&a)[3]) {
   const int row = kShellSide + 4 * side;
   B t[3] = {rest(row), rest(row + 1), rest(row + 2)}, s[3];
   if constexpr (rows == kShellMuscleRows) {
@@ -96,14 +107,40 @@ template <Law law, int Steps, int rows, class B, class Rest>
   // dW/dC = W_I (1 - y^2 cof C), cof C = 1 + cof S
   const B volume = rest(row + 3), w = p.by_i * volume, square = w * p.square, shear = w + square;
   const B g[3] = {-mulAdd(shear, s[2], square), shear * s[1], -mulAdd(shear, s[0], square)};
-  B a[3];
   pushForward(t, g, a);
+  return volume * p.energy;
+}
+
+/// The forces of a stress as sideStress() gives it: the derivatives of the energy with respect to e and d.
+template <class B>
+[[gnu::always_inline]] inline void stressForces(const B (&a)[3], const B (&e)[3], const B (&d)[3], const B (&ue)[3],
+                                                const B (&ud)[3], B (&fe)[3], B (&fd)[3]) {
   for (int r = 0; r < 3; ++r) {
     const B now_e = e[r] + ue[r], now_d = d[r] + ud[r];
     fe[r] = mulAdd(a[0], now_e, B(a[1] * now_d));
     fd[r] = mulAdd(a[1], now_e, B(a[2] * now_d));
   }
-  return volume * p.energy;
+}
+
+/// Twice the membrane energy at the midpoint of a side, and the derivatives of the energy, see sideStress().
+template <Law law, int Steps, int rows, class B, class Rest>
+[[gnu::always_inline]] inline B sideEnergy(const WallTerms<B>& terms, const Rest& rest, const B& contraction, int side,
+                                           const B (&e)[3], const B (&d)[3], const B (&ue)[3], const B (&ud)[3],
+                                           B (&fe)[3], B (&fd)[3]) {
+  B a[3];
+  const B twice = sideStress<law, Steps, rows>(terms, rest, contraction, side, e, d, ue, ud, a);
+  stressForces(a, e, d, ue, ud, fe, fd);
+  return twice;
+}
+
+/// Twice the work of a constant stress from rest to here, and the derivatives of the work with respect to e and d.
+template <class B>
+[[gnu::always_inline]] inline B stressWork(const B (&a)[3], const B (&e)[3], const B (&d)[3], const B (&ue)[3],
+                                           const B (&ud)[3], B (&fe)[3], B (&fd)[3]) {
+  B change[3];
+  metricChange(e, d, ue, ud, change);
+  stressForces(a, e, d, ue, ud, fe, fd);
+  return mulAdd(a[0], change[0], B(mulAdd(B(constant<B>(2) * a[1]), change[1], B(a[2] * change[2]))));
 }
 
 /// Nodes 2 and 3 and the apexes, each relative to node 1.
@@ -238,48 +275,101 @@ template <class B>
   return out;
 }
 
-/// Adds the gradient to f; returns the energy. With the metric a and the change k of the curvature at the centroid it
-/// is (mean (cof a : k)^2 - 2 (1 - nu) det a det k) whole, a polynomial in a and k that is never negative.
+/// The bending energy and its derivatives with respect to the change of curvature: 11, 12 and 21, 22.
+template <class B>
+struct Moments {
+  BendingFactor<B> factor;
+  B a[3];  ///< metric
+  B mean, square, gauss, whole, form, pull, twist;
+  B m[3];
+  B energy() const { return whole * form; }
+};
+
+/// With the metric a and the change k of the curvature at the centroid the energy is (mean (cof a : k)^2 - 2 (1 - nu)
+/// det a det k) whole, a polynomial in a and k that is never negative.
+template <class B, class Rest>
+[[gnu::always_inline]] inline Moments<B> momentsOf(const WallTerms<B>& terms, const Rest& rest, const Bent<B>& s) {
+  const B two = constant<B>(2), gauss_share = two - two * terms.poisson_ratio;
+  Moments<B> out;
+  out.a[0] = dot(s.g[0], s.g[0]), out.a[1] = dot(s.g[0], s.g[1]), out.a[2] = dot(s.g[1], s.g[1]);
+  out.factor = bendingFactor(terms, s.thin);
+  const B *a = out.a, *k = s.change;
+  out.mean = mulAdd(a[2], k[0], B(minusMul(B(two * a[1]), k[1], B(a[0] * k[2]))));
+  out.gauss = gauss_share * minor(k[0], k[2], k[1], k[1]), out.whole = rest(kShellBend) * out.factor.whole;
+  out.square = out.mean * out.mean;
+  out.form = minusMul(s.square, out.gauss, B(out.factor.mean * out.square));
+  out.pull = two * out.whole * out.factor.mean * out.mean, out.twist = out.whole * gauss_share * s.square;
+  out.m[0] = minusMul(out.twist, k[2], B(out.pull * a[2]));
+  out.m[1] = two * minusMul(out.pull, a[1], B(out.twist * k[1]));
+  out.m[2] = minusMul(out.twist, k[0], B(out.pull * a[0]));
+  return out;
+}
+
+/// How moments turn the normal: their derivative with respect to the area vector.
+template <class B>
+[[gnu::always_inline]] inline void turningOf(const Bent<B>& s, const B (&m)[3], B (&p)[3]) {
+  B q[3];
+  for (int r = 0; r < 3; ++r) {
+    const B h0 = s.rest_h[0][r] + s.move_h[0][r], h1 = s.rest_h[1][r] + s.move_h[1][r];
+    q[r] = mulAdd(m[0], h0, B(mulAdd(m[1], h1, B(m[2] * (s.rest_h[2][r] + s.move_h[2][r])))));
+  }
+  const B along = dot(s.n, q);
+  for (int r = 0; r < 3; ++r) p[r] = s.inverse * minusMul(along, s.n[r], q[r]);
+}
+
+/// Adds the forces of moments and of pulls on the tangents to f.
+template <class B>
+[[gnu::always_inline]] inline void addMomentForces(const B (&m)[3], const B (&n)[3], const B (&pull0)[3],
+                                                   const B (&pull1)[3], Patch<B>& f) {
+  const B two = constant<B>(2), four = constant<B>(4);
+  const B second = mulAdd(two, m[2], m[1]), third = mulAdd(two, m[0], m[1]), all = m[0] + m[1] + m[2];
+  for (int r = 0; r < 3; ++r) {
+    f[0][r] = minusMul(second, n[r], B(mulAdd(four, pull0[r], f[0][r])));
+    f[1][r] = minusMul(third, n[r], B(mulAdd(four, pull1[r], f[1][r])));
+    f[2][r] = mulAdd(all, n[r], B(f[2][r] + (pull0[r] + pull1[r])));
+    f[3][r] = mulAdd(m[0], n[r], B(f[3][r] - pull0[r]));
+    f[4][r] = mulAdd(m[2], n[r], B(f[4][r] - pull1[r]));
+  }
+}
+
+/// Adds the gradient to f; returns the energy.
 template <class B, class Rest>
 [[gnu::always_inline]] inline B bendingEnergy(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& x,
                                               const Patch<B>& u, Patch<B>& f) {
-  const B two = constant<B>(2), four = constant<B>(4), gauss_share = two - two * terms.poisson_ratio;
+  const B two = constant<B>(2);
   const Bent<B> s = bentSurface(rest, x, u);
-  const B a[3] = {dot(s.g[0], s.g[0]), dot(s.g[0], s.g[1]), dot(s.g[1], s.g[1])};
-  const BendingFactor<B> factor = bendingFactor(terms, s.thin);
-  const B* k = s.change;
-  const B mean = mulAdd(a[2], k[0], B(minusMul(B(two * a[1]), k[1], B(a[0] * k[2]))));
-  const B gauss = gauss_share * minor(k[0], k[2], k[1], k[1]), whole = rest(kShellBend) * factor.whole;
-  const B square = mean * mean, form = minusMul(s.square, gauss, B(factor.mean * square));
-  const B pull = two * whole * factor.mean * mean, twist = whole * gauss_share * s.square;
-  const B m0 = minusMul(twist, k[2], B(pull * a[2])), m2 = minusMul(twist, k[0], B(pull * a[0]));
-  const B m1 = two * minusMul(pull, a[1], B(twist * k[1]));  // from b_12 and b_21
-  const B by_thin = mulAdd(rest(kShellBend) * factor.by_thin, form, B(whole * factor.mean_by_thin * square));
+  const Moments<B> bent = momentsOf(terms, rest, s);
+  const BendingFactor<B>& factor = bent.factor;
+  const B by_thin =
+      mulAdd(rest(kShellBend) * factor.by_thin, bent.form, B(bent.whole * factor.mean_by_thin * bent.square));
   // half the derivative with respect to c.c
-  const B widen = -mulAdd(B(by_thin * s.thin), B(s.inverse * s.inverse), B(whole * gauss));
-  B q[3], p[3], pull0[3], pull1[3];
-  for (int r = 0; r < 3; ++r) {
-    const B h0 = s.rest_h[0][r] + s.move_h[0][r], h1 = s.rest_h[1][r] + s.move_h[1][r];
-    q[r] = mulAdd(m0, h0, B(mulAdd(m1, h1, B(m2 * (s.rest_h[2][r] + s.move_h[2][r])))));
-  }
-  const B along = dot(s.n, q);
-  for (int r = 0; r < 3; ++r) p[r] = mulAdd(B(two * widen), s.c[r], B(s.inverse * minusMul(along, s.n[r], q[r])));
+  const B widen = -mulAdd(B(by_thin * s.thin), B(s.inverse * s.inverse), B(bent.whole * bent.gauss));
+  B p[3], pull0[3], pull1[3];
+  turningOf(s, bent.m, p);
+  for (int r = 0; r < 3; ++r) p[r] = mulAdd(B(two * widen), s.c[r], p[r]);
   cross(s.g[1], p, pull0);
   cross(p, s.g[0], pull1);
-  const B by0 = two * pull * k[2], by1 = -two * pull * k[1], by2 = two * pull * k[0];
+  const B* k = s.change;
+  const B by0 = two * bent.pull * k[2], by1 = -two * bent.pull * k[1], by2 = two * bent.pull * k[0];
   for (int r = 0; r < 3; ++r) {
     pull0[r] = mulAdd(by0, s.g[0][r], B(mulAdd(by1, s.g[1][r], pull0[r])));
     pull1[r] = mulAdd(by2, s.g[1][r], B(mulAdd(by1, s.g[0][r], pull1[r])));
   }
-  const B second = mulAdd(two, m2, m1), third = mulAdd(two, m0, m1), all = m0 + m1 + m2;
-  for (int r = 0; r < 3; ++r) {
-    f[0][r] = minusMul(second, s.n[r], B(mulAdd(four, pull0[r], f[0][r])));
-    f[1][r] = minusMul(third, s.n[r], B(mulAdd(four, pull1[r], f[1][r])));
-    f[2][r] = mulAdd(all, s.n[r], B(f[2][r] + (pull0[r] + pull1[r])));
-    f[3][r] = mulAdd(m0, s.n[r], B(f[3][r] - pull0[r]));
-    f[4][r] = mulAdd(m2, s.n[r], B(f[4][r] - pull1[r]));
-  }
-  return whole * form;
+  addMomentForces(bent.m, s.n, pull0, pull1, f);
+  return bent.energy();
+}
+
+/// The work of constant moments from rest to here; adds its gradient to f.
+template <class B, class Rest>
+[[gnu::always_inline]] inline B momentWork(const B (&m)[3], const Rest& rest, const Patch<B>& x, const Patch<B>& u,
+                                           Patch<B>& f) {
+  const Bent<B> s = bentSurface(rest, x, u);
+  B p[3], pull0[3], pull1[3];
+  turningOf(s, m, p);
+  cross(s.g[1], p, pull0);
+  cross(p, s.g[0], pull1);
+  addMomentForces(m, s.n, pull0, pull1, f);
+  return mulAdd(m[0], s.change[0], B(mulAdd(m[1], s.change[1], B(m[2] * s.change[2]))));
 }
 
 /// The end nodes of a side, and the node opposite it; 0 is node 1.
@@ -353,6 +443,31 @@ template <class B, class Rest>
   }
 }
 
+/// Half of what `membrane` returns and what `bending` returns. Both have x, u and f as arguments and add a gradient to
+/// f.
+/// @param u  with ghosts as placeGhosts leaves them
+template <bool ghosts, class B, class Rest, class Membrane, class Bending>
+[[gnu::always_inline]] inline B membraneAndBending(const Rest& rest, const Membrane& membrane_part,
+                                                   const Bending& bending_part, Patch<B>& u, Patch<B>& f) {
+  Patch<B> x;
+  for (int a = 0; a < 5; ++a)
+    for (int r = 0; r < 3; ++r) x[a][r] = rest(kShellPatch + 3 * a + r), f[a][r] = constant<B>(0);
+  const B membrane = membrane_part(x, u, f);
+  if constexpr (!ghosts) {
+    return mulAdd(constant<B>(0.5), membrane, bending_part(x, u, f));
+  } else {
+    B kept[3][3];
+    for (int side = 0; side < 3; ++side)
+      for (int r = 0; r < 3; ++r) kept[side][r] = f[side + 2][r], f[side + 2][r] = constant<B>(0);
+    clampGhosts(rest, u);
+    const B bending = bending_part(x, u, f);
+    returnClamped(rest, f);
+    for (int side = 0; side < 3; ++side)
+      for (int r = 0; r < 3; ++r) f[side + 2][r] = f[side + 2][r] + kept[side][r];
+    return mulAdd(constant<B>(0.5), membrane, bending);
+  }
+}
+
 /// Energy of a triangle. Its gradient with respect to nodes 2 to 6 is written to f; that of node 1 is minus their sum.
 /// @tparam rows        of the triangle
 /// @param contraction  of its muscle, see shorten(); unused without
@@ -360,23 +475,56 @@ template <class B, class Rest>
 template <Law law, int Steps, int rows, class B, class Rest>
 [[gnu::always_inline]] inline B shellEnergy(const WallTerms<B>& terms, const Rest& rest, const B& contraction,
                                             Patch<B>& u, Patch<B>& f) {
-  Patch<B> x;
-  for (int a = 0; a < 5; ++a)
-    for (int r = 0; r < 3; ++r) x[a][r] = rest(kShellPatch + 3 * a + r), f[a][r] = constant<B>(0);
-  const B membrane = membraneEnergy<law, Steps, rows>(terms, rest, contraction, x, u, f);
-  if constexpr (rows != kShellGhostRows) {
-    return mulAdd(constant<B>(0.5), membrane, bendingEnergy(terms, rest, x, u, f));
-  } else {
-    B kept[3][3];
-    for (int side = 0; side < 3; ++side)
-      for (int r = 0; r < 3; ++r) kept[side][r] = f[side + 2][r], f[side + 2][r] = constant<B>(0);
-    clampGhosts(rest, u);
-    const B bending = bendingEnergy(terms, rest, x, u, f);
-    returnClamped(rest, f);
-    for (int side = 0; side < 3; ++side)
-      for (int r = 0; r < 3; ++r) f[side + 2][r] = f[side + 2][r] + kept[side][r];
-    return mulAdd(constant<B>(0.5), membrane, bending);
-  }
+  const auto membrane = [&](const Patch<B>& x, const Patch<B>& at, Patch<B>& to) __attribute__((always_inline)) {
+    return membraneEnergy<law, Steps, rows>(terms, rest, contraction, x, at, to);
+  };
+  const auto bending = [&](const Patch<B>& x, const Patch<B>& at, Patch<B>& to) __attribute__((always_inline)) {
+    return bendingEnergy(terms, rest, x, at, to);
+  };
+  return membraneAndBending<rows == kShellGhostRows>(rest, membrane, bending, u, f);
+}
+
+/// The energy of a triangle; `out` takes its stress and its moments, kStressRows numbers in order.
+template <Law law, int Steps, int rows, class B, class Rest>
+[[gnu::always_inline]] inline B shellStress(const WallTerms<B>& terms, const Rest& rest, const B& contraction,
+                                            Patch<B>& u, B (&out)[kStressRows]) {
+  const auto membrane = [&](const Patch<B>& x, const Patch<B>& at, Patch<B>& to) __attribute__((always_inline)) {
+    const auto side = [&](int k, const B(&e)[3], const B(&d)[3], const B(&ue)[3], const B(&ud)[3], B(&fe)[3], B(&fd)[3])
+        __attribute__((always_inline)) {
+      B a[3];
+      const B twice = sideStress<law, Steps, rows>(terms, rest, contraction, k, e, d, ue, ud, a);
+      for (int c = 0; c < 3; ++c) out[3 * k + c] = a[c];
+      for (int r = 0; r < 3; ++r) fe[r] = fd[r] = constant<B>(0);
+      return twice;
+    };
+    return overSides(side, x, at, to);
+  };
+  const auto bending = [&](const Patch<B>& x, const Patch<B>& at, Patch<B>&) __attribute__((always_inline)) {
+    const Moments<B> bent = momentsOf(terms, rest, bentSurface(rest, x, at));
+    for (int c = 0; c < 3; ++c) out[9 + c] = bent.m[c];
+    return bent.energy();
+  };
+  Patch<B> unused;
+  return membraneAndBending<rows == kShellGhostRows>(rest, membrane, bending, u, unused);
+}
+
+/// The work of a stress that shellStress() has given, from rest to here; its gradient is written to f.
+/// @param stress  a number of it, by its row
+template <bool ghosts, class B, class Rest, class Stress>
+[[gnu::always_inline]] inline B shellStressWork(const Rest& rest, const Stress& stress, Patch<B>& u, Patch<B>& f) {
+  const auto membrane = [&](const Patch<B>& x, const Patch<B>& at, Patch<B>& to) __attribute__((always_inline)) {
+    const auto side = [&](int k, const B(&e)[3], const B(&d)[3], const B(&ue)[3], const B(&ud)[3], B(&fe)[3], B(&fd)[3])
+        __attribute__((always_inline)) {
+      const B a[3] = {stress(3 * k), stress(3 * k + 1), stress(3 * k + 2)};
+      return stressWork(a, e, d, ue, ud, fe, fd);
+    };
+    return overSides(side, x, at, to);
+  };
+  const auto bending = [&](const Patch<B>& x, const Patch<B>& at, Patch<B>& to) __attribute__((always_inline)) {
+    const B m[3] = {stress(9), stress(10), stress(11)};
+    return momentWork(m, rest, x, at, to);
+  };
+  return membraneAndBending<ghosts>(rest, membrane, bending, u, f);
 }
 
 /// A third of the area vector of a triangle (a sixth of the cross product), the share of each node; returns the volume

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -121,6 +122,7 @@ ShellTissue::ShellTissue(const TissueScene& tissue, const Organ& organ, const st
                          const std::optional<MotionScene>& motion)
     : muscle_(motion && gradeOf(*motion) * motion->wave_amplitude > 0 ? std::make_optional<WallMuscle>(*motion, organ)
                                                                       : std::nullopt),
+      relaxing_share_(tissue.relaxation ? relaxingShare(*tissue.relaxation) : 0),
       elements_(std::make_shared<const ShellElements>(shellMesh(tissue, organ, fixed, muscle_), centreOf(organ))) {}
 
 std::vector<double> ShellTissue::displacement(const State& state) const {
@@ -152,7 +154,9 @@ double ShellTissue::energy(const State& state) const {
   double energy = 0;
   for (int piece = 0; piece < elements_->pieceCount(); ++piece)
     energy += elements_->evaluate(piece, displacement.data(), gradient.data());
-  return energy;
+  // of what relaxes, that which has not been dissipated yet
+  const RelaxationMemory& past = state.relaxation;
+  return std::accumulate(past.held.begin(), past.held.end(), energy - relaxing_share_ * past.energy);
 }
 
 void ShellTissue::addForces(const State& state, double* fx, double* fy, double* fz) const {

@@ -43,6 +43,7 @@ class ShellTissue : public TissueModel {
  private:
   std::vector<double> displacement(const State& state) const;
   std::optional<WallMuscle> muscle_;  // before the elements, which have its directions
+  double relaxing_share_;             // of the stress and energy of the law, see RelaxationScene
   std::shared_ptr<const ShellElements> elements_;
 };
 

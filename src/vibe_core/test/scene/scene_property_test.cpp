@@ -28,6 +28,7 @@ struct Randomise {
   void operator()(double& (*at)(Scene&)) const { at(scene) = value(); }
   void operator()(Eigen::Vector3d& (*at)(Scene&)) const { at(scene) = {value(), value(), value()}; }
   void operator()(std::array<double, 3>& (*at)(Scene&)) const { at(scene) = {value(), value(), value()}; }
+  void operator()(std::vector<double>& (*at)(Scene&)) const { at(scene) = {value(), value()}; }
   void operator()(std::optional<Eigen::Vector3d>& (*at)(Scene&)) const {
     at(scene) = Eigen::Vector3d(value(), value(), value());
   }
@@ -47,6 +48,11 @@ struct Randomise {
 
 /// Rows are drawn one by one; some must fit together.
 void repair(Scene& scene) {
+  if (auto& relaxation = scene.tissue.relaxation) {
+    for (double& ratio : relaxation->ratios) ratio *= 0.4;
+    for (double& time : relaxation->times) time += 5 * scene.step_period;
+    if (scene.tissue.model != "shell") relaxation.reset();
+  }
   if (scene.suture) {
     SutureScene& s = *scene.suture;
     if (s.min_bites > s.max_bites) std::swap(s.min_bites, s.max_bites);

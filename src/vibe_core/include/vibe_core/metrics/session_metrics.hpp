@@ -25,6 +25,7 @@ struct SessionMetrics {
   double max_pressure = 0;       ///< [Pa]
   double max_strain = 0;         ///< in-plane, over particles and time, sampled ten times a second
   EnergyAccount energy;          ///< of the last state
+  double relaxation_loss = 0;    ///< of the last state, see RelaxationMemory; 0 where the wall is elastic [J]
   double energy_balance = 0;     ///< see energyBalance(), sampled ten times a second; drift since the start [J]
   bool balance_closes = true;    ///< the solver has an account of all that it loses; shape matching has not
   EventCounts events;            ///< since the start, by kind

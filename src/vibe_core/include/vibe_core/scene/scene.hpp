@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/thermal/argon_beam.hpp"
@@ -44,6 +45,19 @@ struct FibreScene {
   double angle = 0;       ///< 0: both along the organ, pi/2: both around it [rad]
 };
 
+/// Stress that relaxes at constant strain: quasi-linear viscoelasticity with a Prony series. The law of the wall is
+/// that of fast strains; of its stress the share ratios[k] fades with the time times[k].
+struct RelaxationScene {
+  std::vector<double> ratios{0.252, 0.246};  ///< each above 0, together below 1 (ratio)
+  std::vector<double> times{6.1, 43};        ///< one per ratio [s]
+};
+
+/// The sum of the ratios: the share of the stress that is gone in the end (ratio).
+double relaxingShare(const RelaxationScene& relaxation);
+/// What is wrong with the numbers together, for steps of a length [s]: a part of a sentence with the remedy. Empty:
+/// nothing.
+std::string relaxationFault(const RelaxationScene& relaxation, double step_period);
+
 /// The wall.
 struct TissueScene {
   std::string model = "shell";   ///< a word of choicesOf("tissue.model")
@@ -55,6 +69,7 @@ struct TissueScene {
   std::array<double, kRegionCount> thickness{1.97e-3, 1.97e-3, 2.33e-3, 2.70e-3, 2.70e-3};  ///< per Region [m]
   std::array<double, kRegionCount> stiffness{1, 1, 1, 1, 1};  ///< factor per Region, of model shell
   std::optional<FibreScene> fibres;                           ///< of model shell
+  std::optional<RelaxationScene> relaxation;                  ///< of model shell; empty: the wall is elastic
   double mass_damping = 30;                                   ///< Rayleigh damping, mass part [1/s]
   double stiffness_damping = 15e-6;  ///< Rayleigh damping, stiffness part; damps short waves [s]
   int iterations = 2;                ///< quasi-Newton iterations per step, of model shell

@@ -13,10 +13,10 @@ namespace vibe {
 
 /// Where the value of a key is stored in a Scene whose optional parts are present. The type of the reference is the
 /// type of the key, so that the table cannot disagree with the struct.
-using SceneAccess =
-    std::variant<std::string& (*)(Scene&), bool& (*)(Scene&), int& (*)(Scene&), std::uint64_t& (*)(Scene&),
-                 double& (*)(Scene&), Eigen::Vector3d& (*)(Scene&), std::array<double, 3>& (*)(Scene&),
-                 std::optional<Eigen::Vector3d>& (*)(Scene&), GeometryScene::Kind& (*)(Scene&)>;
+using SceneAccess = std::variant<std::string& (*)(Scene&), bool& (*)(Scene&), int& (*)(Scene&),
+                                 std::uint64_t& (*)(Scene&), double& (*)(Scene&), Eigen::Vector3d& (*)(Scene&),
+                                 std::array<double, 3>& (*)(Scene&), std::vector<double>& (*)(Scene&),
+                                 std::optional<Eigen::Vector3d>& (*)(Scene&), GeometryScene::Kind& (*)(Scene&)>;
 
 /// One key of a scene file. This table drives parsing, range checks, error texts, writing and the documentation.
 struct SchemaRow {

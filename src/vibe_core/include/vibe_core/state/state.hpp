@@ -11,6 +11,7 @@
 #include "vibe_core/state/hold_memory.hpp"
 #include "vibe_core/state/impedance_memory.hpp"
 #include "vibe_core/state/procedure_state.hpp"
+#include "vibe_core/state/relaxation_memory.hpp"
 #include "vibe_core/state/stepper_memory.hpp"
 #include "vibe_core/state/tool_displacement.hpp"
 
@@ -127,10 +128,11 @@ struct State {
   double grip_force = 0;  ///< magnitude of the force on the grip [N]
   int contact_count = 0;  ///< points where the tool touches the wall; shape matching: particles that it touches
 
-  PullSpring pull;     ///< pulls the tissue from outside
-  MotionState motion;  ///< of the organ by itself
-  HoldMemory hold;     ///< of a hand that holds still; it counts in the hash as `motion` does
-  LumenState lumen;    ///< where the tip is; it counts in the hash as `motion` does
+  PullSpring pull;              ///< pulls the tissue from outside
+  MotionState motion;           ///< of the organ by itself
+  HoldMemory hold;              ///< of a hand that holds still; it counts in the hash as `motion` does
+  LumenState lumen;             ///< where the tip is; it counts in the hash as `motion` does
+  RelaxationMemory relaxation;  ///< of the wall; it counts in the hash as `motion` does
 
   ProcedureState procedure;  ///< marks, needle, sutures and bleeding
 

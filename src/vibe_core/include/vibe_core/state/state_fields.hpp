@@ -18,7 +18,7 @@ VIBE_FIELDS(StepInput, joints, buttons, pull_particle, pull_target, breath);
 
 /// Version of the fields of State and of the layout of snapshots, which carry it. Raise it with every change of the
 /// lists below.
-constexpr std::uint32_t kStateVersion = 11;
+constexpr std::uint32_t kStateVersion = 12;
 
 VIBE_FIELDS(Bite, particle, weight, time, depth, thickness, region, wall, along);
 VIBE_FIELDS(TissueGroup, particle, offset, middle, weight, drawn);
@@ -33,6 +33,7 @@ VIBE_FIELDS(MotionState, held, held_time, muscle_work);
 VIBE_FIELDS(KeptContact, node, weight, shape, nearest, clearance, force, place, normal, tool_point);
 VIBE_FIELDS(HoldMemory, steps, contacts);
 VIBE_FIELDS(LumenState, left);
+VIBE_FIELDS(RelaxationMemory, stress, overstress, held, energy, loss);
 VIBE_FIELDS(GripPoint, particle, local, weight);
 VIBE_FIELDS(EnergyAccount, tool_work, hand_work, scope_loss, gas_work, thread_work, pull_work, friction_loss,
             damping_loss, viscous_loss, contact_loss, contact_energy, numerical_loss, correction_work, residual_work);
@@ -47,6 +48,6 @@ VIBE_FIELDS(ImpedanceMemory, last_step, next_renewal, current, next, last_nodes,
 VIBE_FIELDS(State, step, time, seed, random, x, y, z, vx, vy, vz, ax, ay, az, qw, qx, qy, qz, wx, wy, wz, gas_amount,
             pressure, volume, pressure_reached, joints, tool_displacement, hand_effort, stall, blocked_steps, grip,
             helix_pressed, in_contact, untouched_time, tool_force, tool_torque, tool_load, grip_force, contact_count,
-            pull, motion, hold, lumen, procedure, energy, solver, impedance);
+            pull, motion, hold, lumen, relaxation, procedure, energy, solver, impedance);
 
 }  // namespace vibe

@@ -88,6 +88,17 @@ class ShellElements : public ElasticElements {
   /// @param contraction  per node, afterwards (ratio)
   double muscleWork(const float* displacement4, const float* contraction) const;
 
+  /// Numbers of stress(): per triangle the stress at the three sides, as components along material vectors times the
+  /// volume [N/m], and the moments [N], in the order of the kernel's batches. Rigid motions do not change them.
+  std::size_t stressCount() const;
+  /// Stress and moments as the law gives them, with fibres. @param out  (stressCount())
+  /// @returns the energy [J]
+  double stress(const float* displacement4, float* out) const;
+  /// The work that stresses and moments which stay as they are do from rest to the displacements [J]; adds its gradient
+  /// [N], minus which is the force on the wall. With those of the law here it is the elastic one, but for how the
+  /// bending stiffness depends on the stretch.
+  double stressWork(const float* stress, const float* displacement4, float* gradient4) const;
+
   /// Like evaluate, and also adds the piece's share of the volume [m^3] enclosed by the surface, and a third of each
   /// triangle's area vector to its nodes [m^2]. The latter is the force of a pressure of 1 Pa and, for a closed
   /// surface, the gradient of the volume. Virtual so that a solver can be tested on other walls.
@@ -144,6 +155,7 @@ class ShellElements : public ElasticElements {
   ShellPart makePart(int first_piece, int last_piece, std::vector<int>& place) const;
   void setRun(const Run& run, ShellSweep& sweep) const;
   double evaluateRun(const Run& run, int first_node_batch, ShellSweep& sweep) const;
+  double sweepRuns(double (*function)(ShellSweep&), ShellSweep sweep) const;
   double evaluatePiece(int piece, ShellSweep sweep, int first_node_batch, double* volume) const;
 
   double areaOf(std::size_t triangle) const;
