@@ -126,20 +126,21 @@ TEST(SetInHand, ABiteThatMissesSpoilsThePatternOnlyWhereEarlierOnesHaveMissed) {
   EXPECT_FALSE(SetInHand{}.isSpoiledBy(beside, *map)) << "a bite of its own";
 }
 
-// Bites 4 and 5 are the corners of a U of seven.
-TEST(SetInHand, AGivenUpBiteIsTakenBesideItsTargetOnlyWhereThePatternNeedsIt) {
+// Bites 4 and 5 are the corners of a U of seven, bite 1 is on a leg.
+TEST(SetInHand, AGivenUpBiteIsTakenBesideItsTargetWhereThePatternAllowsIt) {
   Onlooker at;
   SutureSetGoal goal;
   goal.centre = {0.5, 0.3};
   goal.length = 13e-3;
   const std::shared_ptr<const AnatomicalMap> map = at.me.seen_map;
   SetInHand set{Technique::U, targetsOf(goal, at.me), 4};
-  const std::optional<WallPoint> place = set.placeInstead(*map);
-  ASSERT_TRUE(place.has_value());
-  EXPECT_NEAR((map->position(*place) - map->position(set.points[4])).norm(), 10e-3, 2e-3);
-  EXPECT_FALSE(set.isSpoiledBy(*place, *map));
-  set.next = 1;
-  EXPECT_FALSE(set.placeInstead(*map).has_value()) << "one bite less on a leg is still a U";
+  for (const std::size_t next : {4U, 1U}) {
+    set.next = next;
+    const std::optional<WallPoint> place = set.placeInstead(*map);
+    ASSERT_TRUE(place.has_value()) << next;
+    EXPECT_NEAR((map->position(*place) - map->position(set.points[next])).norm(), 10e-3, 2e-3);
+    EXPECT_FALSE(set.isSpoiledBy(*place, *map));
+  }
   set.next = 4;
   set.pattern = Technique::C;
   EXPECT_FALSE(set.placeInstead(*map).has_value()) << "no place makes it a C";
