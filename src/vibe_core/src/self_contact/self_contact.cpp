@@ -14,10 +14,6 @@ namespace vibe {
 
 namespace {
 
-// Of squeezed bars, at least; design choice: that of the default wall, which bears cinched threads. In an organ of 34
-// kPa folds between cinched sets were stopped in every step for minutes, with 74 J in 870 s of a sleeve.
-constexpr double kCoreModulus = 110e3;  // [Pa]
-
 void check(const SurfaceMesh& rest, const std::vector<double>& thickness, double young_modulus) {
   if (rest.vertices.empty() || thickness.size() != rest.vertices.size())
     throw Error("A wall that can meet itself has " + std::to_string(rest.vertices.size()) + " vertices but " +
@@ -55,8 +51,7 @@ SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double
     : policy_(stepPolicy()),
       rest_(std::move(rest)),
       thickness_(std::move(thickness)),
-      stiffness_(policy_.wall_softness * young_modulus),
-      core_stiffness_(policy_.wall_softness * std::max(young_modulus, kCoreModulus)) {
+      stiffness_(policy_.wall_softness * young_modulus) {
   check(rest_, thickness_, young_modulus);
   area_ = vertexAreas(rest_);
   min_thickness_ = *std::min_element(thickness_.begin(), thickness_.end());
@@ -165,8 +160,8 @@ void SelfContact::addClosePair(const ClosePoints& close) {
   pair.thickness = std::min(policy_.wall_core * thickness, apart_at_rest * at_rest.norm());
   // The energy stays logarithmic as far as the distance at which paths end.
   pair.straight_below = policy_.path_floor / policy_.wall_core;
-  // Squeezed flat, mucosa is as stiff as the wall: the softness is taken out of core_stiffness_.
-  pair.stiffness = 0.5 * close.share * area / policy_.wall_softness * core_stiffness_ * pair.thickness;
+  // Squeezed flat, mucosa is as stiff as the wall: the softness is taken out of stiffness_.
+  pair.stiffness = 0.5 * close.share * area / policy_.wall_softness * stiffness_ * pair.thickness;
   finish(pair);
 }
 

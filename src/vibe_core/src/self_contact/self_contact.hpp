@@ -41,10 +41,9 @@ struct ClosePoints;
 ///
 /// Squeezed flat. A vertex and the nearest triangle that faces it see neither edges that cross nor a second triangle.
 /// Where any spots of two walls (SelfContactClose) are nearer than (1 + wall_onset) wall_core of the wall, a bar of
-/// wall_core of its thickness acts in addition, with the modulus of the wall, and no less than 110 kPa: a thread draws
-/// as hard in a soft wall. It resists as far as the minimum distance of paths, so that walls come to rest before they
-/// are stopped there. Bars between edges have the square of the sine of the angle between them as a factor: parallel
-/// edges are seen from their vertices.
+/// wall_core of its thickness acts in addition, with the modulus of the wall. It resists as far as the minimum distance
+/// of paths, so that walls come to rest before they are stopped there. Bars between edges have the square of the sine
+/// of the angle between them as a factor: parallel edges are seen from their vertices.
 ///
 /// Friction of a pair with the normal force N at the start of the step, while it slides by the way w:
 ///   D = mu N psi(w),  psi = w^2 / w0 (1 - w / (3 w0)) for w < w0, w - w0 / 3 beyond,  w0 = wall_sliding_speed * lead
@@ -147,8 +146,7 @@ class SelfContact : public EnergyTerm {
   const StepPolicy& policy_;
   SurfaceMesh rest_;
   std::vector<double> thickness_;
-  double stiffness_;       // E' [Pa]
-  double core_stiffness_;  // wall_softness times the modulus of squeezed bars [Pa]
+  double stiffness_;  // E' [Pa]
   double min_thickness_ = 0, max_thickness_ = 0;
   double close_distance_ = 0;  // from a vertex to what it faces, where they may be close [m]
   std::vector<double> area_;   // per vertex at rest [m^2]

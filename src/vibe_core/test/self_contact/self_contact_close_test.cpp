@@ -45,24 +45,6 @@ TEST(SelfContactClose, EdgesThatCrossPushEachOtherApart) {
   EXPECT_GT(world.force(5).z(), 0.2 * up.z());
 }
 
-/// With which two edges that cross, squeezed flat, press on each other [N].
-double forceBetweenEdges(double modulus) {
-  ContactWorld world(roofs(20e-3), kWallThickness, modulus);
-  for (std::size_t i = 4; i < 8; ++i)
-    world.set(i, world.rest.vertices[i] - Eigen::Vector3d(0, 0, 20e-3 - 0.2 * kWallThickness));
-  world.detect(0.5e-3);
-  world.evaluate();
-  return world.totalForce(4, 8).z();
-}
-
-// A thread draws as hard in a soft wall.
-TEST(SelfContactClose, SqueezedFlatASoftWallBearsAsMuchAsTheDefaultOne) {
-  const double usual = forceBetweenEdges(110e3);
-  ASSERT_GT(usual, 0.1);
-  EXPECT_EQ(forceBetweenEdges(30e3), usual);
-  EXPECT_NEAR(forceBetweenEdges(220e3), 2 * usual, 1e-5 * usual) << "a stiffer one bears more";
-}
-
 TEST(SelfContactClose, FindsEachPlaceOnce) {
   const SurfaceMesh rest = roofs(0.5e-3);
   const VertexTriangles rings(rest.triangles, rest.vertices.size());

@@ -55,9 +55,9 @@ inline SurfaceMesh sphere(double radius, int cuts) {
 }
 
 struct ContactWorld {
-  explicit ContactWorld(SurfaceMesh rest_mesh, double thickness = kWallThickness, double modulus = kModulus)
+  explicit ContactWorld(SurfaceMesh rest_mesh, double thickness = kWallThickness)
       : rest(std::move(rest_mesh)),
-        contact(rest, std::vector<double>(rest.vertices.size(), thickness), modulus),
+        contact(rest, std::vector<double>(rest.vertices.size(), thickness), kModulus),
         at(4 * rest.vertices.size()),
         gradient(4 * rest.vertices.size()) {
     for (std::size_t i = 0; i < rest.vertices.size(); ++i) set(i, rest.vertices[i]);
