@@ -30,6 +30,13 @@ SCENES = {  # variants of the default scene: a text that follows its line, or (l
     "population_73": (None, PATIENT.format("j", 0.5637, 1.0676, -5.686, 126.22, 1.31, 1.31, 1.55, 1.796, 1.796)),
     "population_25": (None, PATIENT.format("steer_horn", 0.6055, 1.045, 3.606, 99.26, 1.75, 1.75, 2.07, 2.399, 2.399)),
     "population_12": (None, PATIENT.format("steer_horn", 0.967, 1.0087, -4.878, 427.33, 1.29, 1.29, 1.526, 1.769, 1.769)),
+    # six that the trainee's rules were not made on, of other seeds: seed and number
+    "population_2_2": (None, PATIENT.format("j", 1.0114, 1.0248, 1.820, 100.47, 1.826, 1.826, 2.160, 2.503, 2.503)),
+    "population_3_3": (None, PATIENT.format("steer_horn", 0.6267, 1.0618, 1.162, 80.78, 2.947, 2.947, 3.486, 4.040, 4.040)),
+    "population_3_4": (None, PATIENT.format("steer_horn", 0.7311, 0.9930, 4.815, 92.51, 1.473, 1.473, 1.742, 2.019, 2.019)),
+    "population_5_3": (None, PATIENT.format("steer_horn", 0.6410, 0.9121, -8.625, 124.27, 2.123, 2.123, 2.511, 2.910, 2.910)),
+    "population_7_0": (None, PATIENT.format("steer_horn", 0.9480, 0.9602, 9.550, 99.23, 2.300, 2.300, 2.720, 3.152, 3.152)),
+    "population_7_3": (None, PATIENT.format("j", 0.6484, 0.9762, 7.288, 165.74, 1.645, 1.645, 1.946, 2.255, 2.255)),
 }
 ORGANS = ("stomach", "stomach_small", "stomach_large", "stomach_j", "stomach_steer_horn", "stomach_8mmhg",
           "stomach_12mmhg")

@@ -92,7 +92,8 @@ def outcomes_area(store):
 def organ_name(row):
     name = row["part"]
     if name.startswith(POPULATION):
-        return f"population, number {name[len(POPULATION):]}, {whole(row['particles'])} particles"
+        seed, number = ["1", *name.split("_")[1:]][-2:]
+        return f"population of seed {seed}, number {number}, {whole(row['particles'])} particles"
     return ORGANS.get(name, f"`{name}`")
 
 
