@@ -34,7 +34,7 @@ class CrtkTest(unittest.TestCase):
         assert wait_until(lambda: cls.joints.messages and abs(cls.insertion() - BEFORE_THE_WALL[0]) < 1e-6, 20)
         cls.arm = Program("vibe_hardware", "crtk_arm", sway=SWAY, start=0)
         cls.node = Program("vibe_hardware", "crtk_teleop",
-                           mapping="package://vibe_hardware/config/arms/touch_alone.yaml")
+                           mapping="package://vibe_hardware/config/arms/touch.yaml")
 
     @classmethod
     def tearDownClass(cls):
@@ -64,6 +64,10 @@ class CrtkTest(unittest.TestCase):
 
     def test_2_with_the_clutch_the_scope_stays_and_no_force_comes(self):
         self.assertTrue(wait_until(lambda: self.clutch.get_num_connections() > 0, 20))
+        self.press(2)  # a quick tap of a pedal of the dVRK, which comes up without a message
+        rospy.sleep(0.5)
+        place = self.insertion()
+        self.assertTrue(wait_until(lambda: abs(self.insertion() - place) > 1e-3, 20))
         self.press(True)
         self.assertTrue(wait_until(lambda: "has let go" in self.node.output(), 20))
         rospy.sleep(0.5)  # until the simulator is where it was sent
@@ -119,7 +123,7 @@ class CrtkTest(unittest.TestCase):
         self.assertTrue(wait_until(lambda: "drives the scope" in self.node.output(), 20), self.node.output())
         place = self.insertion()
         self.assertTrue(wait_until(lambda: abs(self.insertion() - place) > 2e-3, 20))
-        self.assertTrue(efforts.waits_for(lambda m: m.name == ["reach", "roll", "lift"]))
+        self.assertTrue(efforts.waits_for(lambda m: m.name == ["reach", "roll", "side", "lift"]))
 
 
 if __name__ == "__main__":
