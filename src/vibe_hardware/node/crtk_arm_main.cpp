@@ -29,9 +29,10 @@ constexpr double kRate = 1000;        // of measurements [Hz]
 constexpr int kFineSteps = 5;         // of the mechanics between two measurements
 constexpr double kLargestForce = 10;  // what its motors make [N]
 constexpr std::uint32_t kQueue = 10;
-// Joints, of an arm that measures only those: away from the person, up, about the way away.
+// Joints, of an arm that measures only those: away from the person, up, to the left, about the way away.
 const char* const kReach = "reach";
 const char* const kLift = "lift";
+const char* const kSide = "side";
 const char* const kRoll = "roll";
 
 struct Parameters {
@@ -113,6 +114,7 @@ class Arm {
     for (std::size_t i = 0; i < m.name.size() && i < m.effort.size(); ++i) {
       if (m.name[i] == kReach) wrench.force.z = -m.effort[i];
       if (m.name[i] == kLift) wrench.force.y = m.effort[i];
+      if (m.name[i] == kSide) wrench.force.x = -m.effort[i];
       if (m.name[i] == kRoll) wrench.torque.z = -m.effort[i];
     }
     take(wrench, Eigen::Quaterniond::Identity());
@@ -166,9 +168,9 @@ class Arm {
   void publishJoints(const std_msgs::Header& header) {
     sensor_msgs::JointState joints;
     joints.header = header;
-    joints.name = {kReach, kLift, kRoll};
-    joints.position = {-state_.position.z(), state_.position.y(), -state_.turn.z()};
-    joints.velocity = {-state_.velocity.z(), state_.velocity.y(), -state_.spin.z()};
+    joints.name = {kReach, kLift, kSide, kRoll};
+    joints.position = {-state_.position.z(), state_.position.y(), -state_.position.x(), -state_.turn.z()};
+    joints.velocity = {-state_.velocity.z(), state_.velocity.y(), -state_.velocity.x(), -state_.spin.z()};
     joints_.publish(joints);
   }
 

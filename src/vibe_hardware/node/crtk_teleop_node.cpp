@@ -6,6 +6,7 @@
 
 #include <geometry_msgs/WrenchStamped.h>
 #include <std_msgs/Bool.h>
+#include <boost/algorithm/string/join.hpp>
 
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/program/error.hpp"
@@ -25,6 +26,8 @@ constexpr double kPatience = 10;            // between warnings of a kind [s]
 constexpr double kLookInterval = 10;        // between looks for an arm that is silent [s]
 constexpr double kFirstLook = 2;            // after it began to be silent [s]
 constexpr double kMissed = 0.2;             // share of a force that is missed when it is held back; design choice
+constexpr int kTapped = 2;    // of a pedal of the dVRK: it went down and came up soon, which no other message says
+constexpr double kTap = 0.1;  // for which such a button counts as pressed [s]
 constexpr std::uint32_t kArmQueue = 10;
 
 /// Of the ports of the scope's joints [s]
@@ -88,6 +91,10 @@ CrtkTeleopNode::CrtkTeleopNode(ros::NodeHandle handle, const CrtkParameters& par
   updater_.setHardwareID("none");
   updater_.add("crtk_teleop", this, &CrtkTeleopNode::fillDiagnostics);
   ROS_INFO_STREAM("Mapping '" << mapping_.name << "'; waiting for " << measured() << ".");
+  const std::vector<std::string> missing = unreachable(mapping_);
+  if (!missing.empty())
+    ROS_INFO_STREAM("Nothing in this mapping reaches " << boost::algorithm::join(missing, ", ")
+                                                       << "; another hand or node has to.");
   timer_ = handle.createWallTimer(ros::WallDuration(kForcePeriod), &CrtkTeleopNode::tick, this);
 }
 
@@ -95,7 +102,7 @@ void CrtkTeleopNode::release() {
   timer_.stop();
   const ros::Time stamp = ros::Time::now();
   publishForce(TeleopOutput(), stamp);
-  button_publisher_.publish(makeButtons({}, stamp));
+  if (button_publisher_) button_publisher_.publish(makeButtons({}, stamp));
 }
 
 std::string CrtkTeleopNode::nameOf(const std::string& topic) const {
@@ -103,14 +110,14 @@ std::string CrtkTeleopNode::nameOf(const std::string& topic) const {
 }
 
 std::string CrtkTeleopNode::measured() const {
-  return nameOf(mapping_.arm_joints.empty() ? "measured_cp" : "measured_js");
+  return nameOf(mapping_.arm_joints.empty() ? mapping_.pose_topic : "measured_js");
 }
 
 void CrtkTeleopNode::advertise(ros::NodeHandle& handle) {
-  scope_ = handle.advertise<sensor_msgs::JointState>("scope/servo_jp", kArmQueue);
-  if (mapping_.gripper || !mapping_.device.topic.empty())
+  if (!mapping_.device_only) scope_ = handle.advertise<sensor_msgs::JointState>("scope/servo_jp", kArmQueue);
+  if (mapping_.device_only || !mapping_.device.topic.empty() || (mapping_.gripper && mapping_.gripper->joint >= 0))
     suturing_device_ = handle.advertise<sensor_msgs::JointState>("suturing_device/servo_jp", kArmQueue);
-  button_publisher_ = handle.advertise<sensor_msgs::Joy>("scope/buttons", kArmQueue);
+  if (pressesButtons(mapping_)) button_publisher_ = handle.advertise<sensor_msgs::Joy>("scope/buttons", kArmQueue);
   if (mapping_.force_scale == 0) return;
   if (!mapping_.arm_joints.empty()) {
     force_ = handle.advertise<sensor_msgs::JointState>(nameOf(mapping_.force_topic), kArmQueue);
@@ -137,19 +144,22 @@ void CrtkTeleopNode::subscribe(ros::NodeHandle& handle) {
       handle.subscribe("haptic/parameters", kArmQueue, &CrtkTeleopNode::onParameters, this, hints)};
   if (mapping_.gripper)
     subscribers_.push_back(
-        handle.subscribe(nameOf("gripper/measured_js"), kArmQueue, &CrtkTeleopNode::onGripper, this, hints));
+        handle.subscribe(nameOf(mapping_.gripper->topic), kArmQueue, &CrtkTeleopNode::onGripper, this, hints));
   if (!mapping_.clutch.topic.empty())
     listenToButton(handle, mapping_.clutch, [this](bool pressed) { input_.clutch = pressed; });
   if (!mapping_.device.topic.empty())
     listenToButton(handle, mapping_.device, [this](bool pressed) { input_.device = pressed; });
   for (std::size_t b = 0; b < mapping_.buttons.size(); ++b)
     if (!mapping_.buttons[b].topic.empty())
-      listenToButton(handle, mapping_.buttons[b], [this, b](bool pressed) { input_.buttons[b] = pressed ? 1 : 0; });
+      listenToButton(
+          handle, mapping_.buttons[b], [this, b](bool pressed) { input_.buttons[b] = pressed ? 1 : 0; },
+          [this, b] { tapped_[b] = ros::WallTime::now().toSec() + kTap; });
 }
 
-void CrtkTeleopNode::listenToButton(ros::NodeHandle& handle, const ArmButton& button,
-                                    std::function<void(bool)> pressed) {
-  const boost::function<void(const sensor_msgs::Joy&)> callback = [button, pressed](const sensor_msgs::Joy& message) {
+void CrtkTeleopNode::listenToButton(ros::NodeHandle& handle, const ArmButton& button, std::function<void(bool)> pressed,
+                                    std::function<void()> tapped) {
+  const boost::function<void(const sensor_msgs::Joy&)> callback = [button, pressed,
+                                                                   tapped](const sensor_msgs::Joy& message) {
     const auto index = static_cast<std::size_t>(button.index);
     if (index >= message.buttons.size()) {
       ROS_WARN_STREAM_THROTTLE(10, "A message on " << button.topic << " has " << message.buttons.size()
@@ -157,7 +167,10 @@ void CrtkTeleopNode::listenToButton(ros::NodeHandle& handle, const ArmButton& bu
                                                    << button.index << "; correct the mapping.");
       return;
     }
-    pressed(message.buttons[index] != 0);
+    if (message.buttons[index] == kTapped)
+      tapped();
+    else
+      pressed(message.buttons[index] != 0);
   };
   subscribers_.push_back(handle.subscribe<sensor_msgs::Joy>(nameOf(button.topic), kArmQueue, callback));
 }
@@ -268,7 +281,7 @@ void CrtkTeleopNode::lookForTheArm(double now) {
 
 void CrtkTeleopNode::onGripper(const sensor_msgs::JointState& message) {
   if (message.header.stamp.isZero() || message.position.empty() || !std::isfinite(message.position[0]))
-    return refuse(nameOf("gripper/measured_js"), "its stamp is 0, or its position is missing or not finite");
+    return refuse(nameOf(mapping_.gripper->topic), "its stamp is 0, or its position is missing or not finite");
   input_.gripper = message.position[0];
 }
 
@@ -311,11 +324,14 @@ void CrtkTeleopNode::tick(const ros::WallTimerEvent&) {
 void CrtkTeleopNode::advance(double now) {
   input_.ready = scope_known_ && suturing_device_known_ && arm_ready_;
   const bool was_engaged = state_.engaged, was_on_device = state_.engaged && state_.on_device;
-  const TeleopOutput output = step(mapping_, limits_, std::max(now, state_.time), input_, state_);
+  TeleopInput input = input_;
+  for (std::size_t b = 0; b < tapped_.size(); ++b)
+    if (now < tapped_[b]) input.buttons[b] = 1;
+  const TeleopOutput output = step(mapping_, limits_, std::max(now, state_.time), input, state_);
   input_.sample.reset();
   withheld_ = std::max(withheld_, output.withheld);
   if (!output.sentence.empty()) warn(output.sentence, output.sentence);
-  if (output.engaged != was_engaged)
+  if (output.engaged != was_engaged && !mapping_.device_only)
     ROS_INFO_STREAM((output.engaged ? "The arm drives the scope." : "The arm has let go of the scope."));
   if (output.on_device != was_on_device)
     ROS_INFO_STREAM((output.on_device ? "The arm moves the suturing device, and the scope stays."
@@ -354,10 +370,10 @@ void CrtkTeleopNode::publishCommands(const TeleopOutput& output, double now, con
     last_joints_ = now;
     DriveState drive;
     drive.joints = output.joints;
-    scope_.publish(scopeCommand(drive, stamp));
-    if (mapping_.gripper || output.on_device) suturing_device_.publish(suturingDeviceCommand(drive, stamp));
+    if (output.moves_scope) scope_.publish(scopeCommand(drive, stamp));
+    if (output.moves_device) suturing_device_.publish(suturingDeviceCommand(drive, stamp));
   }
-  if (output.buttons == sent_buttons_ && now - last_buttons_ < kArmButtonInterval) return;
+  if (!button_publisher_ || (output.buttons == sent_buttons_ && now - last_buttons_ < kArmButtonInterval)) return;
   button_publisher_.publish(makeButtons(output.buttons, stamp));
   sent_buttons_ = output.buttons;
   last_buttons_ = now;

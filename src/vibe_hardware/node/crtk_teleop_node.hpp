@@ -55,6 +55,7 @@ class CrtkTeleopNode {
   double next_look_ = 0;                             // for an arm that is silent [s]
   double last_buttons_ = -1e9, last_joints_ = -1e9;  // published [s]
   std::array<std::uint8_t, kButtonCount> sent_buttons_{};
+  std::array<double, kButtonCount> tapped_{};  // a tap counts until then [s]
 
   ros::Publisher force_, scope_, suturing_device_, button_publisher_, absolute_, gravity_;
   std::vector<ros::Subscriber> subscribers_;
@@ -63,7 +64,9 @@ class CrtkTeleopNode {
 
   void advertise(ros::NodeHandle& handle);
   void subscribe(ros::NodeHandle& handle);
-  void listenToButton(ros::NodeHandle& handle, const ArmButton& button, std::function<void(bool)> pressed);
+  void listenToButton(
+      ros::NodeHandle& handle, const ArmButton& button, std::function<void(bool)> pressed,
+      std::function<void()> tapped = [] {});
   std::string nameOf(const std::string& topic) const;
   std::string measured() const;  // the topic
 

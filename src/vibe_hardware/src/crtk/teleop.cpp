@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace vibe::hardware {
 namespace {
@@ -22,6 +23,7 @@ constexpr double kGripperCatchUp = 1;            // in which it takes its joint 
 constexpr double kGripperStep = 5e-3;            // of these motions at most [s]
 constexpr double kGripperJump = 0.3;             // of its way at once: no motion of a hand; design choice
 constexpr double kGripperEnd = 0.1;              // of its way is near an end; design choice
+constexpr double kPinch = 0.25, kUnpinch = 0.5;  // of its way: it presses its button, and lets it go; design choice
 
 using Motion = std::array<double, kHandCoordinates>;
 
@@ -30,6 +32,15 @@ bool isJump(const TeleopMapping& mapping, const Motion& motion, double dt) {
     return joint.coordinate >= 0 && std::abs(motion[static_cast<std::size_t>(joint.coordinate)]) >
                                         kJump * joint.port.speed_limit * std::max(dt, 1e-3);
   });
+}
+
+bool wantsDevice(const TeleopMapping& mapping, const TeleopInput& input) {
+  return mapping.device_only || (!mapping.device.topic.empty() && input.device != mapping.device.reversed);
+}
+
+/// From 0, closed, to 1.
+double opening(const ArmGripper& gripper, double angle) {
+  return std::clamp((angle - gripper.closed) / (gripper.open - gripper.closed), 0.0, 1.0);
 }
 
 /// Joints that follow the hand.
@@ -124,7 +135,7 @@ void begin(const TeleopMapping& mapping, const TeleopInput& input, TeleopState& 
   state.gripper.reset();
   state.gripper_moved = false;
   for (std::size_t j = 0; j < state.joints.size(); ++j) resumeTrail(state.joints[j], state.trail.joints[j]);
-  engage(mapping, input.device, state);
+  engage(mapping, wantsDevice(mapping, input), state);
 }
 
 /// Where somebody else has moved the tool, the arm goes on from there.
@@ -184,7 +195,7 @@ void moveJoints(const TeleopMapping& mapping, const ToolLimits& limits, TeleopSt
 /// as long as the tool obeys.
 void moveGripper(const ArmGripper& gripper, const TeleopInput& input, double dt, TeleopState& state) {
   const double way = gripper.at_open - gripper.at_closed;
-  const double share = std::clamp((*input.gripper - gripper.closed) / (gripper.open - gripper.closed), 0.0, 1.0);
+  const double share = opening(gripper, *input.gripper);
   const double wanted = gripper.at_closed + share * way;
   if (!state.gripper || std::abs(wanted - *state.gripper) > kGripperJump * std::abs(way))
     state.gripper = wanted, state.gripper_moved = false;
@@ -201,15 +212,32 @@ void moveGripper(const ArmGripper& gripper, const TeleopInput& input, double dt,
     joint += std::clamp(wanted - joint, -step / kGripperCatchUp, step / kGripperCatchUp);
 }
 
-/// Those that count: pressed since the arm may be used.
-std::array<std::uint8_t, kButtonCount> pressedOf(const TeleopInput& input, bool usable, TeleopState& state) {
-  std::array<std::uint8_t, kButtonCount> pressed{};
-  for (std::size_t b = 0; b < pressed.size(); ++b) {
-    state.old_press[b] &= input.buttons[b];
-    if (!usable) state.old_press[b] = input.buttons[b];
-    pressed[b] = input.buttons[b] & ~state.old_press[b];
+/// Whether the gripper presses its button: closed enough, until it has opened wide enough. One that is not known may
+/// be.
+std::uint8_t pinches(const ArmGripper& gripper, const TeleopInput& input, bool was) {
+  return !input.gripper || opening(gripper, *input.gripper) < (was ? kUnpinch : kPinch) ? 1 : 0;
+}
+
+/// Those that count: pressed since the arm may be used, while it moved what the mapping says.
+std::array<std::uint8_t, kButtonCount> pressedOf(const TeleopMapping& mapping, const TeleopInput& input, bool usable,
+                                                 TeleopState& state) {
+  std::array<std::uint8_t, kButtonCount> down = input.buttons;
+  if (mapping.gripper && mapping.gripper->button >= 0) {
+    const auto b = static_cast<std::size_t>(mapping.gripper->button);
+    down[b] = pinches(*mapping.gripper, input, (state.old_press[b] | state.held[b]) != 0);
+    if (!input.gripper) state.old_press[b] = 1;
   }
-  return pressed;
+  const auto elsewhere = wantsDevice(mapping, input) ? ArmButton::While::Scope : ArmButton::While::Device;
+  for (std::size_t b = 0; b < down.size(); ++b) {
+    const ArmButton& control = mapping.buttons[b];
+    state.old_press[b] &= down[b];
+    if (!usable || (control.during == elsewhere && state.held[b] == 0)) state.old_press[b] = down[b];
+    const std::uint8_t before = std::exchange(state.held[b], down[b] & ~state.old_press[b]);
+    if (!input.ready) state.switched_on[b] = 0;
+    if (before < state.held[b]) state.switched_on[b] ^= 1;
+    down[b] = control.toggle ? state.switched_on[b] : state.held[b];
+  }
+  return down;
 }
 
 void sendForces(const TeleopMapping& mapping, double now, TeleopState& state, TeleopOutput& output) {
@@ -257,20 +285,22 @@ TeleopOutput step(const TeleopMapping& mapping, const ToolLimits& limits, double
   const bool silent = !state.last || now - state.last->time > mapping.timeout;
   if (was_engaged && silent && output.sentence.empty()) output.sentence = kSilent;
   if (silent) state.last.reset();
-  output.buttons = pressedOf(input, input.ready && !silent, state);
+  const bool on_device = wantsDevice(mapping, input);
+  output.buttons = pressedOf(mapping, input, input.ready && !silent, state);
   const bool may = input.ready && !silent && !input.clutch && now - state.jump_time >= kCalm;
   if (!may && state.engaged) letGo(state);
   if (!may && input.ready) state.joints = input.joints;
   if (may && !state.engaged) begin(mapping, input, state);
   if (state.engaged) watchTool(mapping, input, state);
-  if (state.engaged && state.on_device != input.device) {
+  if (state.engaged && state.on_device != on_device) {
     letGo(state);
-    engage(mapping, input.device, state);
+    engage(mapping, on_device, state);
   }
   if (state.engaged) {
     if (!state.on_device) takeSprings(mapping, input, now - state.time, state);
     moveJoints(mapping, limits, state);
-    if (mapping.gripper && input.gripper) moveGripper(*mapping.gripper, input, now - state.time, state);
+    if (mapping.gripper && mapping.gripper->joint >= 0 && input.gripper)
+      moveGripper(*mapping.gripper, input, now - state.time, state);
   }
   extendTrail(limits, state.joints, now, now - state.time, state.trail);
   state.time = now;
@@ -278,6 +308,8 @@ TeleopOutput step(const TeleopMapping& mapping, const ToolLimits& limits, double
   output.joints = state.joints;
   output.engaged = state.engaged;
   output.on_device = state.engaged && state.on_device;
+  output.moves_scope = state.engaged && !mapping.device_only;
+  output.moves_device = output.on_device || (state.engaged && mapping.gripper && mapping.gripper->joint >= 0);
   return output;
 }
 

@@ -35,23 +35,31 @@ class ArmReader {
 
   TeleopMapping read() {
     const Fields fields =
-        mapOf(source_.root(), {"name", "hand", "joints", "arm", "forces", "clutch", "buttons", "gripper", "device"},
-              {"name", "joints"});
+        mapOf(source_.root(),
+              {"name", "pose", "hand", "joints", "arm", "forces", "clutch", "buttons", "gripper", "device"}, {"name"});
     mapping_.name = source_.text(fields.at("name"));
     const auto hand = fields.find("hand");
     if (hand != fields.end()) readHand(hand->second);
     if (fields.count("arm") > 0) readArm(fields.at("arm"));
-    readJoints(fields.at("joints"), 0, kScopeJointCount);
+    if (fields.count("joints") > 0) readJoints(fields.at("joints"), 0, kScopeJointCount);
+    if (fields.count("gripper") > 0) readGripper(fields.at("gripper"));
+    if (fields.count("device") > 0) readDevice(fields.at("device"));
+    if (fields.count("joints") == 0 && !mapping_.device_only)
+      source_.fail(source_.root(),
+                   "lacks the key 'joints'; add it, or 'device' without a button for an arm that moves only the "
+                   "suturing device");
+    if (fields.count("joints") > 0 && mapping_.device_only)
+      source_.fail(fields.at("device"),
+                   "needs the button that changes over, since the arm moves joints of the scope, too; add 'button'");
+    if (fields.count("pose") > 0) mapping_.pose_topic = source_.text(fields.at("pose"));
     if (mapping_.arm_joints.empty() && hand == fields.end())
       source_.fail(source_.root(), "lacks the key 'hand'; add it below");
     if (!mapping_.arm_joints.empty() && hand != fields.end())
       source_.fail(hand->second,
                    "is for an arm that measures a pose, and this one is mapped by its joints; leave it out");
     if (fields.count("forces") > 0) readForces(fields.at("forces"));
-    if (fields.count("clutch") > 0) mapping_.clutch = readButton(fields.at("clutch"));
+    if (fields.count("clutch") > 0) mapping_.clutch = readControl(fields.at("clutch"));
     if (fields.count("buttons") > 0) readButtons(fields.at("buttons"));
-    if (fields.count("gripper") > 0) readGripper(fields.at("gripper"));
-    if (fields.count("device") > 0) readDevice(fields.at("device"));
     chooseTwist();
     return mapping_;
   }
@@ -62,9 +70,10 @@ class ArmReader {
   const YamlSource& source_;
   const ToolLimits& limits_;
   TeleopMapping mapping_;
-  PortConfig way_, turn_ = turnOf(way_);  // of coordinates along and about an axis
-  std::map<int, std::string> used_;       // coordinates
-  bool any_pose_ = false;                 // a motion of the hand moves a joint
+  PortConfig way_, turn_ = turnOf(way_);                     // of coordinates along and about an axis
+  std::map<int, std::string> used_;                          // coordinates
+  bool any_pose_ = false;                                    // a motion of the hand moves a joint
+  std::vector<std::pair<ArmButton, std::string>> controls_;  // that are used, with the paths of their keys
   std::string stylus_;  // axis of the moving frame; empty: the one that is named as the twist's in the base
 
   Fields mapOf(const YamlField& field, const std::vector<std::string>& known,
@@ -132,8 +141,9 @@ class ArmReader {
   }
 
   void readDevice(const YamlField& field) {
-    const Fields fields = mapOf(field, {"button", "joints"}, {"button", "joints"});
-    mapping_.device = readButton(fields.at("button"));
+    const Fields fields = mapOf(field, {"button", "joints"}, {"joints"});
+    mapping_.device_only = fields.count("button") == 0;
+    if (!mapping_.device_only) mapping_.device = readControl(fields.at("button"));
     readJoints(fields.at("joints"), kScopeJointCount, kJointCount);
   }
 
@@ -186,42 +196,113 @@ class ArmReader {
     readIf(fields, "scale", "1", 0, 100, mapping_.force_scale);
   }
 
-  ArmButton readButton(const YamlField& field) const {
-    const Fields fields = mapOf(field, {"topic", "button"}, {"topic"});
-    ArmButton button{source_.text(fields.at("topic")), 0};
+  /// Of clutch and device.
+  ArmButton readControl(const YamlField& field) {
+    const Fields fields = mapOf(field, {"topic", "button", "reversed"}, {"topic"});
+    ArmButton button = readTopic(fields);
+    if (fields.count("reversed") > 0) button.reversed = source_.boolean(fields.at("reversed"));
+    return use(button, field);
+  }
+
+  /// Of the procedure.
+  ArmButton readButton(const YamlField& field) {
+    const Fields fields = mapOf(field, {"topic", "button", "mode", "while"}, {"topic"});
+    ArmButton button = readTopic(fields);
+    if (fields.count("mode") > 0) button.toggle = source_.choice(fields.at("mode"), {"hold", "toggle"}) == "toggle";
+    if (fields.count("while") == 0) return use(button, field);
+    if (mapping_.device.topic.empty())
+      source_.fail(fields.at("while"), "needs an arm that changes over; add 'device' with its button, or leave it out");
+    const bool scope = source_.choice(fields.at("while"), {"scope", "device"}) == "scope";
+    button.during = scope ? ArmButton::While::Scope : ArmButton::While::Device;
+    return use(button, field);
+  }
+
+  ArmButton readTopic(const Fields& fields) const {
+    ArmButton button;
+    button.topic = source_.text(fields.at("topic"));
     if (fields.count("button") > 0) button.index = static_cast<int>(source_.integer(fields.at("button"), 0, 63));
+    return button;
+  }
+
+  /// One control does two things only if one is while the arm moves the scope and the other while it does not.
+  const ArmButton& use(const ArmButton& button, const YamlField& field) {
+    for (const auto& [other, path] : controls_) {
+      const bool apart = other.during != button.during && other.during != ArmButton::While::Always &&
+                         button.during != ArmButton::While::Always;
+      if (other.topic == button.topic && other.index == button.index && !apart)
+        source_.fail(field, "is the control of " + path +
+                                " already; take another one, or give both 'while', one scope and the other device");
+    }
+    controls_.emplace_back(button, field.path);
     return button;
   }
 
   void readButtons(const YamlField& field) {
     const std::vector<std::string> names(kButtonNames.begin(), kButtonNames.end());
-    for (const auto& [name, entry] : mapOf(field, names, {}))
-      mapping_.buttons[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())] =
-          readButton(entry);
+    for (const auto& [name, entry] : mapOf(field, names, {})) {
+      const auto index = std::find(names.begin(), names.end(), name) - names.begin();
+      if (mapping_.gripper && mapping_.gripper->button == index)
+        source_.fail(entry, "is pressed by the gripper already; leave it out here or there");
+      mapping_.buttons[static_cast<std::size_t>(index)] = readButton(entry);
+    }
   }
 
   void readGripper(const YamlField& field) {
-    const Fields fields = mapOf(field, {"joint", "closed", "open", "at_closed", "at_open"},
-                                {"joint", "closed", "open", "at_closed", "at_open"});
-    const std::vector<std::string> names(kJointNames.begin() + kScopeJointCount, kJointNames.end());
-    const std::string name = source_.choice(fields.at("joint"), names);
+    const Fields fields =
+        mapOf(field, {"topic", "joint", "button", "closed", "open", "at_closed", "at_open"}, {"closed", "open"});
+    const bool joint = fields.count("joint") > 0;
+    if (joint == (fields.count("button") > 0) || joint != (fields.count("at_closed") > 0) ||
+        joint != (fields.count("at_open") > 0))
+      source_.fail(field,
+                   "needs either joint, at_closed and at_open, or button; write for example 'button: helix_grab'");
     ArmGripper gripper;
-    gripper.joint = kScopeJointCount + static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+    if (fields.count("topic") > 0) gripper.topic = source_.text(fields.at("topic"));
     readIf(fields, "closed", "rad", -7, 7, gripper.closed);
     readIf(fields, "open", "rad", -7, 7, gripper.open);
     if (std::abs(gripper.open - gripper.closed) < 1e-3)
       source_.fail(fields.at("open"), "is the angle of 'closed', too; write two angles that differ");
+    if (joint)
+      readGripperJoint(fields, gripper);
+    else
+      gripper.button = indexIn({kButtonNames.begin(), kButtonNames.end()}, fields.at("button"));
+    mapping_.gripper = gripper;
+  }
+
+  int indexIn(const std::vector<std::string>& names, const YamlField& field) const {
+    return static_cast<int>(std::find(names.begin(), names.end(), source_.choice(field, names)) - names.begin());
+  }
+
+  void readGripperJoint(const Fields& fields, ArmGripper& gripper) const {
+    gripper.joint =
+        kScopeJointCount + indexIn({kJointNames.begin() + kScopeJointCount, kJointNames.end()}, fields.at("joint"));
     const JointLimits& limits = limits_[static_cast<std::size_t>(gripper.joint)];
     const double spare = 1e-6 * (limits.upper - limits.lower);  // the digits that the writer of the URDF chose
     for (const auto& [key, place] : {std::pair{"at_closed", &gripper.at_closed}, {"at_open", &gripper.at_open}}) {
       readIf(fields, key, jointUnit(gripper.joint), limits.lower - spare, limits.upper + spare, *place);
       *place = std::clamp(*place, limits.lower, limits.upper);
     }
-    mapping_.gripper = gripper;
   }
 };
 
 }  // namespace
+
+bool pressesButtons(const TeleopMapping& mapping) {
+  return (mapping.gripper && mapping.gripper->button >= 0) ||
+         std::any_of(mapping.buttons.begin(), mapping.buttons.end(),
+                     [](const ArmButton& b) { return !b.topic.empty(); });
+}
+
+std::vector<std::string> unreachable(const TeleopMapping& mapping) {
+  const ArmGripper gripper = mapping.gripper.value_or(ArmGripper());
+  std::vector<std::string> names;
+  for (int j = 0; j < kJointCount; ++j)
+    if (mapping.joints[static_cast<std::size_t>(j)].coordinate < 0 && gripper.joint != j)
+      names.emplace_back(kJointNames[static_cast<std::size_t>(j)]);
+  for (int b = 0; b < kButtonCount; ++b)
+    if (mapping.buttons[static_cast<std::size_t>(b)].topic.empty() && gripper.button != b)
+      names.emplace_back(kButtonNames[static_cast<std::size_t>(b)]);
+  return names;
+}
 
 TeleopMapping loadTeleopMapping(const std::string& file, const ToolLimits& limits) {
   return ArmReader(YamlSource::load(file, kArmFile), limits).read();

@@ -237,6 +237,15 @@ ToolLimits loadToolLimits(const std::string& urdf_address) {
   return ToolModel::fromUrdf(readTextFile(file, "URDF"), file).limits();
 }
 
+std::vector<std::string> unreachable(const PadMapping& mapping) {
+  std::vector<std::string> names;
+  for (std::size_t j = 0; j < kJointCount; ++j)
+    if (mapping.joints[j].control == JointMapping::Control::None) names.emplace_back(kJointNames[j]);
+  for (std::size_t b = 0; b < kButtonCount; ++b)
+    if (mapping.buttons[b].code < 0) names.emplace_back(kButtonNames[b]);
+  return names;
+}
+
 PadMapping loadPadMapping(const std::string& file, const ToolLimits& limits) {
   const YamlSource source = YamlSource::load(file, kLimits);
   return PadMappingReader(source, limits).read();

@@ -320,6 +320,76 @@ TEST(Teleop, AButtonThatWasPressedBeforeCountsWhenItIsPressedAnew) {
   EXPECT_EQ(s.output.buttons[HelixGrab], 0);
 }
 
+/// An arm that moves the suturing device while the pedal that changes over is up.
+struct PedalSession : Session {
+  PedalSession() {
+    mapping = mappingOf(
+        "device: {button: {topic: p, reversed: true}, joints: {helix_advance: {along: x, scale: 1}}}\n"
+        "gripper: {button: t_tag, closed: 0 deg, open: 40 deg}\n"
+        "buttons:\n  helix_grab: {topic: a, mode: toggle, while: device}\n  insufflate: {topic: a, while: scope}\n"
+        "  cinch: {topic: b, while: device}\n");
+    tick();
+    input.gripper = 0;  // closed before it is known
+    tick();
+  }
+  int press(std::initializer_list<Button> buttons) {
+    input.buttons = {};
+    for (const Button button : buttons) input.buttons[button] = 1;
+    tick();
+    return output.buttons[HelixGrab] + 2 * output.buttons[Insufflate] + 4 * output.buttons[Cinch];
+  }
+};
+
+TEST(Teleop, APedalThatIsReversedMovesTheScopeWhileItIsDown) {
+  PedalSession s;
+  EXPECT_TRUE(s.output.on_device);
+  s.input.device = true;
+  s.tick();
+  EXPECT_FALSE(s.output.on_device);
+  EXPECT_TRUE(s.output.moves_scope);
+  EXPECT_FALSE(s.output.moves_device);  // its gripper is a button
+}
+
+TEST(Teleop, APedalDoesWhatItIsForWhileTheArmMovesThatAndKeepsItUntilItComesUp) {
+  PedalSession s;
+  EXPECT_EQ(s.press({HelixGrab, Insufflate}), 1);  // the same pedal
+  EXPECT_EQ(s.press({}), 1);                       // it switches
+  EXPECT_EQ(s.press({Cinch}), 5);
+  s.input.device = true;
+  EXPECT_EQ(s.press({Cinch}), 5);  // a cinch that is held does not crimp because the foot changes over
+  EXPECT_EQ(s.press({}), 1);
+  EXPECT_EQ(s.press({Cinch}), 1);
+  EXPECT_EQ(s.press({HelixGrab, Insufflate}), 3);
+  s.silence(0.15);
+  EXPECT_EQ(s.output.buttons[Insufflate], 0);
+  EXPECT_EQ(s.output.buttons[HelixGrab], 1);  // nobody has pressed again
+  s.input.ready = false;
+  EXPECT_EQ(s.press({}), 0);
+}
+
+TEST(Teleop, AGripperPressesItsButtonWhenItClosesAnew) {
+  PedalSession s;
+  const auto pressedAt = [&s](double degrees) {
+    s.input.gripper = degrees * M_PI / 180;
+    s.tick();
+    return s.output.buttons[TTag];
+  };
+  for (const auto& [degrees, pressed] : {std::pair{5, 0}, {15, 0}, {25, 0}, {15, 0}, {5, 1}, {15, 1}, {25, 0}})
+    EXPECT_EQ(pressedAt(degrees), pressed) << degrees;
+}
+
+TEST(Teleop, AnArmForTheDeviceAloneMovesNothingElse) {
+  Session s;
+  s.mapping = parseTeleopMapping(
+      "name: a\nhand: {away: -z, up: y}\ndevice: {joints: {helix_advance: {along: x, scale: 1}}}\n", "a", toolLimits());
+  s.tick();
+  for (int i = 0; i < 100; ++i) s.tick({0, 0, -1e-4});
+  EXPECT_NEAR(s.output.joints[HelixAdvance], 0.01, 1e-9);
+  EXPECT_TRUE(s.output.moves_device);
+  EXPECT_FALSE(s.output.moves_scope);
+  EXPECT_FALSE(pressesButtons(s.mapping));
+}
+
 TEST(Teleop, AnArmAtRestFollowsAToolThatSomebodyElseMoves) {
   Session s;
   s.tick();
@@ -413,9 +483,9 @@ TEST(Teleop, AWallGivesNoMoreThanTheCapacityWhateverItsStiffness) {
 }
 
 TEST(TeleopMapping, ShippedMappingsMoveEveryJointOfTheScope) {
-  for (const std::string name : {"touch", "touch_alone", "dvrk_mtm"}) {
+  for (const std::string name : {"touch", "dvrk_mtm", "dvrk_left"}) {
     const TeleopMapping mapping = loadTeleopMapping("../config/arms/" + name + ".yaml", toolLimits());
-    for (int j = 0; j < (name == "touch_alone" ? kJointCount : kScopeJointCount); ++j)
+    for (int j = 0; j < kScopeJointCount; ++j)
       EXPECT_GE(mapping.joints[static_cast<std::size_t>(j)].coordinate, 0) << name;
     EXPECT_NEAR(mapping.hand.determinant(), 1, 1e-12) << name;
     EXPECT_FALSE(mapping.clutch.topic.empty()) << name;
@@ -443,6 +513,18 @@ TEST(TeleopMapping, MistakesAreNamedWithPlaceAndRemedy) {
            {head + "joints:\n  insertion: {along: x, scale: 1}\ngripper: {joint: needle_driver, closed: 1, open: 1, "
                    "at_closed: 0, at_open: 0}\n",
             "differ"},
+           {head + "arm: {delay: 1 ms}\n", "lacks the key 'joints'"},
+           {head +
+                "joints:\n  insertion: {along: x, scale: 1}\ndevice: {joints: {helix_advance: {along: x, scale: 1}}}\n",
+            "button that changes over"},
+           {head + "joints:\n  insertion: {along: x, scale: 1}\nclutch: {topic: b}\nbuttons: {cinch: {topic: b}}\n",
+            "control of clutch already"},
+           {head + "joints:\n  insertion: {along: x, scale: 1}\nbuttons: {cinch: {topic: b, while: scope}}\n",
+            "changes over"},
+           {head + "joints:\n  insertion: {along: x, scale: 1}\ngripper: {closed: 0, open: 1}\n", "either joint"},
+           {head + "joints:\n  insertion: {along: x, scale: 1}\ngripper: {button: cinch, closed: 0, open: 1}\n"
+                   "buttons: {cinch: {topic: b}}\n",
+            "pressed by the gripper"},
            {head + "joints:\n  insertion: {along: x, scale: 1}\ndevice: {button: {topic: b}, joints: {}}\n",
             "joint of the suturing device"},
            {head + "joints:\n  insertion: {along: x, scale: 1}\ngripper: {joint: needle_driver, closed: 0, open: 1, "

@@ -1,6 +1,7 @@
 #pragma once
 #include <linux/input-event-codes.h>
 
+#include <cmath>
 #include <string>
 
 #include "vibe_hardware/gamepad/pad_drive.hpp"
@@ -47,7 +48,7 @@ inline PadState flightStick() {
 /// Puts an axis to a deflection from -1 to 1.
 inline void deflect(PadState& pad, int code, double deflection) {
   PadAxis& axis = pad.axes.at(code);
-  axis.value = static_cast<int>(axis.minimum + 0.5 * (deflection + 1) * (axis.maximum - axis.minimum) + 0.5);
+  axis.value = static_cast<int>(std::lround(axis.minimum + 0.5 * (deflection + 1) * (axis.maximum - axis.minimum)));
 }
 
 inline void press(PadState& pad, int code) {

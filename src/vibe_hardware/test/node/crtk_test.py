@@ -34,7 +34,7 @@ class CrtkTest(unittest.TestCase):
         assert wait_until(lambda: cls.joints.messages and abs(cls.insertion() - BEFORE_THE_WALL[0]) < 1e-6, 20)
         cls.arm = Program("vibe_hardware", "crtk_arm", sway=SWAY, start=0)
         cls.node = Program("vibe_hardware", "crtk_teleop",
-                           mapping="package://vibe_hardware/config/arms/touch_alone.yaml")
+                           mapping="package://vibe_hardware/config/arms/touch.yaml")
 
     @classmethod
     def tearDownClass(cls):
@@ -57,6 +57,7 @@ class CrtkTest(unittest.TestCase):
 
     def test_1_the_arm_moves_the_scope_and_feels_the_wall(self):
         self.assertTrue(wait_until(lambda: "drives the scope" in self.node.output(), 20), self.node.output())
+        self.press(2)  # a quick tap of a pedal of the dVRK, which comes up without a message
         self.assertTrue(wait_until(lambda: self.insertion() > BEFORE_THE_WALL[0] + 0.004, 20))
         self.assertTrue(wait_until(lambda: self.back() > 0.02, 20))
         self.assertTrue(wait_until(lambda: abs(self.back()) < 1e-3, 20), "it leaves the wall again")
@@ -119,7 +120,7 @@ class CrtkTest(unittest.TestCase):
         self.assertTrue(wait_until(lambda: "drives the scope" in self.node.output(), 20), self.node.output())
         place = self.insertion()
         self.assertTrue(wait_until(lambda: abs(self.insertion() - place) > 2e-3, 20))
-        self.assertTrue(efforts.waits_for(lambda m: m.name == ["reach", "roll", "lift"]))
+        self.assertTrue(efforts.waits_for(lambda m: m.name == ["reach", "roll", "side", "lift"]))
 
 
 if __name__ == "__main__":

@@ -14,6 +14,18 @@ TEST(DriveKeys, EveryKeyHasOneMeaning) {
   EXPECT_EQ(findBinding('M'), nullptr);
 }
 
+TEST(DriveKeys, ReachAllOfTheProcedure) {
+  std::set<std::array<int, 3>> reached;
+  for (const KeyBinding& binding : keyBindings())
+    reached.insert({static_cast<int>(binding.kind), binding.index, binding.sign});
+  for (int joint = 0; joint < kJointCount; ++joint)
+    for (const int sign : {-1, 1})
+      EXPECT_EQ(reached.count({static_cast<int>(KeyBinding::Kind::Joint), joint, sign}), 1U)
+          << driveJointNames()[joint];
+  for (int button = 0; button < 6; ++button)
+    EXPECT_EQ(reached.count({static_cast<int>(KeyBinding::Kind::Button), button, 0}), 1U) << button;
+}
+
 TEST(DriveKeys, KeysOfTheToolAndOfRvizStayFree) {
   for (const int key :
        std::initializer_list<int>{'H', 0x01000030, 'V', keys::kEscape, 0x0100003a, 0x01000021, 0x01000023})

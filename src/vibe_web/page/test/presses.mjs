@@ -93,6 +93,12 @@ await check('a button of the page is held by Enter and Space', async () => {
   }
 });
 
+await check('fingers reach all of the suturing device, and all buttons', async () => {
+  const keys = await page.$$eval('#bend button, #move button', (all) => all.map(({ dataset }) => Number(dataset.key)));
+  const missing = [...'EQXZRF GNTCI'].filter((key) => !keys.includes(key.charCodeAt(0)));
+  expect(missing.length === 0, `no button for ${missing}`); // the scope's joints have the sticks
+});
+
 await check('accessibility of a small page (axe), and room for fingers', async () => {
   const found = await violations(page);
   expect(found.length === 0, found.join('\n'));

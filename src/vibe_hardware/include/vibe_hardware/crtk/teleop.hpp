@@ -35,7 +35,7 @@ struct TeleopInput {
   bool live = false;                                 ///< they come all the time; else only a change says anything
   bool ready = false;                                ///< those are known, and the arm may be used (ENABLED and homed)
   bool clutch = false;                               ///< is pressed
-  bool device = false;                               ///< the button for the suturing device is pressed
+  bool device = false;                               ///< the button that changes over is down
   std::array<std::uint8_t, kButtonCount> buttons{};  ///< by vibe::Button; 1 while pressed
   std::optional<double> gripper;                     ///< angle [rad]
   std::optional<TissueResponse> tissue;              ///< the newest one; empty: nothing is touched
@@ -57,13 +57,15 @@ struct TeleopState {
   ToolTrail trail;                ///< of the joints that were commanded
   /// Where the gripper, no faster than a hand, would have its joint; empty: it has not been taken up yet [m], [rad]
   std::optional<double> gripper;
-  bool gripper_moved = false;                          ///< since then it has been away from its ends
-  std::array<std::uint8_t, kButtonCount> old_press{};  ///< buttons that must be released before they count
-  double tissue_time = -1e9;                           ///< of the springs [s]
-  double time = 0;                                     ///< of the last step [s]
-  double jump_time = -1e9;                             ///< when the arm has jumped [s]
-  bool engaged = false;                                ///< joints follow the hand
-  bool on_device = false;                              ///< those of the suturing device; the scope stays
+  bool gripper_moved = false;                            ///< since then it has been away from its ends
+  std::array<std::uint8_t, kButtonCount> old_press{};    ///< buttons that must be released before they count
+  std::array<std::uint8_t, kButtonCount> held{};         ///< buttons that are down and count
+  std::array<std::uint8_t, kButtonCount> switched_on{};  ///< by a press, and off by the next one
+  double tissue_time = -1e9;                             ///< of the springs [s]
+  double time = 0;                                       ///< of the last step [s]
+  double jump_time = -1e9;                               ///< when the arm has jumped [s]
+  bool engaged = false;                                  ///< joints follow the hand
+  bool on_device = false;                                ///< those of the suturing device; the scope stays
 };
 
 /// What a step sends.
@@ -75,6 +77,8 @@ struct TeleopOutput {
   std::array<std::uint8_t, kButtonCount> buttons{};  ///< 1: counts as pressed
   bool engaged = false;                              ///< joints follow the hand; false: they stay and the forces are 0
   bool on_device = false;       ///< those of the suturing device; the scope stays and the forces are 0
+  bool moves_scope = false;     ///< joints of the scope are for the simulator; those of another hand are not
+  bool moves_device = false;    ///< the same of the suturing device
   bool passivity_acts = false;  ///< on some coordinate the force of the tissue was lowered, or damping was added
   double withheld = 0;          ///< largest share of a force of the tissue that an account of energy keeps back
   std::string sentence;         ///< one when something has changed that a person should know; else empty
@@ -91,7 +95,8 @@ TeleopState startTeleop(const TeleopMapping& mapping, double now);
 /// follows instead of the scope, without forces: the tissue answers to joints of the scope only. A force of the tissue
 /// at a joint becomes scale times that on the coordinate (virtual work) times force_scale; new springs do not jump, and
 /// without a message for 0.1 s they fade within 0.05 s. Buttons count while the arm may be used and measures, but for
-/// those that were pressed before.
+/// those that were pressed before, or while the arm moved something else than the mapping says; what counts does so
+/// until it comes up. What a press has switched on stays on while the arm is silent, but not when it may not be used.
 /// @param now  not before the last one [s]
 TeleopOutput step(const TeleopMapping& mapping, const ToolLimits& limits, double now, const TeleopInput& input,
                   TeleopState& state);

@@ -68,6 +68,9 @@ struct PadMapping {
   JoyNames joy;                                     ///< for pads that come as a topic
 };
 
+/// Names of the joints and buttons that nothing in the mapping moves or presses, in their order.
+std::vector<std::string> unreachable(const PadMapping& mapping);
+
 /// Reads a mapping file.
 /// @throws Error "file:line: key: what is wrong; remedy" for an unknown or repeated key, a value of another type or
 ///         unit, one out of range (the speeds and ranges of the URDF), and a control that is used twice
