@@ -154,22 +154,23 @@ std::string summariseCoverage(const CoverageSkill& coverage) {
 std::string summarise(const SessionMetrics& m) {
   using Kind = Event::Kind;
   char text[4096];
-  std::snprintf(text, sizeof text,
-                "simulated time     %8.2f s\n"
-                "in contact         %8.2f s   holding tissue %.2f s   insufflating %.2f s\n"
-                "path of the tip    %8.3f m\n"
-                "grabs              %8d     missed %d   released %d   slipped %d\n"
-                "force on the tool  %8.2f N max   %.2f N mean\n"
-                "lumen              %8.1f mL now   %.1f mL max   at %.1f mmHg now   %.1f mmHg max\n"
-                "strain of the wall %8.1f %% max\n"
-                "%s%s"
-                "warnings           %8d",
-                m.time, m.contact_time, m.grip_time, m.insufflation_time, m.path_length, m.events.of(Kind::Grab),
-                m.events.of(Kind::GrabMissed), m.events.of(Kind::Release), m.events.of(Kind::Slip), m.max_force,
-                m.mean_force, m.volume * 1e6, m.max_volume * 1e6, m.pressure / 133.322, m.max_pressure / 133.322,
-                100 * m.max_strain, summariseCoverage(m.coverage).c_str(),
-                (summariseEnergy(m.energy, m.energy_balance) + summariseRelaxation(m.relaxation_loss) + doubtsOf(m)).c_str(),
-                m.warnings());
+  std::snprintf(
+      text, sizeof text,
+      "simulated time     %8.2f s\n"
+      "in contact         %8.2f s   holding tissue %.2f s   insufflating %.2f s\n"
+      "path of the tip    %8.3f m\n"
+      "grabs              %8d     missed %d   released %d   slipped %d\n"
+      "force on the tool  %8.2f N max   %.2f N mean\n"
+      "lumen              %8.1f mL now   %.1f mL max   at %.1f mmHg now   %.1f mmHg max\n"
+      "strain of the wall %8.1f %% max\n"
+      "%s%s"
+      "warnings           %8d",
+      m.time, m.contact_time, m.grip_time, m.insufflation_time, m.path_length, m.events.of(Kind::Grab),
+      m.events.of(Kind::GrabMissed), m.events.of(Kind::Release), m.events.of(Kind::Slip), m.max_force, m.mean_force,
+      m.volume * 1e6, m.max_volume * 1e6, m.pressure / 133.322, m.max_pressure / 133.322, 100 * m.max_strain,
+      summariseCoverage(m.coverage).c_str(),
+      (summariseEnergy(m.energy, m.energy_balance) + summariseRelaxation(m.relaxation_loss) + doubtsOf(m)).c_str(),
+      m.warnings());
   return text + ("\n" + summarise(m.skill));
 }
 
