@@ -8,6 +8,7 @@
 #include <vibe_msgs/SutureArray.h>
 #include <vibe_msgs/TissueTopology.h>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>

@@ -2,6 +2,8 @@
 #include <vibe_msgs/SutureArray.h>
 #include <vibe_msgs/TissueTopology.h>
 
+#include <vector>
+
 namespace vibe::graphics {
 
 // Messages with sutures as a simulator sends them, for tests.

@@ -10,6 +10,9 @@
 
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
+#include <vibe_msgs/DisplayTiming.h>
+#include <vibe_msgs/StepInput.h>
+#include <vibe_msgs/StepTiming.h>
 
 #include "lamp_watch.hpp"
 

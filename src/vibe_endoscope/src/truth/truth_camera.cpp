@@ -1,6 +1,7 @@
 #include "truth/truth_camera.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace vibe::endoscope {

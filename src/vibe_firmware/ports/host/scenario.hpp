@@ -4,6 +4,7 @@
 #include <array>
 #include <iosfwd>
 #include <memory>
+#include <string>
 
 #include "axis_plant.hpp"
 #include "cosim_frame.hpp"

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 
 #include "vibe_firmware/hal/byte_queue.hpp"
 

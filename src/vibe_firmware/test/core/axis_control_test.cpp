@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vibe_firmware/core/passivity.hpp"
+
 namespace vibe_firmware::axis_control_test {
 namespace {
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "shape_measures.hpp"
+#include "vibe_graphics/geometry/tube.hpp"
 
 namespace vibe::graphics::revolved_test {
 namespace {

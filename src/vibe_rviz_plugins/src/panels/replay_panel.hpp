@@ -7,6 +7,7 @@
 #ifndef Q_MOC_RUN
 #include <ros/node_handle.h>
 #include <rviz/panel.h>
+#include <vibe_msgs/ReplayStatus.h>
 #endif
 
 class QComboBox;
