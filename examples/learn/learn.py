@@ -65,7 +65,9 @@ class Cloned:
             with np.load(file) as stored:
                 self.task, self.inputs = str(stored["task"]), [str(name) for name in stored["inputs"]]
                 self.parts = [stored[f"arr_{k}"].astype(float) for k in range(len(stored.files) - 2)]
-        except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+        except KeyError:
+            raise Error(f"{file} does not say its task, as policies of version 1.0 do not; make it again.") from None
+        except (OSError, ValueError, zipfile.BadZipFile) as error:
             raise Error(f"{file} cannot be read as a policy ({error}); name a file of clone or ppo.py.") from None
 
     def reset(self, _):
@@ -181,7 +183,7 @@ def policy_of(name, task):
     file = expert.__file__ if name == "expert" else name
     policy = name if name == "expert" else Cloned(name)
     if name != "expert" and task not in (None, policy.task):
-        raise Error(f"{name} is a policy of {policy.task}, and --task is {task}; leave that away.")
+        raise Error(f"{name} is a policy of {policy.task}, and --task is {task}; leave --task out.")
     with open(file, "rb") as bytes_of:
         return (policy, getattr(policy, "task", task or "Reach"),
                 f"{name if name == 'expert' else 'file'} {hashlib.sha1(bytes_of.read()).hexdigest()}")

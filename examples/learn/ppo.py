@@ -150,12 +150,15 @@ def train(options):
     if os.path.exists(file) and not goes_on:
         sys.exit(f"{file} exists and was not made here; it is not overwritten, name another file.")
     start = learn.Cloned(options.start) if options.start else None
-    task = options.task or (start.task if start else "Reach")
+    known = learn.Cloned(file) if goes_on else start
+    if known and options.task not in (None, known.task):
+        sys.exit(f"The policy is one of {known.task}, and --task is {options.task}; leave --task out.")
+    task = known.task if known else options.task or "Reach"
     environments = VectorEnvironment(task, options.slots, threads=options.threads, organs=TRAINING, particles=options.particles,
                                      breathing=options.breathing, autoreset="same_step",
                                      **{"step_period": learn.STEP_PERIOD, **learn.SETTINGS.get(task, {})})
-    inputs = start.inputs if start else learn.inputs_of(task, environments.single_observation_space)
-    parts = start.parts if start else first_parts(environments, inputs, options.seed)
+    inputs = known.inputs if known else learn.inputs_of(task, environments.single_observation_space)
+    parts = known.parts if known else first_parts(environments, inputs, options.seed)
     learner = Learner(task, inputs, parts, bool(start), options.seed)
     state = learner.load(file) if goes_on else {"round": 0, "actions": 0, "seconds": 0.0}
     observation, _ = environments.reset(seed=20000 + 1000 * state["round"])

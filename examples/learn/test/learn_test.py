@@ -1,5 +1,6 @@
 """The policy that is cloned: its gradients, and what it learns; the episodes of an evaluation are kept."""
 
+import glob
 import json
 import os
 import sys
@@ -89,6 +90,15 @@ class Evaluation(unittest.TestCase):
             np.testing.assert_allclose(policy.action(seen), np.clip(row @ parts[2], -1, 1), rtol=1e-5)
             with self.assertRaisesRegex(learn.Error, "is a policy of Inspect"):
                 learn.policy_of(file, "Reach")
+
+    def test_the_policies_that_come_with_it_fit_their_tasks(self):
+        files = sorted(glob.glob(os.path.join(os.path.dirname(learn.__file__), "policies", "*.npz")))
+        self.assertEqual(len(files), 3)
+        for file in files:
+            policy = learn.Cloned(file)
+            space = learn.Environment(policy.task, particles=300, organs=[("sthenic", 1.0)], **learn.SETTINGS.get(policy.task, {}))
+            sizes = [np.prod(space.observation_space[name].shape) for name in policy.inputs]
+            self.assertEqual((sum(sizes), space.action_space.shape[0]), (len(policy.parts[0]), len(policy.parts[-1])), file)
 
     def test_what_cannot_be_read_is_said(self):
         with tempfile.TemporaryDirectory() as folder:

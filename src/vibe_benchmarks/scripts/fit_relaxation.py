@@ -41,11 +41,11 @@ def published():
 def fit(times, share, terms):
     """Ratios and times of the series of the least mean square error, over all choices of times from the grid."""
     best = (np.inf, None, None)
-    for taus in itertools.combinations(np.geomspace(times[0], times[-1], GRID), terms):
+    for taus in itertools.combinations(np.geomspace(times.min(), times.max(), GRID), terms):
         columns = 1 - np.exp(-np.outer(times, 1 / np.array(taus)))
         ratios = np.linalg.lstsq(columns, 1 - share, rcond=None)[0]
         error = np.square(columns @ ratios - (1 - share)).mean()
-        if (ratios > 0).all() and ratios.sum() < 1 and error < best[0]:
+        if (ratios > 5e-4).all() and ratios.sum() < 1 and error < best[0]:
             best = error, ratios, np.array(taus)
     return best[1:]
 
@@ -55,7 +55,13 @@ def main():
     parser.add_argument("curve", nargs="?")
     parser.add_argument("--terms", type=int, default=2, choices=(1, 2, 3))
     arguments = parser.parse_args()
-    times, share = np.loadtxt(arguments.curve, delimiter=",").T if arguments.curve else published()
+    try:
+        times, share = np.loadtxt(arguments.curve, delimiter=",", ndmin=2).T if arguments.curve else published()
+    except (OSError, ValueError) as error:
+        parser.error(f"{arguments.curve} cannot be read ({error}); give lines of two numbers, time [s] and share, without a heading")
+    times, share = times[times > 0], share[times > 0]  # at 0 it is 1 by definition
+    if len(times) < 2 * arguments.terms or not np.isfinite([times, share]).all():
+        parser.error(f"{arguments.curve} has {len(times)} points after time 0; give at least {2 * arguments.terms}, all of them numbers")
     ratios, taus = fit(times, share, arguments.terms)
     if ratios is None:
         parser.error("no series of this many terms with ratios above 0 fits the curve; try fewer --terms")

@@ -149,11 +149,13 @@ void CrtkTeleopNode::subscribe(ros::NodeHandle& handle) {
     listenToButton(handle, mapping_.clutch, [this](bool pressed) { input_.clutch = pressed; });
   if (!mapping_.device.topic.empty())
     listenToButton(handle, mapping_.device, [this](bool pressed) { input_.device = pressed; });
-  for (std::size_t b = 0; b < mapping_.buttons.size(); ++b)
-    if (!mapping_.buttons[b].topic.empty())
-      listenToButton(
-          handle, mapping_.buttons[b], [this, b](bool pressed) { input_.buttons[b] = pressed ? 1 : 0; },
-          [this, b] { tapped_[b] = ros::WallTime::now().toSec() + kTap; });
+  for (std::size_t b = 0; b < mapping_.buttons.size(); ++b) {
+    if (mapping_.buttons[b].topic.empty()) continue;
+    listenToButton(
+        handle, mapping_.buttons[b], [this, b](bool pressed) { input_.buttons[b] = pressed ? 1 : 0; },
+        [this, b] { tapped_[b] = ros::WallTime::now().toSec() + kTap; });
+    pressing_.emplace_back(b, subscribers_.back());
+  }
 }
 
 void CrtkTeleopNode::listenToButton(ros::NodeHandle& handle, const ArmButton& button, std::function<void(bool)> pressed,
@@ -271,7 +273,13 @@ void CrtkTeleopNode::lookForTheArm(double now) {
   const auto has = [&topics](const std::string& name) {
     return std::any_of(topics.begin(), topics.end(), [&name](const auto& topic) { return topic.name == name; });
   };
-  if (has(wanted) || !has(other)) return;
+  if (has(wanted)) return;
+  const std::string pose = ros::names::resolve(nameOf("measured_cp"));
+  if (!by_joints && has(pose)) {
+    ROS_WARN_STREAM("Nobody publishes " << wanted << ", but " << pose << " is there; correct 'pose' in the mapping.");
+    return;
+  }
+  if (!has(other)) return;
   ROS_WARN_STREAM("Nobody publishes " << wanted << ", but " << other << " is there: "
                                       << (by_joints
                                               ? "map this arm by its pose, with along and about."
@@ -317,6 +325,9 @@ void CrtkTeleopNode::onParameters(const vibe_msgs::HapticParameters& message) {
 void CrtkTeleopNode::tick(const ros::WallTimerEvent&) {
   updater_.update();
   const double now = ros::WallTime::now().toSec();
+  // Whoever pressed a button and has gone does not hold it any more.
+  for (const auto& [button, pressed] : pressing_)
+    if (pressed.getNumPublishers() == 0) input_.buttons[button] = 0;
   lookForTheArm(now);
   if (now - state_.time >= kForcePeriod) advance(now);
 }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <diagnostic_updater/diagnostic_updater.h>
@@ -59,6 +60,7 @@ class CrtkTeleopNode {
 
   ros::Publisher force_, scope_, suturing_device_, button_publisher_, absolute_, gravity_;
   std::vector<ros::Subscriber> subscribers_;
+  std::vector<std::pair<std::size_t, ros::Subscriber>> pressing_;  // buttons, of those
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;
 

@@ -69,17 +69,19 @@ class RelaxationBlock : public ConstraintBlock, private EnergyTerm {
     return heldEnergy(memory) > kRelaxed * memory.energy ? Activity::Disturb : Activity::Sleep;
   }
 
-  void begin(const StepContext& context, BodyLoads&) override {
+  void begin(const StepContext& context, BodyLoads& loads) override {
     RelaxationMemory& memory = context.state.relaxation;
     if (memory.stress.empty()) forget(memory);
     place(context.state, start_);
+    for (std::size_t i = 0; i < inverse_mass_.size(); ++i)
+      end_[4 * i + 3] = loads.contraction != nullptr ? (*loads.contraction)[i] : 0;
     std::fill(relaxed_.begin(), relaxed_.end(), 0.0F);
     for (std::size_t k = 0; k < terms_.size(); ++k) addRelaxed(memory, k, relaxed_);
   }
 
   const EnergyTerm* energyTerm(const StepContext&) override { return this; }
 
-  double store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>&) override {
+  double store(const StepContext& context, const BodyLoads&, std::vector<ToolTouch>&) override {
     State& state = context.state;
     place(state, end_);
     double free = 0, held = 0;
@@ -90,7 +92,7 @@ class RelaxationBlock : public ConstraintBlock, private EnergyTerm {
       work_[k] = workAlong(stress_, free, held);
     }
     state.energy.numerical_loss += held;
-    advance(loads, state.relaxation);
+    advance(state.relaxation);
     return free;
   }
 
@@ -144,8 +146,8 @@ class RelaxationBlock : public ConstraintBlock, private EnergyTerm {
     for (std::size_t i = 0; i < sum.size(); ++i) out[i] += term.ahead * over[i] - term.ratio * law[i];
   }
 
-  // The work of a stress is quadratic along the straight way from start to end, so that the force in the middle gives
-  // it.
+  // The work of a stress is quadratic along the straight way from start to end, that of a moment nearly, so that the
+  // force in the middle gives it.
   // @param free, held  added to: what is done on nodes that are free, and that are held
   // @returns all of it, on the wall [J]
   double workAlong(const std::vector<float>& stress, double& free, double& held) {
@@ -164,9 +166,7 @@ class RelaxationBlock : public ConstraintBlock, private EnergyTerm {
 
   // To the end of the step. What the law's energy gains beyond the work of the part that has relaxed is done on the
   // overstress. Of a linear law, the energy that this holds falls twice as fast as its stress.
-  void advance(const BodyLoads& loads, RelaxationMemory& memory) {
-    for (std::size_t i = 0; loads.contraction != nullptr && i < inverse_mass_.size(); ++i)
-      end_[4 * i + 3] = (*loads.contraction)[i];
+  void advance(RelaxationMemory& memory) {
     const double energy = shell_.stress(end_.data(), stress_.data()), more = energy - memory.energy;
     for (std::size_t k = 0; k < terms_.size(); ++k) {
       const PronyTerm& term = terms_[k];

@@ -59,6 +59,7 @@ void addEnergies(const SessionMetrics& m, Table& table) {
   table.add("viscous_loss", "J", e.viscous_loss);
   table.add("contact_loss", "J", e.contact_loss);
   table.add("numerical_loss", "J", e.numerical_loss);
+  table.add("relaxation_loss", "J", m.relaxation_loss);
   table.add("correction_work", "J", e.correction_work);
   table.add("residual_work", "J", e.residual_work);
   table.add("energy_balance", "J", m.energy_balance);

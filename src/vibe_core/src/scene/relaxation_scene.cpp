@@ -7,7 +7,7 @@
 namespace vibe {
 
 namespace {
-constexpr std::size_t kMostTerms = 5;  // three decades of time with two terms each need no more. Design choice
+constexpr std::size_t kMostTerms = 5;  // two and a half decades of time with two terms each need no more. Design choice
 constexpr double kLeastSteps = 5;      // of a time: the error of a step is below a tenth of a strain's change in it
 }  // namespace
 

@@ -86,8 +86,9 @@ struct Reader {
 
 template <typename Vector>
 std::string vectorText(const Vector& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "[" : ", ") + showQuantity(value, "");
+  std::string text = "[";  // by number: vectors of Eigen 3.3 have no iterators
+  for (std::size_t k = 0; k < static_cast<std::size_t>(values.size()); ++k)
+    text += (k > 0 ? ", " : "") + showQuantity(values[k], "");
   return text + "]";
 }
 

@@ -189,12 +189,14 @@ class SceneReader {
   void checkRelaxation() const {
     if (!scene_.tissue.relaxation) return;
     const auto section = seen_.find("tissue.relaxation");
-    const YamlField& field = section != seen_.end() ? section->second : seen_.at("");
+    const bool inherited = section == seen_.end();
+    const YamlField& field = inherited ? seen_.at("") : section->second;
+    const std::string subject = inherited ? "has tissue.relaxation from its base, which " : "";
     if (scene_.tissue.model != "shell")
-      source_.fail(field, "needs tissue.model 'shell', and the model is '" + scene_.tissue.model +
-                              "'; remove it or write 'model: shell'");
+      source_.fail(field, subject + "needs tissue.model 'shell', and the model is '" + scene_.tissue.model +
+                              "'; write 'relaxation: none' or 'model: shell'");
     const std::string fault = relaxationFault(*scene_.tissue.relaxation, scene_.step_period);
-    if (!fault.empty()) source_.fail(field, fault);
+    if (!fault.empty()) source_.fail(field, subject + fault);
   }
 
   /// Checks values against each other.

@@ -170,7 +170,7 @@ std::string relaxationDamage(const RelaxationMemory& memory, const Model& model)
   const std::size_t terms = tissue != nullptr && relaxation ? relaxation->ratios.size() : 0;
   const std::size_t count = terms > 0 && !memory.held.empty() ? tissue->elements()->stressCount() : 0;
   if (memory.stress.size() != count || memory.overstress.size() != terms * count ||
-      (count > 0 && memory.held.size() != terms))
+      memory.held.size() != (count > 0 ? terms : 0) || (count == 0 && memory.energy != 0))
     return "its wall has relaxed as another one";
   double sum = memory.energy + memory.loss;
   for (const std::vector<float>* stresses : {&memory.stress, &memory.overstress})

@@ -142,6 +142,8 @@ void lookAround(Operator& me) {
 }
 
 GoalResult perform(const SurveyGoal& goal, Operator& me) {
+  if (goal.region && !me.coverage->shares().region[static_cast<std::size_t>(*goal.region)])
+    return {false, std::string("the organ has no ") + toString(*goal.region)};
   return Survey(goal, me).pursue();
 }
 

@@ -50,6 +50,7 @@ void setSession(SessionMetrics& m) {
   m.max_pressure = 11;
   m.max_strain = 12;
   m.energy_balance = 13;
+  m.relaxation_loss = 31;
   m.energy = {20, 0, 0, 21, 22, 23, 24, 25, 26, 27, 0, 28, 29, 30};
   m.skill.phases.whole = phase(100);
   for (int k = 0; k < kPhaseCount; ++k) m.skill.phases.phase[static_cast<std::size_t>(k)] = phase(200 + 100 * k);
@@ -151,6 +152,7 @@ const std::vector<Row> kExpected = {{"time", "s", 1},
                                     {"viscous_loss", "J", 26},
                                     {"contact_loss", "J", 27},
                                     {"numerical_loss", "J", 28},
+                                    {"relaxation_loss", "J", 31},
                                     {"correction_work", "J", 29},
                                     {"residual_work", "J", 30},
                                     {"energy_balance", "J", 13},

@@ -287,7 +287,8 @@ TeleopOutput step(const TeleopMapping& mapping, const ToolLimits& limits, double
   if (silent) state.last.reset();
   const bool on_device = wantsDevice(mapping, input);
   output.buttons = pressedOf(mapping, input, input.ready && !silent, state);
-  const bool may = input.ready && !silent && !input.clutch && now - state.jump_time >= kCalm;
+  const bool frees = input.clutch != mapping.clutch.reversed;
+  const bool may = input.ready && !silent && !frees && now - state.jump_time >= kCalm;
   if (!may && state.engaged) letGo(state);
   if (!may && input.ready) state.joints = input.joints;
   if (may && !state.engaged) begin(mapping, input, state);

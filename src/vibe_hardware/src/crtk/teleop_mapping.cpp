@@ -57,6 +57,9 @@ class ArmReader {
     if (!mapping_.arm_joints.empty() && hand != fields.end())
       source_.fail(hand->second,
                    "is for an arm that measures a pose, and this one is mapped by its joints; leave it out");
+    if (fields.count("pose") > 0 && !mapping_.arm_joints.empty())
+      source_.fail(fields.at("pose"),
+                   "is for an arm that measures a pose, and this one is mapped by its joints; leave it out");
     if (fields.count("forces") > 0) readForces(fields.at("forces"));
     if (fields.count("clutch") > 0) mapping_.clutch = readControl(fields.at("clutch"));
     if (fields.count("buttons") > 0) readButtons(fields.at("buttons"));

@@ -63,6 +63,16 @@ struct Session {
   }
 };
 
+TEST(Teleop, AClutchThatIsReversedFreesTheArmWhileItIsUp) {
+  Session s;
+  s.mapping = mappingOf("clutch: {topic: c, reversed: true}\n");
+  s.tick();
+  EXPECT_FALSE(s.output.engaged);
+  s.input.clutch = true;
+  s.tick();
+  EXPECT_TRUE(s.output.engaged);
+}
+
 TEST(Teleop, MotionsOfTheHandMoveTheJoints) {
   Session s;
   s.input.joints = {0.05, 0.1, 0.2, 0.3, 0.001, 0.002, 0.003};

@@ -156,7 +156,7 @@ class ArmsHand : public SimulatedStomach {
       arm.angle += std::clamp(way, -kSqueeze * dt, kSqueeze * dt);
       arm.input.gripper = arm.angle;
     }
-    arm.input.clutch = !mapping.clutch.topic.empty() && isDown(mapping.clutch) != mapping.clutch.reversed;
+    arm.input.clutch = isDown(mapping.clutch);
     arm.input.device = isDown(mapping.device);
     for (std::size_t b = 0; b < kButtonCount; ++b) arm.input.buttons[b] = isDown(mapping.buttons[b]) ? 1 : 0;
     arm.input.sample = ArmSample{arm.state.time + dt, arm.motion.position, orientationOf(arm.motion), {}};

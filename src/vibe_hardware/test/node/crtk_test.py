@@ -57,6 +57,7 @@ class CrtkTest(unittest.TestCase):
 
     def test_1_the_arm_moves_the_scope_and_feels_the_wall(self):
         self.assertTrue(wait_until(lambda: "drives the scope" in self.node.output(), 20), self.node.output())
+        self.assertTrue(wait_until(lambda: self.clutch.get_num_connections() > 0, 20))
         self.press(2)  # a quick tap of a pedal of the dVRK, which comes up without a message
         self.assertTrue(wait_until(lambda: self.insertion() > BEFORE_THE_WALL[0] + 0.004, 20))
         self.assertTrue(wait_until(lambda: self.back() > 0.02, 20))

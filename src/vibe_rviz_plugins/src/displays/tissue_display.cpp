@@ -56,7 +56,7 @@ QImage legendOf(graphics::Colouring colouring, const graphics::ColourMap& map) {
     case graphics::Colouring::Wall:
       return list("Wall", graphics::wallColours(), {"anterior", "greater curvature", "posterior", "lesser curvature"});
     case graphics::Colouring::Seen:
-      return list("Wall", graphics::seenColours(), {"not seen", "seen"});
+      return list("Seen by the lens", graphics::seenColours(), {"not seen", "seen"});
     case graphics::Colouring::Heat:
       return drawnLegend("Heat [J]", map);
     case graphics::Colouring::Thickness:

@@ -88,7 +88,7 @@ ParticleCloud::ParticleCloud(const Model& model, const State& start, std::uint32
   message_.width = static_cast<std::uint32_t>(model.particle_count);
   message_.point_step = static_cast<std::uint32_t>(bytes + (with_seen_ ? sizeof(float) : 0));
   message_.row_step = message_.width * message_.point_step;
-  message_.is_dense = true;
+  message_.is_dense = !with_seen_;
   message_.data.resize(message_.row_step);
   for (std::uint32_t i = 0; i < message_.width; ++i) {
     Point point{};

@@ -66,8 +66,8 @@ TEST(Datagram, BytesAreThoseOfTheDocumentation) {
   sample.reason = 5;
   sample.has_rotation = true;
   sample.score = 1;
-  sample.slide = {1, 2, 1, 2, {1}};
-  sample.rotation = {2, 1, 2, 1, {1}};
+  sample.slide = {1, 2, 4, 8, {1}};
+  sample.rotation = {8, 4, 2, 1, {1}};
   sample.slide.covariance.back() = sample.rotation.covariance.back() = 1;
   std::vector<std::uint8_t> expected(192, 0);
   const auto put = [&](std::size_t offset, std::initializer_list<int> bytes) {
@@ -78,8 +78,10 @@ TEST(Datagram, BytesAreThoseOfTheDocumentation) {
   put(32, {0, 0, 0, 0xc0, 0, 0, 0, 0x3f});
   put(40, {1, 5, 1, 0, 0, 0, 0x80, 0x3f});
   put(48, {0, 0, 0, 0, 0, 0, 0xf0, 0x3f, 0, 0, 0, 0, 0, 0, 0, 0x40});
-  put(80, {0, 0, 0x80, 0x3f});
-  put(120, {0, 0, 0, 0, 0, 0, 0, 0x40});
+  put(64, {0, 0, 0, 0, 0, 0, 0x10, 0x40, 0, 0, 0, 0, 0, 0, 0x20, 0x40});
+  put(120, {0, 0, 0, 0, 0, 0, 0x20, 0x40, 0, 0, 0, 0, 0, 0, 0x10, 0x40});
+  put(136, {0, 0, 0, 0, 0, 0, 0, 0x40, 0, 0, 0, 0, 0, 0, 0xf0, 0x3f});
+  for (const std::size_t offset : {80, 116, 152, 188}) put(offset, {0, 0, 0x80, 0x3f});
   EXPECT_EQ(encode(datagram), expected);
 }
 

@@ -27,6 +27,7 @@ class Bite(unittest.TestCase):
         self.addCleanup(page.stop)
         self.assertEqual(page.ends(PATIENCE), 0, page.output() + server.last_words())
         print(page.output())
+        self.assertTrue(events.waits_for(lambda event: event.kind == ProcedureEvent.RELEASE))
         for kind in (ProcedureEvent.GRAB, ProcedureEvent.BITE, ProcedureEvent.RELEASE):
             self.assertEqual(len([event for event in events.messages if event.kind == kind]), 1)
         self.assertFalse([event.text for event in events.messages if event.kind == ProcedureEvent.REJECTED])

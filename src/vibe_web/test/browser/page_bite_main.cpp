@@ -25,8 +25,8 @@ namespace asio = boost::asio;
 namespace operating = vibe::operating;
 
 constexpr std::chrono::milliseconds kPeriod(50);  // of messages, as the page has it
-constexpr int kRetry = 40, kHold = 30;  // messages until a key without effect is pressed anew, and while it is down
-constexpr double kNear = 4e-3;          // [m]; from here on Shift is held
+constexpr int kRetry = 200, kHold = 30;  // messages until a key without effect is pressed anew, and while it is down
+constexpr double kNear = 4e-3;           // [m]; from here on Shift is held
 
 bool slides(vibe::Joint joint) {
   return joint == vibe::Insertion || joint == vibe::HelixAdvance || joint == vibe::NeedleDriver;
