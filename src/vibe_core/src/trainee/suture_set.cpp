@@ -20,11 +20,6 @@ constexpr double kAsideMost = 0.5, kShortest = 0.5;
 // 100 sets are read as planned instead of 90; design choice
 constexpr double kClear = 0.5;
 constexpr double kInstead = 10e-3;  // from a target at which no bite could be taken; design choice [m]
-// Of a whole set whose first bite is out of reach, design choices: half of what the sets of a sleeve are apart, what is
-// left of its width, and how often
-constexpr double kInward = 12e-3;  // [m]
-constexpr double kNarrower = 0.75;
-constexpr int kMoves = 2;
 
 /// Distance of the centres of neighbours in a row [m].
 double spacingAt(const SutureSetGoal& goal, const AnatomicalMap& map) {
@@ -97,6 +92,9 @@ bool SetInHand::isSpoiledBy(const WallPoint& place, const AnatomicalMap& map) co
 
 std::optional<WallPoint> SetInHand::placeInstead(const AnatomicalMap& map) const {
   std::vector<WallPoint> bites = points;
+  bites.erase(bites.begin() + static_cast<std::ptrdiff_t>(next));
+  if (marginOf(bites, map) >= kClear) return {};
+  bites = points;
   std::optional<WallPoint> best;
   double clearest = kClear;
   for (const auto& [distal, anterior] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
@@ -113,46 +111,13 @@ std::optional<WallPoint> SetInHand::placeInstead(const AnatomicalMap& map) const
 
 namespace {
 
-void sayNext(std::size_t number, std::size_t count, Operator& me) {
-  me.say("bite " + std::to_string(number) + " of " + std::to_string(count));
-}
-
-/// The same set farther from the end of the organ to which it is nearer, and narrower.
-SutureSetGoal movedInward(SutureSetGoal goal, const AnatomicalMap& map) {
-  const Place& centre = goal.centre;
-  const double along = centre.region ? map.alongIn(*centre.region, centre.along) : centre.along;
-  goal.centre.distal += along < 0.5 ? kInward : -kInward;
-  goal.width *= kNarrower;
-  return goal;
-}
-
-/// Lays the set out and takes its first bite. Where that cannot be taken, the whole set moves towards the middle of the
-/// organ and becomes narrower: there the scope has more room and bends less. Where it cannot be taken there either, it
-/// is given up, and the set is where it was planned.
-/// @returns whether it was taken
-bool takeFirst(const SutureSetGoal& goal, Operator& me) {
-  SutureSetGoal moved = goal;
-  for (int k = 0; k <= kMoves; ++k, moved = movedInward(moved, me.map())) {
-    try {
-      me.set = {goal.pattern, targetsOf(moved, me), 0};
-    } catch (const Error&) {  // the organ ends beside it
-      if (k == 0) throw;
-      break;
-    }
-    if (k > 0) me.say("the whole set moves: its first bite is out of reach");
-    sayNext(1, me.set.points.size(), me);
-    if (takeBite(me.set.points[0], me).reached) return true;
-  }
-  me.set = {goal.pattern, targetsOf(goal, me), 0};
-  return false;
-}
-
-/// A bite of the set in hand. Where it cannot be taken at its target it is taken beside it.
-bool takeNext(Operator& me) {
-  if (takeBite(me.set.points[me.set.next], me).reached) return true;
+/// A bite of the set in hand. Where it cannot be taken at its target and the set would not be read without it, such as
+/// at a corner, it is taken beside it.
+bool takeNext(const WallPoint& target, Operator& me) {
+  if (takeBite(target, me).reached) return true;
   const std::optional<WallPoint> place = me.set.placeInstead(*me.seen_map);
   if (!place) return false;
-  me.say("beside its target");
+  me.say("the pattern needs this bite: beside its target");
   me.set.points[me.set.next] = *place;
   return takeBite(*place, me).reached;
 }
@@ -161,28 +126,26 @@ bool takeNext(Operator& me) {
 
 GoalResult perform(const SutureSetGoal& goal, Operator& me) {
   if (!me.view().needle_loaded) return {false, "there is no needle"};
-  bool taken = takeFirst(goal, me);
-  const std::size_t planned = me.set.points.size();
-  for (std::size_t k = 0;;) {
+  const std::vector<WallPoint> targets = targetsOf(goal, me);
+  me.set = {goal.pattern, targets, 0};
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    me.say("bite " + std::to_string(k + 1) + " of " + std::to_string(targets.size()));
     const auto point = me.set.points.begin() + static_cast<std::ptrdiff_t>(me.set.next);
-    if (taken)
+    if (takeNext(targets[k], me))
       *point = me.tries.needle, ++me.set.next;
     else
       me.set.points.erase(point);
-    if (++k == planned) break;
-    sayNext(k + 1, planned, me);
-    taken = takeNext(me);
   }
-  const std::size_t bites = me.set.next;
+  const std::size_t taken = me.set.next;
   me.stitches.insert(me.stitches.end(), me.set.points.begin(), me.set.points.end());
   me.set = {};
-  if (bites < 2) return {false, "only " + std::to_string(bites) + " bites could be taken"};
+  if (taken < 2) return {false, "only " + std::to_string(taken) + " bites could be taken"};
   if (goal.cinched) {
     me.say("T-tag and cinch");
     const GoalResult cinch = perform(CinchGoal{}, me);
     if (!cinch.reached) return cinch;
   }
-  return {bites == planned, std::to_string(bites) + " of " + std::to_string(planned) + " bites taken"};
+  return {taken == targets.size(), std::to_string(taken) + " of " + std::to_string(targets.size()) + " bites taken"};
 }
 
 }  // namespace vibe

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "conversions/goal_message.hpp"
+#include "vibe_core/program/error.hpp"
 
 namespace vibe::sim {
 
@@ -53,8 +54,12 @@ void GoalBook::fail(const std::string& reason, Entry& entry) {
 void GoalBook::start(Trainee& trainee) {
   for (std::size_t k = entry_.empty() ? 0 : entry_.back() + 1; k < goals_.size(); ++k) {
     if (message_.goals[k].state != Entry::QUEUED) continue;
-    trainee.add(goals_[k]);
-    entry_.push_back(k);
+    try {
+      trainee.add(goals_[k]);
+      entry_.push_back(k);
+    } catch (const Error& error) {  // what the goal needs cannot be read, such as a mesh of the device
+      fail(error.what(), message_.goals[k]);
+    }
   }
 }
 
