@@ -72,6 +72,8 @@ class RelaxationBlock : public ConstraintBlock, private EnergyTerm {
   void begin(const StepContext& context, BodyLoads& loads) override {
     RelaxationMemory& memory = context.state.relaxation;
     if (memory.stress.empty()) forget(memory);
+    if (memory.stress.size() != relaxed_.size())
+      throw Error("The state's wall has relaxed on another mesh; begin with a state of this scene.");
     place(context.state, start_);
     for (std::size_t i = 0; i < inverse_mass_.size(); ++i)
       end_[4 * i + 3] = loads.contraction != nullptr ? (*loads.contraction)[i] : 0;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tissue/shell_tissue.hpp"
 #include "vibe_core/suture/technique.hpp"
 
 namespace vibe {
@@ -165,12 +164,11 @@ std::string holdDamage(const State& state, const Model& model) {
 }
 
 std::string relaxationDamage(const RelaxationMemory& memory, const Model& model) {
-  const auto* tissue = dynamic_cast<const ShellTissue*>(model.tissue.get());
   const auto& relaxation = model.scene.tissue.relaxation;
-  const std::size_t terms = tissue != nullptr && relaxation ? relaxation->ratios.size() : 0;
-  const std::size_t count = terms > 0 && !memory.held.empty() ? tissue->elements()->stressCount() : 0;
-  if (memory.stress.size() != count || memory.overstress.size() != terms * count ||
-      memory.held.size() != (count > 0 ? terms : 0) || (count == 0 && memory.energy != 0))
+  const std::size_t terms = relaxation ? relaxation->ratios.size() : 0;
+  const bool begun = terms > 0 && !memory.held.empty();
+  if (memory.held.size() != (begun ? terms : 0) || memory.stress.empty() == begun ||
+      memory.overstress.size() != terms * memory.stress.size() || (!begun && memory.energy != 0))
     return "its wall has relaxed as another one";
   double sum = memory.energy + memory.loss;
   for (const std::vector<float>* stresses : {&memory.stress, &memory.overstress})
