@@ -19,6 +19,7 @@ struct SeenByHand {
   double gap = 0;                             ///< from the helix to the wall, when it last found no tissue [m]
   std::array<int, kEventKindCount> events{};  ///< how often, by Event::Kind
 
+  /// How often an event of this kind has happened.
   int count(Event::Kind kind) const { return events.at(static_cast<std::size_t>(kind)); }
 };
 
@@ -42,6 +43,7 @@ class HandAtDevice {
 /// go. Waits for what happens, never for a time; gives up after a minute of simulated time without it.
 class BiteOperator {
  public:
+  /// @param hand  outlives the operator
   explicit BiteOperator(HandAtDevice& hand) : hand_(hand) {}
 
   /// @return what did not happen; empty: the bite was made and the wall let go
@@ -68,6 +70,7 @@ class BiteOperator {
     return failure_;
   }
 
+  /// At the last look.
   const SeenByHand& seen() const { return seen_; }
   double seconds() const { return seen_.time - begin_; }  ///< simulated, of the bite so far [s]
   double force() const { return force_; }                 ///< largest so far [N]

@@ -66,6 +66,7 @@ class WallCoverage {
 
   /// @param time  of the look [s]
   void look(const Eigen::Isometry3d& tip, const SurfaceView& wall, double time);
+  /// Nothing has been seen.
   void forget();
 
   /// Time at which each particle was seen first; not a number: not yet, or it belongs to an end. (particles) [s]
