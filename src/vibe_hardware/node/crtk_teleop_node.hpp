@@ -60,7 +60,7 @@ class CrtkTeleopNode {
 
   ros::Publisher force_, scope_, suturing_device_, button_publisher_, absolute_, gravity_;
   std::vector<ros::Subscriber> subscribers_;
-  std::vector<std::pair<std::size_t, ros::Subscriber>> pressing_;  // buttons, of those
+  std::vector<std::pair<std::size_t, ros::Subscriber>> pressing_;  // buttons, and who presses them
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;
 

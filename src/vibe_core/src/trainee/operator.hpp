@@ -123,8 +123,8 @@ struct SetInHand {
   /// earlier bites have missed as well.
   bool isSpoiledBy(const WallPoint& place, const AnatomicalMap& map) const;
 
-  /// Where to take the next bite if it cannot be taken at its target: of the places beside it the one with which the
-  /// set is read most clearly as its pattern; empty if it is read so with none of them.
+  /// Where to take the next bite if it cannot be taken at its target: empty if the set is read as its pattern without
+  /// it, or with none of the places beside the target; else that of these places with which it is read most clearly.
   std::optional<WallPoint> placeInstead(const AnatomicalMap& map) const;
 
  private:

@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
-#include "arithmetic/elementary.hpp"
 #include "trainee/operator.hpp"
 #include "trainee/picture.hpp"
 #include "vibe_core/simulation/wall_coverage.hpp"
