@@ -3,7 +3,7 @@
 # cost: 60
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-for name in door rooms names writers launch links pictures catkin bash python; do
+for name in tracked door rooms names writers launch links pictures catkin bash python; do
   check "lint $name" "$root/scripts/lint" --only "$name"
 done
 
@@ -55,6 +55,17 @@ copyOfTree() {
 }
 
 check 'lint lets no other clang-format judge or rewrite the code' refusesToFix
+
+# A file is added, changed and known; then there is one that only the work tree has.
+seesAForgottenFile() {
+  local tree
+  tree=$(copyOfTree)
+  "$tree/scripts/lint" --only tracked | grep -q '^tracked: skipped' || return 1
+  git -C "$tree" init -q && git -C "$tree" add . && echo >>"$tree/src/vibe_core/src/solver/stepper.cpp" && passes tracked "$tree" || return 1
+  touch "$tree/src/vibe_core/src/solver/forgotten.hpp"
+  sees tracked "$tree" -Fx 'src/vibe_core/src/solver/forgotten.hpp'
+}
+check 'lint sees a file that a clone would lack' seesAForgottenFile
 
 # findsRosIn FILE LINE: adds a file with this line below src/ of a tree that passes; lint must name the file
 findsRosIn() {
