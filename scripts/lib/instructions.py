@@ -21,7 +21,7 @@ PARTS = {
     "energy": "vibe::Potential::evaluate(",
     "inverse": "vibe::QuasiNewton::applyInverse(",
     "rows": "vibe::ConstraintSchur::eliminate(",
-    "paths": "vibe::ImplicitStep::keepApart(",
+    "paths": "vibe::ImplicitStep::separate(",
     "walls": "vibe::SelfContact::detect(",
 }
 
@@ -71,6 +71,9 @@ def count(devel, states, scene, folder):
     for state, file in zip(order, files):
         with open(file, encoding="utf-8") as lines:
             found[state] = row_of(state, lines)
+    for part, begin in PARTS.items():
+        if all(float(row[part]) == 0 for row in found.values()):
+            raise ValueError("no step has called {}), which is to count as '{}'; name what it is called now".format(begin, part))
     return [found[state] for state in states]
 
 
