@@ -98,6 +98,14 @@ def least_of(observation, inputs):
     return np.concatenate([np.broadcast_to(LEAST[name], np.size(observation[name])) for name in inputs])
 
 
+def balanced(wanted, share=0.05):
+    """Indices of the rows of `wanted` actions, those repeated in which buttons are pressed as in few others, until each
+    combination of buttons is this share of all rows, about: a button that is pressed once in an episode would else be noise."""
+    buttons = np.all(np.isin(wanted, (-1, 1)), axis=0)
+    _, of, count = np.unique(wanted[:, buttons] > 0, axis=0, return_inverse=True, return_counts=True)
+    return np.repeat(np.arange(len(wanted)), np.maximum(1, share * len(wanted) / count).astype(int)[of.ravel()])
+
+
 def store(file, task, inputs, parts):
     np.savez(file + ".part.npz", *[np.asarray(part, np.float32) for part in parts], task=task, inputs=inputs)
     os.replace(file + ".part.npz", file)
@@ -172,7 +180,8 @@ def clone(options):
         rows = np.concatenate([rows_of(demo["obs"], inputs, len(demo["actions"])) for demo in demos])
         wanted = np.concatenate([demo["actions"] for demo in demos]).astype(float)
         least = least_of({name: demos[0]["obs"][name][0] for name in inputs}, inputs)
-    store(options.policy, task, inputs, fit(rows, wanted, options.epochs, options.seed, least=least))
+    some = balanced(wanted)
+    store(options.policy, task, inputs, fit(rows[some], wanted[some], options.epochs, options.seed, least=least))
     print(f"\n{len(demos)} episodes, {len(rows)} actions: {options.policy}")
 
 

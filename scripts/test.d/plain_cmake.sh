@@ -95,12 +95,17 @@ YAML
     --scene package://vibe_core/scenes/sphere.yaml --mesh meshes/ball.obj)
 }
 
-# with the core that is installed already, and without network; unoptimised, since the module is but the way to the core
+makesASourceDistribution() {
+  echo 'target_compile_options(vibe_python PRIVATE -O0)' >>"$scratch/source/vibe_python/CMakeLists.txt" # the module is but the way to the core
+  (cd "$scratch/source/vibe_python" && bare /usr/bin/env -C "$PWD" /usr/bin/python3 setup.py -q sdist -d "$scratch/archive") &&
+    ! tar tf "$scratch"/archive/vibe*.tar.gz | grep -E '/test/|__pycache__'
+}
+
+# with the core that is installed already, and without network
 makesAWheel() {
-  echo 'target_compile_options(vibe_python PRIVATE -O0)' >>"$scratch/source/vibe_python/CMakeLists.txt"
   bare /usr/bin/python3 -m venv --system-site-packages "$scratch/venv" &&
     bare VIBE_CORE_PREFIX="$moved" CMAKE_BUILD_PARALLEL_LEVEL=1 "$scratch/venv/bin/pip" wheel --no-build-isolation --no-deps \
-      --no-index --wheel-dir "$scratch/wheels" "$scratch/source/vibe_python"
+      --no-index --wheel-dir "$scratch/wheels" "$scratch"/archive/vibe*.tar.gz
 }
 
 installsTheWheel() {
@@ -200,7 +205,8 @@ check 'a program elsewhere gives the state of the catkin build' givesTheHashOfCa
 if [ ${#eigen[@]} -gt 0 ]; then
   echo 'skipped a wheel of the Python module (it is made with the Eigen of the system)'
 else
-  check 'a wheel of the Python module is made in a virtual environment' makesAWheel
+  check 'a source distribution of the Python module is made, without tests' makesASourceDistribution
+  check 'a wheel is made of it in a virtual environment' makesAWheel
   check 'the wheel is installed' installsTheWheel
   check 'the module of the wheel links no part of ROS' namesNoRos <(bare ldd "$scratch"/venv/lib/python3*/site-packages/vibe/_core*.so)
   check 'the module of the wheel gives the state of the catkin build' givesTheHashOfCatkin pythonHash "$seconds" -- --duration "$seconds"

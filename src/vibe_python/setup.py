@@ -10,10 +10,13 @@ import tempfile
 
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
+from setuptools.command.sdist import sdist
 from wheel.bdist_wheel import bdist_wheel
 
 HEADERS = os.environ.get("VIBE_PYTHON_HEADERS", "")  # of Pythons beside this one, folders that end in python3.N; see CMakeLists.txt
 HERE = os.path.dirname(os.path.abspath(__file__))
+PARTS = ("vibe_core", "vibe_cmake", "vibe_description")  # beside this folder; in a source distribution within it
+BESIDE = HERE if os.path.isdir(os.path.join(HERE, PARTS[0])) else os.path.dirname(HERE)
 SCRATCH = tempfile.mkdtemp(prefix="vibe_python_")  # nothing is left beside the sources
 atexit.register(shutil.rmtree, SCRATCH, ignore_errors=True)
 
@@ -22,7 +25,7 @@ class BuildWithCMake(build_ext):
     """The whole of the package is made by `cmake --install`."""
 
     def run(self):
-        if not os.path.isdir(os.path.join(HERE, "..", "vibe_core")):
+        if not os.path.isdir(os.path.join(BESIDE, PARTS[0])):
             raise SystemExit("There is no folder vibe_core beside vibe_python; install from the whole repository")
         core = os.environ.get("VIBE_CORE_PREFIX", "")  # an installed core, instead of building one
         build = os.path.abspath(os.path.join(self.build_temp, "cmake"))
@@ -55,6 +58,23 @@ class BuildWithCMake(build_ext):
         shutil.copytree(prefix, package, dirs_exist_ok=True)
 
 
+class SourceDistribution(sdist):
+    """All that is compiled and installed, without tests."""
+
+    def make_release_tree(self, base_dir, files):
+        super().make_release_tree(base_dir, files)
+        unneeded = shutil.ignore_patterns("test", "fuzz", "__pycache__", "*.pyc")
+        for folder in ("src", "python", "programs"):
+            shutil.copytree(os.path.join(HERE, folder), os.path.join(base_dir, folder), ignore=unneeded, dirs_exist_ok=True)
+        for file in ("CMakeLists.txt", "package.xml"):
+            shutil.copy2(os.path.join(HERE, file), base_dir)
+        licence = os.path.join(BESIDE, "..", "LICENSE")
+        if os.path.exists(licence):
+            shutil.copy2(licence, base_dir)
+        for folder in PARTS:
+            shutil.copytree(os.path.join(BESIDE, folder), os.path.join(base_dir, folder), ignore=unneeded)
+
+
 class WheelOfSeveralPythons(bdist_wheel):
     """Its name says each Python that it has a module for."""
 
@@ -78,6 +98,6 @@ setup(
     package_data={"vibe": ["py.typed", "*.pyi"]},
     ext_modules=[Extension("vibe._core", sources=[])],
     options={"build": {"build_base": SCRATCH}, "egg_info": {"egg_base": SCRATCH}},
-    cmdclass={"build_ext": BuildWithCMake, "bdist_wheel": WheelOfSeveralPythons},
+    cmdclass={"build_ext": BuildWithCMake, "bdist_wheel": WheelOfSeveralPythons, "sdist": SourceDistribution},
     zip_safe=False,
 )

@@ -50,16 +50,6 @@ std::vector<bool> beforeTheLens(const Model& model) {
   return carried;
 }
 
-// Of one URDF after another; models of one scene share it.
-const std::vector<LinkMesh>& meshesOf(const Model& model) {
-  static std::mutex one_at_a_time;
-  static std::map<std::string, std::vector<LinkMesh>> known;
-  const std::lock_guard<std::mutex> lock(one_at_a_time);
-  const std::string& urdf = model.scene.scope->urdf;
-  const auto found = known.find(urdf);
-  return found != known.end() ? found->second : known.emplace(urdf, linkMeshes(model)).first->second;
-}
-
 void add(const Eigen::Vector3d& vertex, const Rgb& colour, Scenery& scenery) {
   scenery.x.push_back(vertex.x());
   scenery.y.push_back(vertex.y());
@@ -119,7 +109,7 @@ Scenery sceneryOf(const Model& model, const State& state, Instruments shown) {
   if (shown == Instruments::None) return scenery;
   const std::vector<bool> before_lens = beforeTheLens(model);
   const std::vector<Eigen::Isometry3d> poses = drawnLinkPoses(model, state);
-  for (const LinkMesh& mesh : meshesOf(model))
+  for (const LinkMesh& mesh : model.tool->meshes())
     if (shown == Instruments::All || before_lens[static_cast<std::size_t>(mesh.link)])
       addMesh(meshOf(mesh.file), poses[mesh.link] * mesh.origin * Eigen::Scaling(mesh.scale),
               colourOf(model.tool->linkName(mesh.link)), scenery);

@@ -1,7 +1,6 @@
 #include "vibe_core/simulation/tool_queries.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -11,9 +10,6 @@
 #include "geometry/ray.hpp"
 #include "tool/kinematics.hpp"
 #include "tool/tool_motion.hpp"
-#include "tool/urdf_document.hpp"
-#include "vibe_core/files/files.hpp"
-
 namespace vibe {
 
 namespace {
@@ -135,21 +131,6 @@ std::vector<Eigen::Isometry3d> drawnLinkPoses(const Model& model, const State& s
     poses[joint.child_link] = poses[joint.parent_link] * in_parent;
   }
   return poses;
-}
-
-std::vector<LinkMesh> linkMeshes(const Model& model) {
-  const std::string& urdf = model.scene.scope->urdf;
-  const UrdfDocument document(readTextFile(resolveAddress(urdf), "URDF"), urdf);
-  std::vector<LinkMesh> meshes;
-  for (int link = 0; link < model.tool->linkCount(); ++link) {
-    const urdf::LinkConstSharedPtr found = document.model().getLink(model.tool->linkName(link));
-    if (!found || !found->visual) continue;
-    const auto mesh = std::dynamic_pointer_cast<const urdf::Mesh>(found->visual->geometry);
-    if (mesh)
-      meshes.push_back(
-          {link, toIsometry(found->visual->origin), {mesh->scale.x, mesh->scale.y, mesh->scale.z}, mesh->filename});
-  }
-  return meshes;
 }
 
 }  // namespace vibe

@@ -28,7 +28,7 @@ SurfaceMesh deviceBefore(const Model& model) {
   const std::vector<Eigen::Isometry3d> poses = drawnLinkPoses(model, State{});  // all joints at 0
   const Eigen::Isometry3d to_tip = poses[model.tip_link].inverse();
   SurfaceMesh device;
-  for (const LinkMesh& mesh : linkMeshes(model))
+  for (const LinkMesh& mesh : model.tool->meshes())
     if (carried[mesh.link] != 0)
       append(readMeshFile(resolveAddress(mesh.file)),
              to_tip * poses[mesh.link] * mesh.origin * Eigen::Scaling(mesh.scale), device);

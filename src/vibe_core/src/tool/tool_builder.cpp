@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "tool/urdf_document.hpp"
 #include "vibe_core/program/error.hpp"
@@ -68,6 +70,10 @@ int ToolBuilder::addLink(const urdf::Link& link) {
   if (!link_index_.emplace(link.name, index).second)
     fail("link", link.name, "is the child of two joints; give every link but the root exactly one");
   link_names.push_back(link.name);
+  if (std::optional<LinkMesh> mesh = makeMesh(link)) {
+    mesh->link = index;
+    meshes.push_back(std::move(*mesh));
+  }
   try {
     for (ToolShape& shape : makeShapes(link)) {
       shape.link = index;

@@ -20,6 +20,7 @@ class ToolBuilder {
   std::vector<std::string> link_names;
   std::vector<ToolJoint> joints;
   std::vector<ToolShape> shapes;
+  std::vector<LinkMesh> meshes;
   std::array<JointLimits, kJointCount> limits{};
   std::vector<double> shaft_stations;  ///< see ToolModel::shaftStations()
   double shaft_end = 0;                ///< see ToolModel::freeLength()

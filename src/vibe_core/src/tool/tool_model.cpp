@@ -64,6 +64,7 @@ ToolModel ToolModel::fromUrdf(const std::string& urdf_xml, const std::string& pl
   model.link_names_ = std::move(parts.link_names);
   model.joints_ = std::move(parts.joints);
   model.shapes_ = std::move(parts.shapes);
+  model.meshes_ = std::move(parts.meshes);
   model.limits_ = parts.limits;
   model.shaft_stations_ = std::move(parts.shaft_stations);
   model.shaft_end_ = parts.shaft_end;

@@ -211,6 +211,13 @@ Eigen::Isometry3d toIsometry(const urdf::Pose& pose) {
   return result;
 }
 
+std::optional<LinkMesh> makeMesh(const urdf::Link& link) {
+  if (!link.visual) return std::nullopt;
+  const auto* mesh = dynamic_cast<const urdf::Mesh*>(link.visual->geometry.get());
+  if (mesh == nullptr) return std::nullopt;
+  return LinkMesh{-1, toIsometry(link.visual->origin), {mesh->scale.x, mesh->scale.y, mesh->scale.z}, mesh->filename};
+}
+
 std::vector<ToolShape> makeShapes(const urdf::Link& link) {
   const auto& all = link.collision_array;
   std::vector<bool> used(all.size(), false);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,9 @@ class UrdfDocument {
 
 /// Position and rotation of a URDF <origin>.
 Eigen::Isometry3d toIsometry(const urdf::Pose& pose);
+
+/// The mesh for the picture of a link, if its first visual is one; the caller sets LinkMesh::link.
+std::optional<LinkMesh> makeMesh(const urdf::Link& link);
 
 /// The collision shapes of a link as Bullet shapes without rounding margin; the caller sets ToolShape::link. A cylinder
 /// with a sphere of the same radius at each end becomes one capsule. The surface is the same, but a point inside is

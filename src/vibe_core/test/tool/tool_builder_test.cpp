@@ -49,6 +49,22 @@ TEST(ToolBuilder, AcceptsTheScope) {
   EXPECT_EQ(errorOf(scopeText()), "no error");
 }
 
+// A recording carries its URDF, and what is drawn of it, or hides the wall, must not be what lies on the disk today.
+TEST(ToolBuilder, KeepsTheMeshesOfItsOwnText) {
+  const std::string mesh = "<mesh filename=\"package://vibe_description/meshes/shaft.obj\"/>";
+  const std::vector<LinkMesh> shipped = ToolModel::fromUrdf(scopeText(), "scope.urdf").meshes();
+  const std::string other = replaced(scopeText(), mesh, "<mesh filename=\"other.stl\" scale=\"1 2 3\"/>");
+  const ToolModel tool = ToolModel::fromUrdf(other, "scope.urdf");
+  ASSERT_EQ(tool.meshes().size(), shipped.size());
+  ASSERT_GT(shipped.size(), 20u);
+  const auto changed = [&](const LinkMesh& one) { return one.file == "other.stl"; };
+  const auto found = std::find_if(tool.meshes().begin(), tool.meshes().end(), changed);
+  ASSERT_NE(found, tool.meshes().end());
+  EXPECT_EQ(found->link, tool.linkIndex("scope_shaft"));
+  EXPECT_EQ(found->scale, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(std::count_if(tool.meshes().begin(), tool.meshes().end(), changed), 1);
+}
+
 struct Bad {
   const char* name;
   std::string text;

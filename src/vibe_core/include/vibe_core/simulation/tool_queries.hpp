@@ -60,16 +60,4 @@ std::vector<DrawnJoint> drawnJoints(const Model& model, const State& state);
 /// @param model  with a tool
 std::vector<Eigen::Isometry3d> drawnLinkPoses(const Model& model, const State& state);
 
-/// A mesh that the URDF has for the picture of a link.
-struct LinkMesh {
-  int link = -1;                                             ///< number of the link
-  Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  ///< mesh in the link [m]
-  Eigen::Vector3d scale = Eigen::Vector3d::Ones();           ///< of the mesh, along its axes (ratio)
-  std::string file;                                          ///< or package://NAME/FILE
-};
-
-/// All of them, in link order; of several meshes of a link the first. Reads the URDF again.
-/// @param model  with a tool
-std::vector<LinkMesh> linkMeshes(const Model& model);
-
 }  // namespace vibe

@@ -77,6 +77,14 @@ struct ToolShape {
   double margin = 0;  ///< distance of the surface from the core of the Bullet shape, outwards [m]
 };
 
+/// The mesh that the URDF has for the picture of a link; of several the first.
+struct LinkMesh {
+  int link = -1;                                             ///< number of the link
+  Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  ///< mesh in the link [m]
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();           ///< of the mesh, along its axes (ratio)
+  std::string file;                                          ///< or package://NAME/FILE
+};
+
 /// Range of one of the seven inputs, from the `limit` of the joint with that name.
 struct JointLimits {
   double lower = 0;     ///< [m], [rad]
@@ -106,6 +114,7 @@ class ToolModel {
   int linkIndex(const std::string& name) const;
   const std::vector<ToolJoint>& joints() const { return joints_; }  ///< parents first: joint k carries link k + 1
   const std::vector<ToolShape>& shapes() const { return shapes_; }  ///< of all links, in the order of their links
+  const std::vector<LinkMesh>& meshes() const { return meshes_; }   ///< of all links, in the order of their links
   /// Of the seven inputs, in the order of Joint.
   const std::array<JointLimits, kJointCount>& limits() const { return limits_; }
 
@@ -137,6 +146,7 @@ class ToolModel {
   std::vector<std::string> link_names_;
   std::vector<ToolJoint> joints_;  // ordered parent first; joint k has child_link k + 1
   std::vector<ToolShape> shapes_;
+  std::vector<LinkMesh> meshes_;
   std::array<JointLimits, kJointCount> limits_{};
   std::vector<double> shaft_stations_;
   double shaft_end_ = 0;  // along the axis of the root link at insertion 0 [m]
