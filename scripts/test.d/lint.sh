@@ -169,6 +169,7 @@ seesWriters() {
   findsWriter bad.py 'with open(path, "w", encoding="utf-8") as file:' && findsWriter bad.py 'figure.savefig(picture)' &&
     findsWriter bad.py 'np.savez(file, *parts)' && findsWriter bad.py 'file.write_text(text)' &&
     findsWriter bad.cpp '  std::ofstream out(file);' && findsWriter bad.hpp '  std::ofstream out_;' &&
+    findsWriter bad.cpp '  video_.open(file, codec, rate, size);' && findsWriter bad.cpp 'const int to = ::open(file, O_CREAT, 0600);' &&
     findsWriter bad.cpp '  if (!cv::imwrite(file, image)) fail();' && findsWriter bad.cpp 'FILE* f = std::fopen(name, mode);'
 }
 check 'lint sees files that may be left half' seesWriters

@@ -1,5 +1,6 @@
 """Messages of ROS 2: the bytes of each type, its definition, and the package of vibe_msgs."""
 
+import importlib.util
 import io
 import os
 import random
@@ -93,6 +94,37 @@ class DefinitionTest(unittest.TestCase):
     def test_units(self):
         fields = fields_of("x/Y", "# Depth [m].\nfloat64 a\nfloat64 b\n# Of [1, 2].\nuint8 c\nuint8 d # [N]\n")
         self.assertEqual({name: unit for name, (_, unit) in fields.items()}, {"a": "m", "b": "m", "c": "", "d": "N"})
+
+
+@unittest.skipUnless(importlib.util.find_spec("rosidl_adapter"), "python3-rosidl is not installed")
+class RosidlTest(unittest.TestCase):
+    """What the parser of ROS 2 itself finds."""
+
+    def assert_fields(self, found, text, what):
+        kinds = {field.name: str(field.type) for field in found.fields}
+        wanted = {name: kind for name, (kind, _) in fields_of(what, text, arrays=True).items()}
+        self.assertEqual(list(kinds), list(wanted), what)
+        for name, kind in wanted.items():
+            self.assertEqual(kinds[name].rpartition("/")[2], kind.rpartition("/")[2], what)
+
+    def test_schemas_of_every_type(self):
+        from rosidl_adapter.parser import parse_message_string
+
+        for kind in TYPES:
+            for name, text in parts_of(kind._type, ros2_definition(kind._type, kind._full_text)).items():
+                self.assert_fields(parse_message_string(*name.split("/"), text), text, name)
+
+    def test_the_package(self):
+        from rosidl_adapter.parser import parse_message_string, parse_service_string
+
+        for path, text in ros2_package.files_of(rospkg.RosPack().get_path("vibe_msgs")).items():
+            name = os.path.basename(path)[:-4]
+            if path.startswith("msg/"):
+                self.assert_fields(parse_message_string("vibe_msgs", name, text), text, "vibe_msgs/" + name)
+            elif path.startswith("srv/"):
+                found, halves = parse_service_string("vibe_msgs", name, text), ("\n" + text).split("\n---\n")
+                self.assert_fields(found.request, halves[0], "vibe_msgs/" + name)
+                self.assert_fields(found.response, halves[1], "vibe_msgs/" + name)
 
 
 class PackageTest(unittest.TestCase):

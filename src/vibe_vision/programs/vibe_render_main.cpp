@@ -1,13 +1,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <iomanip>
-#include <opencv2/videoio.hpp>
+#include <optional>
 
 #include "image_files.hpp"
 #include "program_options.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
+#include "video_file.hpp"
 
 namespace vision = vibe::vision;
 
@@ -23,25 +24,24 @@ struct Options {
 class Recording {
  public:
   Recording(const Options& options, const vision::SyntheticScene& scene) : folder_(options.out) {
-    if (options.format != "video") return;
-    const std::string file = folder_ / "video.mkv";
     const cv::Size size(scene.camera.width, scene.camera.height);
-    const int codec = cv::VideoWriter::fourcc('F', 'F', 'V', '1');
-    video_.open(file, cv::CAP_FFMPEG, codec, scene.rate, size, false);
-    if (!video_.isOpened())
-      throw vibe::Error(file + ": cannot be written as FFV1 video; check the folder, or use --format images.");
+    if (options.format == "video") video_.emplace(folder_ / "video.mkv", "FFV1", scene.rate, size, false);
   }
 
   void add(const vision::Frame& frame) {
-    if (video_.isOpened()) return video_.write(frame.image.mat());
+    if (video_) return video_->add(frame.image.mat());
     char name[32];
     std::snprintf(name, sizeof name, "frame_%06llu.png", static_cast<unsigned long long>(frame.sequence));
     vision::writePicture(folder_ / name, frame.image.mat(), "The picture", {cv::IMWRITE_PNG_COMPRESSION, 1});
   }
 
+  void finish() {
+    if (video_) video_->finish();
+  }
+
  private:
   std::filesystem::path folder_;
-  cv::VideoWriter video_;
+  std::optional<vision::VideoFile> video_;
 };
 
 void render(const Options& options) {
@@ -66,6 +66,7 @@ void render(const Options& options) {
       vision::writeTruth(truth, rendered.frame.sequence, rendered.frame.stamp, scene.instruments[i].nominal.name,
                          rendered.truth[i]);
   }
+  recording.finish();
   vibe::writeFile(folder / (options.format == "video" ? "video.mkv.csv" : "frames.csv"), stamps.str(), "The table");
   vibe::writeFile(folder / "truth.csv", truth.str(), "The truth");
 }

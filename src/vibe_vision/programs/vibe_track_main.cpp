@@ -6,7 +6,7 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
-#include <opencv2/videoio.hpp>
+#include <optional>
 
 #include "image_files.hpp"
 #include "program_options.hpp"
@@ -16,6 +16,7 @@
 #include "vibe_vision/record/annotation.hpp"
 #include "vibe_vision/record/track_table.hpp"
 #include "vibe_vision/track/tracker.hpp"
+#include "video_file.hpp"
 
 namespace vision = vibe::vision;
 
@@ -69,20 +70,23 @@ class Annotator {
     vision::writePicture(target_ + name, picture);
   }
 
+  void finish() {
+    if (video_) video_->finish();
+  }
+
  private:
   std::string target_;
   double rate_;
   bool is_video_ = false;
   unsigned long long count_ = 0;
-  cv::VideoWriter video_;
+  std::optional<vision::VideoFile> video_;
 
   [[noreturn]] void fail() const {
     throw vibe::Error(target_ + ": cannot be written; give a folder, or a file that ends in .avi or .mkv");
   }
   void addToVideo(const cv::Mat& picture) {
-    if (count_++ == 0) video_.open(target_, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), rate_, picture.size());
-    if (!video_.isOpened()) fail();
-    video_.write(picture);
+    if (!video_) video_.emplace(target_, "MJPG", rate_, picture.size(), true);
+    video_->add(picture);
   }
 };
 
@@ -153,6 +157,7 @@ int run(Options options) {
     if (result != vision::ReadResult::End && result != vision::ReadResult::Frame) throw vibe::Error(source->status());
   }
   table.close();
+  annotator.finish();
   if (summary.frames() == 0) throw vibe::Error(source->status() + "; it has no frame, give another recording");
   std::printf("%s%llu frames, %llu missing in the recording; results in %s\n", summary.text().c_str(),
               static_cast<unsigned long long>(summary.frames()),

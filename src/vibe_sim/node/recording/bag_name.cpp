@@ -20,7 +20,8 @@ enum class Claim { Made, Taken };
 Claim tryToClaim(const std::string& file) {
   const std::string active = file + ".active";
   if (std::filesystem::exists(file)) return Claim::Taken;
-  const int descriptor = ::open(active.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const int descriptor =
+      ::open(active.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);  // not whole: an empty mark
   if (descriptor < 0 && errno == EEXIST) return std::filesystem::is_regular_file(active) ? Claim::Taken : Claim::Made;
   if (descriptor < 0)
     throw Error("Recording '" + file + "' cannot be written (" + std::strerror(errno) +

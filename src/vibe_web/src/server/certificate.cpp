@@ -8,6 +8,7 @@
 #include <openssl/pem.h>
 #include <openssl/rand.h>
 #include <openssl/x509v3.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -21,6 +22,8 @@
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
+
+#include "vibe_core/files/files.hpp"
 
 namespace vibe::web {
 
@@ -48,6 +51,23 @@ struct PairFiles {
 void closeFile(std::FILE* file) {
   std::fclose(file);
 }
+
+/// A folder that one program at a time uses, so that two which start together have the same pair.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::string& folder)
+      : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (descriptor_ >= 0) ::flock(descriptor_, LOCK_EX);
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  ~FolderLock() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+
+ private:
+  int descriptor_;
+};
 
 [[noreturn]] void fail(const std::string& what) {
   throw std::runtime_error(what + "; choose another folder with _certificates:=, or make this one writable.");
@@ -81,15 +101,17 @@ Pair readPair(const PairFiles& files) {
   return pair;
 }
 
-/// Under another name first, so that no other program ever reads half of it.
+/// Whole or not at all; nobody else can ever open what has mode 0600.
 template <class Write>
 void writeFile(const std::string& path, mode_t mode, Write write) {
-  const std::string part = path + "." + std::to_string(::getpid());
+  WholeFile whole(path, "The file");
+  const std::string& part = whole.part();
+  ::unlink(part.c_str());  // of a program that was killed; a file that is there would keep its mode
   const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
   Owned<std::FILE> file(descriptor < 0 ? nullptr : ::fdopen(descriptor, "w"), closeFile);
-  const bool written = file && write(file.get()) && std::fflush(file.get()) == 0;
-  if (!written || std::rename(part.c_str(), path.c_str()) != 0)
-    fail("The file " + path + " cannot be written (" + std::strerror(errno) + ")");
+  if (!file) fail("The file " + path + " cannot be written (" + std::strerror(errno) + ")");
+  const bool written = write(file.get());
+  whole.finish(std::fclose(file.release()) == 0 && written);
 }
 
 void writePair(const PairFiles& files, const Pair& pair, const X509* issuer) {
@@ -209,6 +231,7 @@ std::string derOf(const X509* certificate) {
 Certificates provideCertificates(const std::string& folder, const std::vector<std::string>& names) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
+  const FolderLock alone(folder);
   const PairFiles of_root{folder + "/root.pem", folder + "/root_key.pem"};
   const PairFiles of_leaf{folder + "/certificate.pem", folder + "/key.pem"};
   Pair leaf = readPair(of_leaf);

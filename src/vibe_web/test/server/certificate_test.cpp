@@ -4,11 +4,14 @@
 #include <openssl/pem.h>
 #include <openssl/x509v3.h>
 
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <future>
+#include <iterator>
 #include <memory>
 
 namespace vibe::web::certificate_test {
@@ -59,6 +62,22 @@ TEST_F(Certificate, IsTrustedByThoseWhoInstallTheRoot) {
   EXPECT_FALSE(openssl("x509 -in certificate.pem -checkend " + std::to_string(398 * 24 * 3600)));
   for (const char* key : {"key.pem", "root_key.pem"})
     EXPECT_EQ(fs::status(path(key)).permissions(), fs::perms::owner_read | fs::perms::owner_write) << key;
+}
+
+TEST_F(Certificate, IsThereWholeOrNotAtAll) {
+  write(".part-key.pem", "left by a program that was killed, and open to all");
+  write(".part-certificate.pem", "the same");
+  provide();
+  EXPECT_TRUE(isTrustedAs("-verify_hostname lab"));
+  EXPECT_EQ(fs::status(path("key.pem")).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 4);
+}
+
+TEST_F(Certificate, OfProgramsThatStartTogetherIsTheSame) {
+  std::array<std::future<std::string>, 4> leaves;
+  for (auto& leaf : leaves) leaf = std::async(std::launch::async, [this] { return provide().leaf; });
+  const std::string first = leaves[0].get();
+  for (std::size_t k = 1; k < leaves.size(); ++k) EXPECT_EQ(leaves[k].get(), first);
 }
 
 TEST_F(Certificate, StaysAsLongAsItIsFit) {

@@ -1,10 +1,12 @@
 """The moving wall as one file of glTF 2.0 (https://registry.khronos.org/glTF): each frame is a morph target of the first one."""
 
 import json
+import math
 import os
 import shutil
 import struct
 import tempfile
+from array import array
 
 import numpy
 
@@ -35,15 +37,15 @@ class Gltf(Wall):
         super().__init__(source, ["scope/measured_cp"])
         self._folder, self._binary = folder, files.enter_context(tempfile.TemporaryFile(dir=folder))
         self._gltf = {"accessors": [], "bufferViews": [], "meshes": [], "materials": [], "nodes": []}
-        self._base, self._targets, self._poses, self._animated = None, [], [], []
+        self._base, self._targets, self._poses, self._animated = None, [], array("d"), []
         self._rows = ["time [s],stamp [s],deviation [m]"]
 
     def add(self, message):
         if message.connection.topic.endswith("measured_cp"):
             place, turn, time = message.fields.pose.position, message.fields.pose.orientation, message.time / 1e9
             pose = (time, place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w)
-            if numpy.isfinite(pose).all() and any(pose[4:]) and (not self._poses or time > self._poses[-1][0]):
-                self._poses.append(pose)
+            if all(map(math.isfinite, pose)) and any(pose[4:]) and (not self._poses or time > self._poses[-8]):
+                self._poses.extend(pose)
         else:
             super().add(message)
 
@@ -99,7 +101,8 @@ class Gltf(Wall):
         if self._targets:
             times = [float(row.split(",")[0]) for row in self._rows[1:]]
             self._animate("weights", self._times(times), numpy.eye(len(times), len(self._targets), -1).ravel())
-        poses = numpy.array([pose for pose in self._poses if self._begin <= pose[0] <= self._last / 1e9])
+        poses = numpy.array(self._poses).reshape(-1, 8)
+        poses = poses[(self._begin <= poses[:, 0]) & (poses[:, 0] <= self._last / 1e9)]
         if len(poses):
             self._add_node("scope_tip", *tube())
             times = self._times(poses[:, 0] - self._begin)

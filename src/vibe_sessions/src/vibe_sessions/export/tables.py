@@ -1,23 +1,23 @@
 """Tables of topics: a row for each message, a column for each number; CSV, or Parquet where pyarrow is installed.
 
-Which columns a table has is known at its end, so rows wait on disk, in blocks. An array of messages is a table of its own,
-with the number of the element in the array.
+Which columns a table has is known at its end, so rows wait on disk.
 """
 
 import csv
-import functools
+import io
 import itertools
 import marshal
-import operator
 import os
 import re
+import shutil
 import tempfile
 
 from .definitions import PRIMITIVES, fields_of, parts_of
+from .rows import Rows
 
-BLOCK = 4096  # rows in memory
-LONGEST = 64  # array that becomes columns
-TIMES = ("time", "duration")
+CELLS = 1 << 14  # in memory, of a table of Parquet
+GROUP = 4096  # rows of Parquet that are compressed together
+KEY = ("received", "stamp")
 # of messages whose definitions do not say it
 UNITS = {"geometry_msgs/Point": "m", "geometry_msgs/Wrench.force": "N", "geometry_msgs/Wrench.torque": "N m",
          "geometry_msgs/Twist.linear": "m/s", "geometry_msgs/Twist.angular": "rad/s",
@@ -25,58 +25,25 @@ UNITS = {"geometry_msgs/Point": "m", "geometry_msgs/Wrench.force": "N", "geometr
 
 
 class Table:
+    """Takes rows, whose columns become more."""
+
     def __init__(self, spill):
-        self.columns, self._names, self._rows, self._spill = {}, [], [], spill  # of columns the names alone, in the order of their values
+        self.columns, self._last, self._spill = [], [], spill
 
-    def add(self, row):
-        if list(row) != self._names:
-            self.columns.update(dict.fromkeys(row))
-            self._names = list(self.columns)
-            row = {name: row.get(name) for name in self._names}
-        self._rows.append(list(row.values()))
-        if len(self._rows) == BLOCK:
-            self._flush()
+    def add(self, columns, values):
+        if columns != self._last:
+            known = dict.fromkeys(self.columns)
+            if not known.keys() >= set(columns):
+                self.widen()
+                self.columns = list({**known, **dict.fromkeys(columns)})
+            self._last = columns
+        if columns != self.columns:
+            row = dict(zip(columns, values))
+            values = [row.get(name) for name in self.columns]
+        self.put(values)
 
-    def _flush(self):
-        marshal.dump(self._rows, self._spill)  # takes half as long as pickle
-        self._rows = []
-
-    def blocks(self):
-        """Lists of rows, of which those before a column came are shorter."""
-        self._flush()
-        end = self._spill.tell()
-        self._spill.seek(0)
-        while self._spill.tell() < end:
-            yield marshal.load(self._spill)
-
-
-@functools.lru_cache(4096)
-def columns_of(array, labels):
-    return ["{}[{}]".format(array, label) for label in labels]
-
-
-def steps_of(part, prefix=""):
-    """How the columns of a message are filled, in their order, as (columns, type, whether it is an array, what gets the values,
-    what gets the labels of an array). Numbers and texts that follow each other are one step."""
-    run = []
-    for name, kind in [*zip(part.__slots__, part._slot_types), ("", "[")]:
-        base, bracket, _ = kind.partition("[")
-        column = "header.frame_id" if prefix + name == "header" else prefix + name  # its stamp has a column
-        if column == "header.frame_id" or (base in PRIMITIVES and base not in TIMES and not bracket):
-            run.append(column)
-            continue
-        if run:
-            yield run, "", False, operator.attrgetter(*run) if len(run) > 1 else lambda each, get=operator.attrgetter(*run): (get(each),), None
-            run = []
-        if name and (bracket or base in TIMES):
-            labels = operator.attrgetter(prefix + "name") if "name" in part.__slots__ else None
-            yield column, base, bool(bracket), operator.attrgetter(column), labels
-        elif name:
-            yield from steps_of(getattr(part, name), column + ".")
-
-
-def number_of(value, kind):
-    return value.to_nsec() / 1e9 if kind in TIMES else value
+    def widen(self):
+        """Called before there are more columns."""
 
 
 def meaning_of(types, datatype, table, column):
@@ -91,51 +58,29 @@ def meaning_of(types, datatype, table, column):
 
 
 class Tables:
-    """What csv and parquet share; they differ in how a table is written."""
+    """What csv and parquet share; they differ in the table."""
 
     def __init__(self, folder, source, files):
         self.connections = source.chosen
         self._folder, self._files, self._tables, self._about = folder, files, {}, {}
-        self._steps = {}  # by class
+        self._names, self._rows = {}, {}  # by connection
 
     def add(self, message):
-        name = message.connection.topic.strip("/").replace("/", "_")
-        self._about[name] = message.connection
-        key = {"received": message.received / 1e9, "stamp": message.time / 1e9}
-        row = dict(key)
-        self._fill(message.fields, row, name, key)
-        self._add(name, row)
+        number = message.number
+        if number not in self._rows:
+            self._begin(number, message.connection)
+        self._rows[number].read(message.data, self._names[number], KEY, (message.received / 1e9, message.time / 1e9))
 
-    def _add(self, name, row):
+    def _begin(self, number, connection):
+        name = self._names[number] = connection.topic.strip("/").replace("/", "_")
+        self._about[name] = connection
+        types = {kind: fields_of(kind, text, arrays=True) for kind, text in parts_of(connection.datatype, connection.definition).items()}
+        self._rows[number] = Rows(connection.datatype, types, self._add)
+
+    def _add(self, name, columns, values):
         if name not in self._tables:
-            self._tables[name] = Table(self._files.enter_context(tempfile.TemporaryFile(dir=self._folder)))
-        self._tables[name].add(row)
-
-    def _fill(self, part, row, table, key):
-        if type(part) not in self._steps:
-            self._steps[type(part)] = list(steps_of(part))
-        for columns, base, is_array, get, get_labels in self._steps[type(part)]:
-            if is_array:
-                self._fill_array(get(part), base, columns, row, table, key, get_labels and get_labels(part))
-            elif base in TIMES:
-                row[columns] = number_of(get(part), base)
-            else:
-                row.update(zip(columns, get(part)))
-
-    def _fill_array(self, values, base, column, row, table, key, labels):
-        if base not in PRIMITIVES:
-            table += "." + column
-            for number, value in enumerate(values):
-                below = {**key, column: number}
-                self._fill(value, below, table, dict(below))
-                self._add(table, below)
-        elif len(values) > LONGEST:
-            row[column + ".length"] = len(values)  # a mesh or an image: nothing for a table
-        elif values is not labels:  # which label the others, as in JointState
-            named = isinstance(labels, list) and len(labels) == len(values) and base != "string"
-            if base in TIMES:
-                values = [number_of(value, base) for value in values]
-            row.update(zip(columns_of(column, tuple(labels) if named else range(len(values))), values))
+            self._tables[name] = self.Table(self._files.enter_context(tempfile.TemporaryFile(dir=self._folder)))
+        self._tables[name].add(columns, values)
 
     def finish(self):
         with open(os.path.join(self._folder, "columns.csv"), "w", newline="", encoding="utf-8") as file:
@@ -146,29 +91,86 @@ class Tables:
                 types = {kind: fields_of(kind, text) for kind, text in parts_of(about.datatype, about.definition).items()}
                 columns = {each: meaning_of(types, about.datatype, name, each) for each in table.columns}
                 writer.writerows((name, each, *meaning) for each, meaning in columns.items())
-                self.write(os.path.join(self._folder, name), columns, table.blocks())
+                table.write(os.path.join(self._folder, name), columns)
         return "{} tables".format(len(self._tables))
 
 
+class CsvTable(Table):
+    """Rows wait as text, so that one is in memory."""
+
+    def __init__(self, spill):
+        super().__init__(spill)
+        self._narrow = []  # (columns, where rows with so many end)
+        self._text = io.TextIOWrapper(spill, encoding="utf-8", newline="")
+        self._writer = csv.writer(self._text, lineterminator="\n")
+        self.put = self._writer.writerow
+
+    def widen(self):
+        self._text.flush()
+        self._narrow.append((len(self.columns), self._spill.tell()))
+
+    def write(self, path, columns):
+        self._text.flush()
+        self._spill.seek(0)
+        with open(path + ".csv", "wb") as file:
+            text = io.TextIOWrapper(file, encoding="utf-8", newline="")
+            csv.writer(text, lineterminator="\n").writerow(columns)
+            text.flush()
+            for count, end in self._narrow:
+                self._fill_up(file, end, b"," * (len(columns) - count) + b"\n")
+            shutil.copyfileobj(self._spill, file)
+            text.detach()
+
+    def _fill_up(self, file, end, further):
+        """Copies rows to which cells are added; in a quoted text a line may end."""
+        is_quoted = False
+        while self._spill.tell() < end:
+            line = self._spill.readline()
+            is_quoted ^= line.count(b'"') % 2 == 1
+            file.write(line if is_quoted else line[:-1] + further)
+
+
 class Csv(Tables):
-    def write(self, path, columns, blocks):
-        with open(path + ".csv", "w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(columns)
-            for block in blocks:
-                writer.writerows(row + [None] * (len(columns) - len(row)) for row in block)
+    Table = CsvTable
 
 
-class Parquet(Tables):
-    def write(self, path, columns, blocks):
+class ParquetTable(Table):
+    """Rows wait as blocks of values, of which those before a column came are shorter."""
+
+    def __init__(self, spill):
+        super().__init__(spill)
+        self._rows = []
+
+    def put(self, values):
+        self._rows.append(values)
+        if len(self._rows) * len(values) >= CELLS:
+            self._flush()
+
+    def _flush(self):
+        marshal.dump(self._rows, self._spill)  # takes half as long as pickle
+        self._rows = []
+
+    def _waiting(self):
+        self._flush()
+        end = self._spill.tell()
+        self._spill.seek(0)
+        while self._spill.tell() < end:
+            yield from marshal.load(self._spill)
+
+    def write(self, path, columns):
         import pyarrow
         from pyarrow import parquet
 
         kinds = {"bool": "bool_", "byte": "int8", "char": "uint8", "time": "float64", "duration": "float64"}
         schema = pyarrow.schema([pyarrow.field(name, getattr(pyarrow, kinds.get(kind, kind))(), metadata={"unit": unit})
                                  for name, (kind, unit) in columns.items()])  # fmt: skip
+        rows = self._waiting()
         with parquet.ParquetWriter(path + ".parquet", schema, compression="zstd") as writer:
-            for block in blocks:
+            while block := list(itertools.islice(rows, GROUP)):
                 values = itertools.zip_longest(*block, [None] * len(columns))  # a row more, so that there is every column
                 arrays = [pyarrow.array(column[:-1], field.type) for column, field in zip(values, schema)]
                 writer.write_table(pyarrow.Table.from_arrays(arrays, schema=schema))
+
+
+class Parquet(Tables):
+    Table = ParquetTable

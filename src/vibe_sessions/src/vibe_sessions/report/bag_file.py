@@ -15,9 +15,9 @@ import numpy
 
 MAGIC = b"#ROSBAG V2.0\n"
 CONNECTION, FILE_HEADER, MESSAGE, INDEX, CHUNK, CHUNK_INFO = 7, 3, 2, 4, 5, 6
-ENTRY = numpy.dtype([("secs", "<u4"), ("nsecs", "<u4"), ("offset", "<u4")])
 LARGEST = 1 << 31  # of a record; a larger size is damage [bytes]
 U32 = struct.Struct("<I")
+DAMAGE = (EOFError, KeyError, ValueError, struct.error, OSError)
 
 
 class BagError(Exception):
@@ -37,7 +37,7 @@ class Connection:
 class Chunk:
     position: int  # of its record in the file
     counts: dict  # messages by number of connection
-    entries: dict = field(default=None)  # ENTRY arrays by connection; None: in the file behind the chunk
+    entries: dict = field(default=None)  # rows of secs, nsecs, offset by connection; None: in the file behind the chunk
 
 
 def fields_of(header):
@@ -104,21 +104,40 @@ class BagFile:
                         yield int(connections[k]), int(times[k]), message_at(data, int(offsets[k]))
 
     def in_time(self, wanted):
-        """The same in the order of reception, which is another one where a bag was merged or filled. Holds 24 bytes of each
-        message, and a few chunks."""
-        wanted, places = set(wanted), []
+        """The same in the order of reception, which is another one where a bag was merged or filled. Holds the places of messages
+        in the chunks that overlap in time, 20 bytes each, and the data of a few of these chunks."""
+        places, data_of = [], functools.lru_cache(8)(lambda chunk: self._chunk_data(self.chunks[chunk].position))
+        begins = self._begins(set(wanted))
+        for (_, number), (horizon, _) in zip(begins, [*begins[1:], (None, 0)]):
+            with self._reading(self.chunks[number]):
+                index = self._index(self.chunks[number], wanted)
+            places.append((*index, numpy.full(len(index[0]), number, numpy.int32)))
+            columns = [numpy.concatenate(column) for column in zip(*places)]
+            order = numpy.lexsort((columns[2], columns[3], columns[1]))
+            count = len(order) if horizon is None else numpy.searchsorted(columns[1], horizon, sorter=order)
+            places = [tuple(column[order[count:]] for column in columns)]
+            yield from self._of(data_of, *(column[order[:count]].tolist() for column in columns))
+
+    def _begins(self, wanted):
+        """(time of the first message [ns], number of the chunk), in order."""
+        found = []
         for number, chunk in enumerate(self.chunks):
             if not wanted.isdisjoint(chunk.counts):
                 with self._reading(chunk):
-                    index = self._index(chunk, wanted)
-                    places.append((*index, numpy.full(len(index[0]), number, numpy.int32)))
-        if not places:
-            return
-        connections, times, offsets, numbers = (numpy.concatenate(column) for column in zip(*places))
-        data_of = functools.lru_cache(8)(lambda chunk: self._chunk_data(self.chunks[chunk].position))
-        for k in numpy.lexsort((offsets, numbers, times)):
-            with self._reading(self.chunks[numbers[k]]):
-                yield int(connections[k]), int(times[k]), message_at(data_of(int(numbers[k])), int(offsets[k]))
+                    times = self._index(chunk, wanted)[1]
+                found += [(int(times.min()), number)] if len(times) else []
+        return sorted(found)
+
+    def _of(self, data_of, connections, times, offsets, numbers):
+        last = data = None
+        for connection, time, offset, number in zip(connections, times, offsets, numbers):
+            try:
+                if number != last:
+                    last, data = number, data_of(number)
+                found = message_at(data, offset)
+            except DAMAGE as error:
+                raise self._damaged(self.chunks[number], error) from None
+            yield connection, time, found
 
     def _open(self):
         try:
@@ -197,7 +216,7 @@ class BagFile:
                     secs, nsecs = struct.unpack("<II", fields["time"])
                     found.setdefault(number(fields, "conn"), []).append((secs, nsecs, offset))
         finally:
-            chunk.entries = {c: numpy.array(e, ENTRY) for c, e in found.items() if c in self.connections}
+            chunk.entries = {c: numpy.array(e, "<u4").reshape(-1, 3) for c, e in found.items() if c in self.connections}
             chunk.counts = {c: len(e) for c, e in chunk.entries.items()}
             if chunk.counts:
                 self.chunks.append(chunk)
@@ -257,20 +276,20 @@ class BagFile:
     def _reading(self, chunk):
         try:
             yield
-        except (EOFError, KeyError, ValueError, struct.error, OSError) as error:
-            raise BagError(
-                "{}: is damaged in the chunk at byte {} ({}); copy it again, or mend it with `rosbag reindex`".format(
-                    self.path, chunk.position, str(error) or "it ends there"
-                )
-            ) from None
+        except DAMAGE as error:
+            raise self._damaged(chunk, error) from None
+
+    def _damaged(self, chunk, error):
+        return BagError("{}: is damaged in the chunk at byte {} ({}); copy it again, or mend it with `rosbag reindex`".format(
+            self.path, chunk.position, str(error) or "it ends there"))  # fmt: skip
 
     def _index(self, chunk, wanted):
         """Connections, times of reception [ns] and offsets of the messages of a chunk, as arrays."""
         entries = chunk.entries if chunk.entries is not None else self._entries(chunk)
         here = [(c, e) for c, e in entries.items() if c in wanted]
-        found = numpy.concatenate([numpy.empty(0, ENTRY), *(e for _, e in here)])
+        found = numpy.concatenate([numpy.empty((0, 3), "<u4"), *(e for _, e in here)])
         connections = numpy.repeat(numpy.array([c for c, _ in here], numpy.int32), [len(e) for _, e in here])
-        return connections, found["secs"].astype(numpy.int64) * 1_000_000_000 + found["nsecs"], found["offset"]
+        return connections, found[:, 0].astype(numpy.int64) * 1_000_000_000 + found[:, 1], found[:, 2]
 
     def _entries(self, chunk):
         self._file.seek(chunk.position)
@@ -280,7 +299,7 @@ class BagFile:
             header, data = self._record()
             if header["op"] != bytes([INDEX]):
                 raise ValueError("no index behind it")
-            entries[number(header, "conn")] = numpy.frombuffer(data, ENTRY)
+            entries[number(header, "conn")] = numpy.frombuffer(data, "<u4").reshape(-1, 3)
         return entries
 
 

@@ -305,17 +305,17 @@ class Reader:
     def _sort_steps(self):
         """Steps that were received twice count once, as in bags that were merged; those of a release without runs stay."""
         recording = self.recording
-        keys = list(zip(recording.runs, recording.steps))
-        if not all(recording.runs) or len(set(keys)) == len(keys):
+        runs, steps = (numpy.frombuffer(column, column.typecode) for column in (recording.runs, recording.steps))
+        order = numpy.lexsort((steps, runs))  # of equal ones the first comes first
+        is_first = numpy.ones(len(order), bool)
+        is_first[1:] = (numpy.diff(runs[order]) != 0) | (numpy.diff(steps[order]) != 0)
+        if not runs.all() or is_first.all():
             return
-        first = {}
-        for place, key in enumerate(keys):
-            first.setdefault(key, place)
-        order = [first[key] for key in sorted(first)]
-        recording.doubled = len(keys) - len(order)
+        order = order[is_first]
+        recording.doubled = len(runs) - len(order)
         for name in ("stamps", "steps", "runs", "hashes"):
             column = getattr(recording, name)
-            setattr(recording, name, array(column.typecode, (column[k] for k in order)))
+            setattr(recording, name, array(column.typecode, numpy.frombuffer(column, column.typecode)[order].tobytes()))
 
     def _tell_sessions(self):
         tracker, recording = self._tracker, self.recording
