@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include <geometry_msgs/WrenchStamped.h>
 #include <std_msgs/Bool.h>
 #include <boost/algorithm/string/join.hpp>
 
+#include "arm_messages.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_ros_utils/parameter_reader.hpp"
@@ -18,36 +18,9 @@ namespace {
 constexpr double kForcePeriod = 0.005;      // without measurements the arm gets a force after so long [s]
 constexpr double kJointInterval = 0.004;    // between commands to the scope, at least [s]
 constexpr double kArmButtonInterval = 0.1;  // between messages that change nothing [s]
-constexpr double kOldest = 0.5;             // a measurement that claims to be older has the stamp of another clock [s]
-constexpr double kAhead = 0.005;            // what clocks that are kept together differ by [s]
-constexpr double kReach = 10;               // no arm is larger [m]
-constexpr double kStill = 5;                // equal measurements for so long are named [s]
-constexpr double kPatience = 10;            // between warnings of a kind [s]
-constexpr double kLookInterval = 10;        // between looks for an arm that is silent [s]
-constexpr double kFirstLook = 2;            // after it began to be silent [s]
-constexpr double kMissed = 0.2;             // share of a force that is missed when it is held back; design choice
 constexpr int kTapped = 2;    // of a pedal of the dVRK: it went down and came up soon, which no other message says
 constexpr double kTap = 0.1;  // for which such a button counts as pressed [s]
 constexpr std::uint32_t kArmQueue = 10;
-
-/// Of the ports of the scope's joints [s]
-double largestDelay(const TeleopMapping& mapping) {
-  double delay = 0;
-  for (const HandJoint& joint : mapping.joints)
-    if (joint.coordinate >= 0) delay = std::max(delay, joint.port.delay);
-  return delay;
-}
-
-/// What is wrong with a pose; empty: nothing.
-std::string faultOf(const geometry_msgs::Pose& pose) {
-  const Eigen::Vector3d p(pose.position.x, pose.position.y, pose.position.z);
-  const auto& q = pose.orientation;
-  const double norm = Eigen::Vector4d(q.x, q.y, q.z, q.w).norm();
-  if (!p.allFinite() || !std::isfinite(norm)) return "a number is not finite";
-  if (std::abs(norm - 1) > 1e-2) return "its quaternion has another length than 1";
-  if (p.norm() > kReach) return "it is more than 10 m away from the base; the driver may publish millimetres";
-  return "";
-}
 
 }  // namespace
 
@@ -81,16 +54,17 @@ CrtkTeleopNode::CrtkTeleopNode(ros::NodeHandle handle, const CrtkParameters& par
     : parameters_(parameters),
       limits_(toolLimitsOf(handle)),
       mapping_(loadTeleopMapping(resolveAddress(parameters.mapping), limits_)),
+      watch_(mapping_, nameOf(mapping_.arm_joints.empty() ? mapping_.pose_topic : "measured_js"),
+             ros::WallTime::now().toSec()),
       state_(startTeleop(mapping_, ros::WallTime::now().toSec())),
       updater_(handle) {
   checkClock();
   input_.live = true;
-  next_look_ = ros::WallTime::now().toSec() + kFirstLook;
   advertise(handle);
   subscribe(handle);
   updater_.setHardwareID("none");
   updater_.add("crtk_teleop", this, &CrtkTeleopNode::fillDiagnostics);
-  ROS_INFO_STREAM("Mapping '" << mapping_.name << "'; waiting for " << measured() << ".");
+  ROS_INFO_STREAM("Mapping '" << mapping_.name << "'; waiting for " << watch_.topic() << ".");
   const std::vector<std::string> missing = unreachable(mapping_);
   if (!missing.empty())
     ROS_INFO_STREAM("Nothing in this mapping reaches " << boost::algorithm::join(missing, ", ")
@@ -107,10 +81,6 @@ void CrtkTeleopNode::release() {
 
 std::string CrtkTeleopNode::nameOf(const std::string& topic) const {
   return topic.front() == '/' ? topic : parameters_.arm + "/" + topic;
-}
-
-std::string CrtkTeleopNode::measured() const {
-  return nameOf(mapping_.arm_joints.empty() ? mapping_.pose_topic : "measured_js");
 }
 
 void CrtkTeleopNode::advertise(ros::NodeHandle& handle) {
@@ -136,8 +106,9 @@ void CrtkTeleopNode::advertise(ros::NodeHandle& handle) {
 void CrtkTeleopNode::subscribe(ros::NodeHandle& handle) {
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   subscribers_ = {
-      mapping_.arm_joints.empty() ? handle.subscribe(measured(), kArmQueue, &CrtkTeleopNode::onPose, this, hints)
-                                  : handle.subscribe(measured(), kArmQueue, &CrtkTeleopNode::onArmJoints, this, hints),
+      mapping_.arm_joints.empty()
+          ? handle.subscribe(watch_.topic(), kArmQueue, &CrtkTeleopNode::onPose, this, hints)
+          : handle.subscribe(watch_.topic(), kArmQueue, &CrtkTeleopNode::onArmJoints, this, hints),
       handle.subscribe(nameOf("operating_state"), kArmQueue, &CrtkTeleopNode::onState, this, hints),
       handle.subscribe("scope/setpoint_js", kArmQueue, &CrtkTeleopNode::onScope, this, hints),
       handle.subscribe("suturing_device/measured_js", kArmQueue, &CrtkTeleopNode::onSuturingDevice, this, hints),
@@ -178,118 +149,29 @@ void CrtkTeleopNode::listenToButton(ros::NodeHandle& handle, const ArmButton& bu
 }
 
 void CrtkTeleopNode::onPose(const geometry_msgs::PoseStamped& message) {
-  const std::string fault = message.header.stamp.isZero() ? "its stamp is 0" : faultOf(message.pose);  // CRTK: invalid
-  if (!fault.empty()) return refuse(measured(), fault);
-  const auto& p = message.pose.position;
-  const auto& q = message.pose.orientation;
   ArmSample sample;
-  sample.position = {p.x, p.y, p.z};
-  sample.orientation = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
-  takeSample(message.header, sample);
+  const MessageFault fault = readPose(message, sample);
+  fault.what.empty() ? takeSample(message.header, sample) : watch_.refuse(watch_.topic(), fault.what);
 }
 
 void CrtkTeleopNode::onArmJoints(const sensor_msgs::JointState& message) {
   ArmSample sample;
-  for (std::size_t j = 0; j < mapping_.arm_joints.size(); ++j) {
-    const std::string& name = mapping_.arm_joints[j];
-    const auto found = std::find(message.name.begin(), message.name.end(), name);
-    const auto index = static_cast<std::size_t>(found - message.name.begin());
-    if (found == message.name.end()) {
-      std::string names;
-      for (const std::string& other : message.name) names += (names.empty() ? "" : ", ") + other;
-      ROS_WARN_STREAM_THROTTLE(10, "A message on " << measured() << " has no joint '" << name << "' but " << names
-                                                   << "; correct the mapping.");
-      return;
-    }
-    if (message.header.stamp.isZero() || index >= message.position.size() || !std::isfinite(message.position[index]))
-      return refuse(measured(), "its stamp is 0, or the position of '" + name + "' is missing or not finite");
-    sample.joints[j] = message.position[index];
-  }
-  takeSample(message.header, sample);
-}
-
-void CrtkTeleopNode::warn(const std::string& kind, const std::string& sentence) {
-  const double now = ros::WallTime::now().toSec();
-  double& last = said_[kind];
-  if (now - last < kPatience) return;
-  last = now;
-  ROS_WARN_STREAM(sentence);
-}
-
-void CrtkTeleopNode::refuse(const std::string& topic, const std::string& what) {
-  ++invalid_;
-  warn(topic + what, "A message on " + topic + " is ignored: " + what + ". There have been " +
-                         std::to_string(invalid_) + " that are ignored; look at the driver of the arm.");
-}
-
-/// When it was measured, of the clock of this computer.
-double CrtkTeleopNode::timeOf(const std_msgs::Header& header, double now) {
-  const double time = header.stamp.toSec(), age = now - time;
-  if (age < -kAhead || age > kOldest) {
-    warn("clock", "The stamps of " + measured() + " are " + std::to_string(-age) +
-                      " s off the clock of this computer, so the times of arrival are used; synchronise the clocks.");
-    return now;
-  }
-  const std::string late = "Measurements on " + measured() + " come " + std::to_string(age) + " s after their stamps";
-  const double delay = largestDelay(mapping_);
-  if (age > mapping_.timeout)
-    warn("timeout", late + ", and the arm counts as silent after " + std::to_string(mapping_.timeout) +
-                        " s; make the connection quicker, synchronise the clocks, or raise 'timeout' and 'delay' "
-                        "below 'arm' in the mapping.");
-  else if (mapping_.force_scale != 0 && age > delay)
-    warn("delay", late + ". If the way back takes as long, forces come later than the mapping says (" +
-                      std::to_string(delay) +
-                      " s), and the arm may give energy; write a longer 'delay' below 'arm' in the mapping.");
-  return std::min(time, now);
+  const MessageFault fault = readArmJoints(message, mapping_.arm_joints, sample);
+  if (fault.what.empty()) return takeSample(message.header, sample);
+  if (!fault.of_mapping) return watch_.refuse(watch_.topic(), fault.what);
+  watch_.warn("joint", "A message on " + watch_.topic() + " " + fault.what + "; correct the mapping.");
 }
 
 void CrtkTeleopNode::takeSample(const std_msgs::Header& header, ArmSample sample) {
   const double now = ros::WallTime::now().toSec();
-  sample.time = timeOf(header, now);
-  worst_age_ = std::max(worst_age_, now - sample.time);
-  if (samples_++ > 0 && header.frame_id != base_frame_) {
-    warn("frame", "The frame of " + measured() + " has changed from '" + base_frame_ + "' to '" + header.frame_id +
-                      "', and the arm goes on from here; if that goes on, two drivers may publish it.");
-    state_.last.reset();
-  }
-  if (samples_ == 1 || sample.position != still_.position || sample.joints != still_.joints ||
-      sample.orientation.coeffs() != still_.orientation.coeffs())
-    still_ = sample;
-  base_frame_ = header.frame_id;
+  if (!watch_.take(header, now, sample)) state_.last.reset();
   input_.sample = sample;
   advance(now);
 }
 
-/// An arm that does not measure what the mapping names may measure something else.
-void CrtkTeleopNode::lookForTheArm(double now) {
-  if (state_.last) next_look_ = now + kFirstLook;
-  if (now < next_look_) return;
-  next_look_ = now + kLookInterval;
-  const bool by_joints = !mapping_.arm_joints.empty();
-  const std::string other = ros::names::resolve(nameOf(by_joints ? "measured_cp" : "measured_js"));
-  const std::string wanted = ros::names::resolve(measured());
-  ros::master::V_TopicInfo topics;
-  ros::master::getTopics(topics);
-  const auto has = [&topics](const std::string& name) {
-    return std::any_of(topics.begin(), topics.end(), [&name](const auto& topic) { return topic.name == name; });
-  };
-  if (has(wanted)) return;
-  const std::string pose = ros::names::resolve(nameOf("measured_cp"));
-  if (!by_joints && has(pose)) {
-    ROS_WARN_STREAM("Nobody publishes " << wanted << ", but " << pose << " is there; correct 'pose' in the mapping.");
-    return;
-  }
-  if (!has(other)) return;
-  ROS_WARN_STREAM("Nobody publishes " << wanted << ", but " << other << " is there: "
-                                      << (by_joints
-                                              ? "map this arm by its pose, with along and about."
-                                              : "this arm measures only its joints; map it by them, with slide and "
-                                                "turn and their names."));
-}
-
 void CrtkTeleopNode::onGripper(const sensor_msgs::JointState& message) {
   if (message.header.stamp.isZero() || message.position.empty() || !std::isfinite(message.position[0]))
-    return refuse(nameOf(mapping_.gripper->topic), "its stamp is 0, or its position is missing or not finite");
+    return watch_.refuse(nameOf(mapping_.gripper->topic), "its stamp is 0, or its position is missing or not finite");
   input_.gripper = message.position[0];
 }
 
@@ -328,7 +210,7 @@ void CrtkTeleopNode::tick(const ros::WallTimerEvent&) {
   // Whoever pressed a button and has gone does not hold it any more.
   for (const auto& [button, pressed] : pressing_)
     if (pressed.getNumPublishers() == 0) input_.buttons[button] = 0;
-  lookForTheArm(now);
+  watch_.lookForTheArm(state_.last.has_value(), now, nameOf("measured_cp"), nameOf("measured_js"));
   if (now - state_.time >= kForcePeriod) advance(now);
 }
 
@@ -340,8 +222,8 @@ void CrtkTeleopNode::advance(double now) {
     if (now < tapped_[b]) input.buttons[b] = 1;
   const TeleopOutput output = step(mapping_, limits_, std::max(now, state_.time), input, state_);
   input_.sample.reset();
-  withheld_ = std::max(withheld_, output.withheld);
-  if (!output.sentence.empty()) warn(output.sentence, output.sentence);
+  watch_.withheld(output.withheld);
+  if (!output.sentence.empty()) watch_.warn(output.sentence, output.sentence);
   if (output.engaged != was_engaged && !mapping_.device_only)
     ROS_INFO_STREAM((output.engaged ? "The arm drives the scope." : "The arm has let go of the scope."));
   if (output.on_device != was_on_device)
@@ -355,25 +237,10 @@ void CrtkTeleopNode::advance(double now) {
 
 void CrtkTeleopNode::publishForce(const TeleopOutput& output, const ros::Time& stamp) {
   if (!force_) return;
-  if (!mapping_.arm_joints.empty()) {
-    sensor_msgs::JointState joints;
-    joints.header.stamp = stamp;
-    joints.name = mapping_.arm_joints;
-    joints.effort.assign(output.efforts.begin(),
-                         output.efforts.begin() + static_cast<std::ptrdiff_t>(joints.name.size()));
-    force_.publish(joints);
-    return;
-  }
-  geometry_msgs::WrenchStamped message;
-  message.header.stamp = stamp;
-  message.header.frame_id = base_frame_;
-  message.wrench.force.x = output.force.x();
-  message.wrench.force.y = output.force.y();
-  message.wrench.force.z = output.force.z();
-  message.wrench.torque.x = output.torque.x();
-  message.wrench.torque.y = output.torque.y();
-  message.wrench.torque.z = output.torque.z();
-  force_.publish(message);
+  if (mapping_.arm_joints.empty())
+    force_.publish(makeArmForce(output, watch_.baseFrame(), stamp));
+  else
+    force_.publish(makeArmEfforts(output, mapping_.arm_joints, stamp));
 }
 
 void CrtkTeleopNode::publishCommands(const TeleopOutput& output, double now, const ros::Time& stamp) {
@@ -392,40 +259,17 @@ void CrtkTeleopNode::publishCommands(const TeleopOutput& output, double now, con
 
 void CrtkTeleopNode::fillDiagnostics(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
-  const double still = state_.last ? state_.last->time - still_.time : 0, delay = largestDelay(mapping_);
   if (!state_.last)
     status.summary(DiagnosticStatus::WARN, "the arm is silent");
   else
     status.summary(DiagnosticStatus::OK, !state_.engaged    ? "waiting"
                                          : state_.on_device ? "moving the device"
                                                             : "driving");
-  if (still > kStill)
-    status.mergeSummaryf(DiagnosticStatus::OK, "the arm measures the same for %.0f s, at rest or frozen", still);
   if (!scope_known_) status.mergeSummary(DiagnosticStatus::WARN, "no simulator");
   if (!arm_ready_) status.mergeSummary(DiagnosticStatus::WARN, "the arm is not ready");
-  if (withheld_ > kMissed)
-    status.mergeSummaryf(DiagnosticStatus::WARN, "up to %.0f %% of a force held back to stay passive", 100 * withheld_);
-  if (mapping_.force_scale != 0 && worst_age_ > delay)
-    status.mergeSummaryf(DiagnosticStatus::WARN, "measurements come %.0f ms late, arm.delay is %.0f ms",
-                         1e3 * worst_age_, 1e3 * delay);
-  double balance = 1;
-  bool acts = false;
-  for (std::size_t j = 0; j < state_.ports.size(); ++j) {
-    if (mapping_.joints[j].coordinate < 0) continue;
-    balance = std::min(balance, state_.ports[j].balance / mapping_.joints[j].port.capacity);
-    acts |= state_.ports[j].acts;
-  }
   status.add("mapping", mapping_.name);
   status.add("state of the arm", arm_state_);
-  status.add("measurements since the last message", samples_ - samples_before_);
-  status.add("invalid measurements", invalid_);
-  status.add("the same measurement for [s]", still);
-  status.add("oldest measurement at its arrival [s]", worst_age_);
-  status.add("least share of the energy that is left", balance);
-  status.add("largest share of a force that was held back", withheld_);
-  status.add("passivity controller acts", acts);
-  samples_before_ = samples_;
-  worst_age_ = withheld_ = 0;
+  watch_.fill(state_, status);
 }
 
 }  // namespace vibe::hardware

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <functional>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +14,7 @@
 #include <vibe_msgs/HapticParameters.h>
 #include <vibe_msgs/OperatingState.h>
 
+#include "arm_watch.hpp"
 #include "hardware_messages.hpp"
 #include "vibe_hardware/crtk/teleop.hpp"
 
@@ -42,18 +42,13 @@ class CrtkTeleopNode {
   CrtkParameters parameters_;
   ToolLimits limits_;
   TeleopMapping mapping_;
+  ArmWatch watch_;
   TeleopState state_;
   TeleopInput input_;
 
   bool scope_known_ = false, suturing_device_known_ = false;
   bool arm_ready_ = true;  // an arm without operating_state may be used
-  std::string arm_state_, base_frame_;
-  double worst_age_ = 0;                // of a measurement at its arrival, since the last diagnostics [s]
-  double withheld_ = 0;                 // largest share of a force of the tissue, since the last diagnostics
-  std::map<std::string, double> said_;  // when a warning of a kind was given last [s]
-  ArmSample still_;                     // the first of equal measurements
-  std::uint64_t samples_ = 0, samples_before_ = 0, invalid_ = 0;
-  double next_look_ = 0;                             // for an arm that is silent [s]
+  std::string arm_state_;
   double last_buttons_ = -1e9, last_joints_ = -1e9;  // published [s]
   std::array<std::uint8_t, kButtonCount> sent_buttons_{};
   std::array<double, kButtonCount> tapped_{};  // a tap counts until then [s]
@@ -70,15 +65,10 @@ class CrtkTeleopNode {
       ros::NodeHandle& handle, const ArmButton& button, std::function<void(bool)> pressed,
       std::function<void()> tapped = [] {});
   std::string nameOf(const std::string& topic) const;
-  std::string measured() const;  // the topic
 
   void onPose(const geometry_msgs::PoseStamped& message);
   void onArmJoints(const sensor_msgs::JointState& message);
   void takeSample(const std_msgs::Header& header, ArmSample sample);
-  double timeOf(const std_msgs::Header& header, double now);
-  void warn(const std::string& kind, const std::string& sentence);
-  void refuse(const std::string& topic, const std::string& what);
-  void lookForTheArm(double now);
   void onGripper(const sensor_msgs::JointState& message);
   void onState(const vibe_msgs::OperatingState& message);
   void onScope(const sensor_msgs::JointState& message);

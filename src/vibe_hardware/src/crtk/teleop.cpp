@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+
+#include "crtk/arm_controls.hpp"
 
 namespace vibe::hardware {
 namespace {
@@ -15,15 +16,19 @@ constexpr double kJump = 3;             // speeds beyond so many speed limits ar
 const char* const kJumped =
     "The arm has jumped, faster than a hand moves it; the scope stays and the arm takes it up from here. If that goes "
     "on, its driver may publish millimetres instead of metres, or two drivers the same topic.";
-const char* const kSilent = "The arm has fallen silent: its forces are off and the scope stays where it is.";
+const char* const kSilent =
+    "The arm has fallen silent: its forces are off and the scope stays where it is. An arm that does not hear this "
+    "either "
+    "keeps its last force and may give energy; let its driver drop forces that are not renewed.";
+const char* const kOverdrawn =
+    "The arm may have given more than its 'energy': while a force acted it moved faster, or its measurements paused "
+    "for "
+    "longer, than 'speed_limit' and 'delay' below 'arm' in the mapping allow; raise them, or make the connection "
+    "steadier.";
+constexpr double kAgeMemory = 10;                // in which a late measurement is forgotten to 1/e [s]; design choice
+constexpr double kOverdraft = 0.01;              // of an account, from which it is said; design choice
 constexpr double kCalm = 0.1;                    // without a jump until the arm engages again [s]
 constexpr double kMostSwing = 170 * M_PI / 180;  // of the stylus; beyond, its twist is taken up anew [rad]
-constexpr double kGripperTime = 0.2;             // in which a hand closes the gripper at the fastest [s]; design choice
-constexpr double kGripperCatchUp = 1;            // in which it takes its joint along at the end [s]; design choice
-constexpr double kGripperStep = 5e-3;            // of these motions at most [s]
-constexpr double kGripperJump = 0.3;             // of its way at once: no motion of a hand; design choice
-constexpr double kGripperEnd = 0.1;              // of its way is near an end; design choice
-constexpr double kPinch = 0.25, kUnpinch = 0.5;  // of its way: it presses its button, and lets it go; design choice
 
 using Motion = std::array<double, kHandCoordinates>;
 
@@ -32,15 +37,6 @@ bool isJump(const TeleopMapping& mapping, const Motion& motion, double dt) {
     return joint.coordinate >= 0 && std::abs(motion[static_cast<std::size_t>(joint.coordinate)]) >
                                         kJump * joint.port.speed_limit * std::max(dt, 1e-3);
   });
-}
-
-bool wantsDevice(const TeleopMapping& mapping, const TeleopInput& input) {
-  return mapping.device_only || (!mapping.device.topic.empty() && input.device != mapping.device.reversed);
-}
-
-/// From 0, closed, to 1.
-double opening(const ArmGripper& gripper, double angle) {
-  return std::clamp((angle - gripper.closed) / (gripper.open - gripper.closed), 0.0, 1.0);
 }
 
 /// Joints that follow the hand.
@@ -91,6 +87,13 @@ void moveHand(const TeleopMapping& mapping, const Motion& motion, TeleopState& s
   state.rates = rotation.rates;
 }
 
+/// Of a joint's coordinate, over the link as it is.
+PortConfig portOf(const HandJoint& joint, const TeleopState& state) {
+  PortConfig port = joint.port;
+  port.delay = std::max(port.delay, state.age);
+  return port;
+}
+
 /// @return false if the arm has jumped
 bool follow(const TeleopMapping& mapping, const ArmSample& sample, TeleopState& state) {
   const bool first = !state.last;
@@ -107,7 +110,7 @@ bool follow(const TeleopMapping& mapping, const ArmSample& sample, TeleopState& 
     const HandJoint& joint = mapping.joints[j];
     if (joint.coordinate < 0) continue;
     const auto book = first || jumped ? rebase : observe;
-    book(joint.port, sample.time, state.hand[static_cast<std::size_t>(joint.coordinate)], state.ports[j]);
+    book(portOf(joint, state), sample.time, state.hand[static_cast<std::size_t>(joint.coordinate)], state.ports[j]);
   }
   return !jumped;
 }
@@ -190,56 +193,6 @@ void moveJoints(const TeleopMapping& mapping, const ToolLimits& limits, TeleopSt
   }
 }
 
-/// The joint of the gripper moves by as much as the gripper. What it was apart is used up at the ends of its way: there
-/// the joint stays while the gripper comes, and a gripper that comes to an end from the middle takes the joint along,
-/// as long as the tool obeys.
-void moveGripper(const ArmGripper& gripper, const TeleopInput& input, double dt, TeleopState& state) {
-  const double way = gripper.at_open - gripper.at_closed;
-  const double share = opening(gripper, *input.gripper);
-  const double wanted = gripper.at_closed + share * way;
-  if (!state.gripper || std::abs(wanted - *state.gripper) > kGripperJump * std::abs(way))
-    state.gripper = wanted, state.gripper_moved = false;
-  const double step = std::min(dt, kGripperStep) * std::abs(way);
-  const double motion = std::clamp(wanted - *state.gripper, -step / kGripperTime, step / kGripperTime);
-  const auto j = static_cast<std::size_t>(gripper.joint);
-  double& joint = state.joints[j];
-  const auto [low, high] = std::minmax({gripper.at_closed, gripper.at_open, joint});
-  joint = std::clamp(joint + motion, low, high);
-  *state.gripper += motion;
-  state.gripper_moved |= share > kGripperEnd && share < 1 - kGripperEnd;
-  const bool obeyed = !input.live || std::abs(input.joints[j] - joint) < unnoticed(gripper.joint);
-  if (state.gripper_moved && (share == 0 || share == 1) && obeyed)
-    joint += std::clamp(wanted - joint, -step / kGripperCatchUp, step / kGripperCatchUp);
-}
-
-/// Whether the gripper presses its button: closed enough, until it has opened wide enough. One that is not known may
-/// be.
-std::uint8_t pinches(const ArmGripper& gripper, const TeleopInput& input, bool was) {
-  return !input.gripper || opening(gripper, *input.gripper) < (was ? kUnpinch : kPinch) ? 1 : 0;
-}
-
-/// Those that count: pressed since the arm may be used, while it moved what the mapping says.
-std::array<std::uint8_t, kButtonCount> pressedOf(const TeleopMapping& mapping, const TeleopInput& input, bool usable,
-                                                 TeleopState& state) {
-  std::array<std::uint8_t, kButtonCount> down = input.buttons;
-  if (mapping.gripper && mapping.gripper->button >= 0) {
-    const auto b = static_cast<std::size_t>(mapping.gripper->button);
-    down[b] = pinches(*mapping.gripper, input, (state.old_press[b] | state.held[b]) != 0);
-    if (!input.gripper) state.old_press[b] = 1;
-  }
-  const auto elsewhere = wantsDevice(mapping, input) ? ArmButton::While::Scope : ArmButton::While::Device;
-  for (std::size_t b = 0; b < down.size(); ++b) {
-    const ArmButton& control = mapping.buttons[b];
-    state.old_press[b] &= down[b];
-    if (!usable || (control.during == elsewhere && state.held[b] == 0)) state.old_press[b] = down[b];
-    const std::uint8_t before = std::exchange(state.held[b], down[b] & ~state.old_press[b]);
-    if (!input.ready) state.switched_on[b] = 0;
-    if (before < state.held[b]) state.switched_on[b] ^= 1;
-    down[b] = control.toggle ? state.switched_on[b] : state.held[b];
-  }
-  return down;
-}
-
 void sendForces(const TeleopMapping& mapping, double now, TeleopState& state, TeleopOutput& output) {
   Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = Eigen::Vector3d::Zero();
   const double fresh = freshness(now - state.tissue_time);
@@ -251,9 +204,11 @@ void sendForces(const TeleopMapping& mapping, double now, TeleopState& state, Te
     const double damping = state.engaged ? fresh * state.springs[j].damping : 0;
     const bool silent = !state.engaged || state.on_device || mapping.force_scale == 0;
     const double sent =
-        silent ? release(now, state.ports[j]) : command(joint.port, now, spring, damping, state.ports[j]);
+        silent ? release(now, state.ports[j]) : command(portOf(joint, state), now, spring, damping, state.ports[j]);
     output.passivity_acts |= state.ports[j].acts;
     output.withheld = std::max(output.withheld, state.ports[j].withheld);
+    if (state.ports[j].balance < -kOverdraft * joint.port.capacity && output.sentence.empty())
+      output.sentence = kOverdrawn;
     output.efforts[static_cast<std::size_t>(joint.coordinate)] += sent;
     (joint.coordinate < HandRoll ? force : torque)[joint.coordinate % 3] += sent;
   }
@@ -277,6 +232,8 @@ TeleopOutput step(const TeleopMapping& mapping, const ToolLimits& limits, double
                   TeleopState& state) {
   TeleopOutput output;
   const bool was_engaged = state.engaged;
+  state.age *= std::exp(-(now - state.time) / kAgeMemory);
+  if (input.sample) state.age = std::max(state.age, std::min(now - input.sample->time, mapping.timeout));
   if (input.sample && !follow(mapping, *input.sample, state)) {
     if (was_engaged) output.sentence = kJumped;
     letGo(state);

@@ -32,6 +32,8 @@ class SimulatedStomach : public test::HandAtDevice {
  protected:
   Simulation simulation_{coarseStomach(), SimulationSettings::study(1)};
 
+  double stepPeriod() const { return simulation_.stepPeriod(); }  ///< [s]
+
   /// What the hand does now; may let frames pass.
   virtual void act() = 0;
   /// What the device sends in a step.

@@ -61,6 +61,7 @@ struct TeleopState {
   std::array<std::uint8_t, kButtonCount> old_press{};    ///< buttons that must be released before they count
   std::array<std::uint8_t, kButtonCount> held{};         ///< buttons that are down and count
   std::array<std::uint8_t, kButtonCount> switched_on{};  ///< by a press, and off by the next one
+  double age = 0;                                        ///< of the oldest measurement at its arrival, lately [s]
   double tissue_time = -1e9;                             ///< of the springs [s]
   double time = 0;                                       ///< of the last step [s]
   double jump_time = -1e9;                               ///< when the arm has jumped [s]
@@ -94,7 +95,8 @@ TeleopState startTeleop(const TeleopMapping& mapping, double now);
 /// moves its joint by as much as itself, from where that is. While the button for the suturing device is pressed, that
 /// follows instead of the scope, without forces: the tissue answers to joints of the scope only. A force of the tissue
 /// at a joint becomes scale times that on the coordinate (virtual work) times force_scale; new springs do not jump, and
-/// without a message for 0.1 s they fade within 0.05 s. Buttons count while the arm may be used and measures, but for
+/// without a message for 0.1 s they fade within 0.05 s. The ports reckon with PortConfig::delay or the age of the
+/// measurements of the last seconds, whichever is longer. Buttons count while the arm may be used and measures, but for
 /// those that were pressed before, or while the arm moved something else than the mapping says; what counts does so
 /// until it comes up. What a press has switched on stays on while the arm is silent, but not when it may not be used.
 /// @param now  not before the last one [s]
