@@ -30,7 +30,7 @@ SETTINGS = {"Reach": {"action": "tip"}, "Inspect": {"step_period": 1 / 20, "came
 # wall, and by their own deviation a touch would be far away. [m], [N, N m], [m], [rad], ...
 LEAST = {"to_goal": 0.01, "wrench": [1.0] * 3 + [0.05] * 3, "depth": 0.02, "joints": 0.05, "direction": 0.1, "holds": 0.5,
          "held": 0.5, "tension": 0.5, "blood": 1.0, "seen": 0.1}
-UNSEEN = {"Reach": {"joints", "direction"}}
+UNSEEN = {"Reach": {"joints", "direction"}, "Cinch": {"to_goal", "wrench", "joints", "direction"}}
 
 
 class Random:
@@ -98,7 +98,7 @@ def least_of(observation, inputs):
     return np.concatenate([np.broadcast_to(LEAST[name], np.size(observation[name])) for name in inputs])
 
 
-def balanced(wanted, share=0.05):
+def balanced(wanted, share=0.2):
     """Indices of the rows of `wanted` actions, those repeated in which buttons are pressed as in few others, until each
     combination of buttons is this share of all rows, about: a button that is pressed once in an episode would else be noise."""
     buttons = np.all(np.isin(wanted, (-1, 1)), axis=0)

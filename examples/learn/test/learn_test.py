@@ -91,6 +91,18 @@ class Evaluation(unittest.TestCase):
             with self.assertRaisesRegex(learn.Error, "is a policy of Inspect"):
                 learn.policy_of(file, "Reach")
 
+    def test_a_button_that_is_rarely_pressed_is_learnt(self):
+        """One that is pressed only where an input is above 2, in 1 of 250 rows beside it; without balance it stays up."""
+        rows = np.random.default_rng(3).uniform(0, 2.008, (5000, 1))
+        wanted = np.column_stack([0.1 * rows[:, 0], np.where(rows[:, 0] > 2, 1.0, -1.0)])
+        some = learn.balanced(wanted)
+        self.assertEqual(set(some), set(range(5000)), "every row stays")
+        self.assertAlmostEqual(np.mean(wanted[some, 1] > 0), 0.2, delta=0.05)
+        where = [[1.0], [2.006]]
+        pressed = [learn.forward(learn.fit(rows[of], wanted[of], 10), np.array(where))[-1][:, 1] > 0 for of in (some, slice(None))]
+        self.assertEqual([list(one) for one in pressed], [[False, True], [False, False]])
+        self.assertEqual(list(learn.balanced(wanted[:, :1])), list(range(5000)), "no buttons")
+
     def test_the_policies_that_come_with_it_fit_their_tasks(self):
         files = sorted(glob.glob(os.path.join(os.path.dirname(learn.__file__), "policies", "*.npz")))
         self.assertEqual(len(files), 3)
