@@ -24,7 +24,7 @@ bool InstrumentTracker::searchNearby(const Frame& frame, const Prediction& predi
   if (!prediction.known || prediction.close || !fitter_.shows(kRotation)) return false;
   const double slide = std::clamp(prediction.slide.mean[0], config_.lower, config_.upper);
   const double scale = pixelsPerMetre(config_.axis, slide), deviation = prediction.slide.deviation() * scale;
-  if (deviation > policy_.known_place) return false;
+  if (deviation > policy_.nearby_place) return false;
   const FitPrior prior = slow_.prior(slide);
   const double motion = std::abs(motionAt(prediction.slide, prediction.rotation, frame.exposure).length);
   MarkerFit fit = fitter_.acquire(map_, frame,
@@ -32,8 +32,9 @@ bool InstrumentTracker::searchNearby(const Frame& frame, const Prediction& predi
                                    prediction.turn, policy_.nearby_reach * deviation});
   checkStripe(prior, prediction, fit);
   if (gates_.judge(fit, slow_.nominal(slide)) != LostReason::None || fit.visible < policy_.nearby_visible) return false;
-  if (!isNear(fit, prediction)) return false;
+  if (!isNear(fit, prediction) && !isExpectedPart(fit, prediction)) return false;
   accept(frame, fit, prediction, true);
+  lookForDistortions(frame, fit);
   stateDoubts(frame);
   return true;
 }
@@ -50,7 +51,8 @@ bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& predic
     reason_ = LostReason::Jump;
     return false;
   }
-  copies_.find(best.x[kAlong], lost_frames_ > 0 && !isNear(best, prediction));
+  const double near = fitter_.shows(kRotation) ? policy_.nearby_place : policy_.known_place;
+  copies_.find(best.x[kAlong], lost_frames_ > 0 && !isWithin(near, best, prediction));
   accept(frame, best, prediction, true);
   if (is_last && prediction.known) lookForDistortions(frame, best);
   rememberCopies(frame, found, from, to, best.x[kAlong]);
@@ -79,7 +81,8 @@ MarkerFit InstrumentTracker::bestOf(const Frame& frame, const Prediction& predic
 /// @return whether it is the marker, and better
 bool InstrumentTracker::consider(const MarkerFit& fit, const Prediction& prediction, MarkerFit& best) {
   LostReason reason = gates_.judge(fit, slow_.nominal(slideOf(config_.axis, fit.x[kAlong])), false);
-  if (reason == LostReason::None && fitter_.shows(kRotation) && isPart(fit) && !isNear(fit, prediction))
+  if (reason == LostReason::None && fitter_.shows(kRotation) && isPart(fit) && !isNear(fit, prediction) &&
+      !isExpectedPart(fit, prediction))
     reason = LostReason::Occluded;
   if (reason != LostReason::None && fit.clipped > policy_.clipped_share) reason = LostReason::Saturated;
   const bool better = reason == LostReason::None && fit.loss < best.loss;
@@ -129,8 +132,17 @@ MarkerFit InstrumentTracker::tryCandidate(const Frame& frame, const Prediction& 
   const double size = std::log(candidate.scale);
   if (std::abs(size - start[kLogScale]) > policy_.scale_step) start[kLogScale] = size;
   if (candidate.shows_rotation && !prediction.turn) start[kRotation] = candidate.rotation;
-  MarkerFit fit = fitter_.acquire(
-      map_, frame, {start, prior, candidate.motion, fastestMotion(frame), prediction.turn || candidate.shows_rotation});
+  const MarkerMotion most = fastestMotion(frame);
+  MarkerFit fit =
+      fitter_.acquire(map_, frame, {start, prior, candidate.motion, most, prediction.turn || candidate.shows_rotation});
+  // What covers a part of a sleeve looks like motion: the mean along the axis then tells neither that nor the rotation.
+  if (fitter_.shows(kRotation) && prediction.known && fit.loss > policy_.good_loss) {
+    const double motion = std::abs(motionAt(prediction.slide, prediction.rotation, frame.exposure).length);
+    start = startAt(slide, prior, prediction);
+    const MarkerFit other =
+        fitter_.acquire(map_, frame, {start, prior, std::min(motion, most.length), most, prediction.turn});
+    if (other.valid && (!fit.valid || other.loss < fit.loss)) fit = other;
+  }
   checkStripe(prior, prediction, fit);
   return fit;
 }
@@ -158,10 +170,21 @@ bool InstrumentTracker::isPart(const MarkerFit& fit) const {
 
 /// Where else the bars would fit is further away.
 bool InstrumentTracker::isNear(const MarkerFit& fit, const Prediction& prediction) const {
+  return isWithin(policy_.known_place, fit, prediction);
+}
+
+/// A part whose stripe fits, too, within a length of the sleeve or so.
+bool InstrumentTracker::isExpectedPart(const MarkerFit& fit, const Prediction& prediction) const {
+  return fit.visible > policy_.nearby_visible && fit.stripe_seen > policy_.expected_stripe &&
+         isWithin(policy_.expected_place, fit, prediction);
+}
+
+/// Of the prediction, if that is known so well. @param place  its deviation, at most [px]
+bool InstrumentTracker::isWithin(double place, const MarkerFit& fit, const Prediction& prediction) const {
   if (!prediction.known) return false;
   const double deviation = prediction.slide.deviation() * pixelsPerMetre(config_.axis, prediction.slide.mean[0]);
   const double distance = std::abs(fit.x[kAlong] - alongOf(config_.axis, prediction.slide.mean[0]));
-  return deviation < policy_.known_place && distance < policy_.near * deviation;
+  return deviation < place && distance < policy_.near * deviation;
 }
 
 bool InstrumentTracker::isExpected(const MarkerFit& fit, const Prediction& prediction, double stamp) {

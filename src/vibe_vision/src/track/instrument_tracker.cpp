@@ -203,6 +203,8 @@ void InstrumentTracker::stateDoubts(const Frame& frame) {
     doubt = Doubt::Rows;
   else if (light_.surprise() > policy_.strange_light)
     doubt = Doubt::Light;
+  else if (copies_.unchecked())
+    doubt = Doubt::Unchecked;
 }
 
 /// Where the marker is now tells its speed during the exposure better than what was predicted.

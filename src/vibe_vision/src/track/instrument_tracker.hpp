@@ -52,6 +52,8 @@ class InstrumentTracker : public MarkerTracker {
   FitPrior searchPrior(double slide) const;
   bool isPart(const MarkerFit& fit) const;
   bool isNear(const MarkerFit& fit, const Prediction& prediction) const;
+  bool isExpectedPart(const MarkerFit& fit, const Prediction& prediction) const;
+  bool isWithin(double place, const MarkerFit& fit, const Prediction& prediction) const;
   bool isExpected(const MarkerFit& fit, const Prediction& prediction, double stamp);
   void accept(const Frame& frame, const MarkerFit& fit, const Prediction& prediction, bool reacquired);
   void toMiddle(const Frame& frame, const MarkerFit& fit, double scale);

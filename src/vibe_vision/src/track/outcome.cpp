@@ -37,7 +37,9 @@ constexpr Words kDoubts[] = {
      "size; calibrate the axis anew, or correct the size"},
     {"shutter",
      "the picture of the moving marker is sheared, as by a rolling shutter; use a camera with a global shutter"},
-    {"unchecked", "too few fast frames have been seen to exclude a rolling shutter; move the instrument to and fro"},
+    {"unchecked",
+     "the marker has not moved since it was found, so that it may be a copy, or too few fast frames have been seen to "
+     "exclude a rolling shutter; move the instrument to and fro"},
     {"askew",
      "the tilt of the sleeve's bars changes with its rotation: it may be glued askew, which moves its slide with the "
      "rotation; glue it anew, its ends at right angles to the rod"},

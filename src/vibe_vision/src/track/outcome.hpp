@@ -23,8 +23,9 @@ inline double exposureShift(double exposure) {
   return exposure * exposure / 24;
 }
 
-/// Whether what is followed may be a copy of the marker. What moves is the marker; what rests while something else
-/// looks like it, too, or what was found elsewhere after the marker was lost, is in doubt until it moves.
+/// Whether what is followed may be a copy of the marker. What moves is the marker. What rests while something else
+/// looks like it, too, or what was found elsewhere after the marker was lost, is in doubt until it moves; and what has
+/// not moved yet is unchecked: the marker may be hidden while a copy of it is seen.
 class Copies {
  public:
   explicit Copies(const TrackerPolicy& policy) : policy_(policy) {}
@@ -33,6 +34,7 @@ class Copies {
   void find(double along, bool lost);
   void follow(double along);
   bool doubted() const { return !moved_ && (suspect_ || count_ > 0); }
+  bool unchecked() const { return !moved_; }
   /// Something that is not followed looks like the marker there.
   void see(double along);
   /// What was seen from one place to another, but for what may be hidden by the marker.

@@ -117,9 +117,12 @@ TEST(Doubts, OpticsThatMoveTheBarsApartAreNoRelief) {
   EXPECT_EQ(doubtOfEnds(0.01, -3, 0.01), Doubt::Bent);
 }
 
-Doubt doubtAtRest(double scale) {
+/// At rest, after a motion.
+/// @param motion  [m]
+Doubt doubtAtRest(double scale, double motion = 1e-3) {
   SyntheticScene scene = ringScene("static");
   scene.instruments[0].scale = scale;
+  test::moveAs(scene, [motion](double time) { return motion * std::min(1.0, 10 * time); });
   const Renderer renderer(scene);
   Tracker tracker(nominalConfig(scene));
   Measurement last;
@@ -132,6 +135,13 @@ TEST(Doubts, AnotherSizeThanCalibrated) {
   EXPECT_EQ(doubtAtRest(1.03), Doubt::Size);
   EXPECT_EQ(doubtAtRest(0.97), Doubt::Size);
   EXPECT_EQ(doubtAtRest(1.005), Doubt::None);
+}
+
+/// What has not moved may be a copy, and the marker hidden. A pixel of motion is none.
+TEST(Doubts, AMarkerIsUncheckedUntilItHasMoved) {
+  EXPECT_EQ(doubtAtRest(1, 0), Doubt::Unchecked);
+  EXPECT_EQ(doubtAtRest(1, 1e-4), Doubt::Unchecked);
+  EXPECT_EQ(doubtAtRest(1, -1e-3), Doubt::None);
 }
 
 /// What a sleeve shows of a tilt [rad] that is constant, of one of its print, and of a row time [s].

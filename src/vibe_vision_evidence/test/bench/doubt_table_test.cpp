@@ -25,6 +25,8 @@ const Fault kFaults[] = {
     {"covered_stripe_rest", true, 2, 20, &TrackerPolicy::stripe_seen, 0},
     {"mirrored", true, 1, 24, &TrackerPolicy::stripe_seen, 0},
     {"copy", false, 1, 34, &TrackerPolicy::looks_alike, kNever},
+    {"copy", false, 3, 20, &TrackerPolicy::copy_moved, 0},  // seen alone, before the instrument
+    {"copy", true, 3, 20, &TrackerPolicy::copy_moved, 0},
     {"flicker_50", false, 1, 16, &TrackerPolicy::strange_light, kNever},
 };
 
@@ -36,17 +38,20 @@ TEST_P(Doubted, WhatIsWrong) {
   cell.scene = fault.scene;
   const BenchScene bench = makeBenchScene(cell, fault.seed);
   const std::vector<RenderedFrame> drawn = renderFrames(bench, cell, fault.frames);
-  TrackerPolicy without;
+  TrackerPolicy with;
+  if (cell.scene == "covered_stripe_rest") with.copy_moved = 0;  // what rests is unchecked
+  TrackerPolicy without = with;
   without.*fault.decides = fault.off;
   DoubtRow row{fault.scene, fault.sleeve}, control = row;
-  row.add(bench, drawn);
+  row.add(bench, drawn, with);
   control.add(bench, drawn, without);
   EXPECT_EQ(row.silent, 0);
   EXPECT_GT(control.silent, 0);
 }
 
 std::string nameOf(const testing::TestParamInfo<Fault>& fault) {
-  return std::string(fault.param.scene) + (fault.param.sleeve ? "_sleeve" : "_ring");
+  return std::string(fault.param.scene) + (fault.param.sleeve ? "_sleeve_" : "_ring_") +
+         std::to_string(fault.param.seed);
 }
 
 INSTANTIATE_TEST_SUITE_P(Faults, Doubted, testing::ValuesIn(kFaults), nameOf);

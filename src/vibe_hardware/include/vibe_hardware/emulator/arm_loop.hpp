@@ -31,9 +31,9 @@ HandAtArm yieldingHand(double range);
 
 /// An arm that moves the insertion against a tissue that is a spring.
 struct ArmLoopSettings {
-  TeleopMapping mapping;  ///< moves the insertion along an axis of the hand
-  ArmLink link;
-  HandAtArm hand;
+  TeleopMapping mapping;   ///< moves the insertion along an axis of the hand
+  ArmLink link;            ///< the way of its messages, both ways
+  HandAtArm hand;          ///< who holds it
   double stiffness = 300;  ///< of the tissue [N/m]
   double duration = 10;    ///< [s]
 };

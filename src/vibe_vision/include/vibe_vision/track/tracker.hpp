@@ -34,7 +34,7 @@ enum class Doubt {
   None,       ///< nothing does
   Size,       ///< the marker is not as large as calibrated
   Shutter,    ///< the rows of an image are not exposed at the same time
-  Unchecked,  ///< the marker may move fast, and too few frames have been seen to know whether they are
+  Unchecked,  ///< too few fast frames have been seen to know that, or it has not moved yet and may be a copy
   Askew,      ///< a sleeve is askew on its rod
   Bent,       ///< a flat marker is bent, or the ends of a marker stand off
   Response,   ///< the response of the camera is not the one that was given

@@ -62,8 +62,14 @@ VIBE_REAL(whole_misfit, 4, "", "the same of a whole sleeve", "design choice")
 VIBE_REAL(known_place, 3, "px", "deviation of a prediction that tells a sleeve from where else its bars would fit",
           "design choice: where else its bars would fit is further away")
 VIBE_REAL(near, 3, "", "standard deviations of such a prediction in which the sleeve is", "design choice")
+VIBE_REAL(nearby_place, 12, "px", "deviation of a prediction around which places are tried",
+          "design choice: 40 places are as costly as a fit")
 VIBE_REAL(nearby_reach, 2.5, "", "the same in which places are tried", "design choice")
 VIBE_REAL(nearby_visible, 0.5, "", "share of a sleeve that must be seen there", "design choice")
+VIBE_REAL(expected_place, 30, "px", "deviation of a prediction in which a part of a sleeve is taken whose stripe is seen",
+          "0.5 to 1.3 deviations of parts of the sleeve, with 5 to 20 px, behind the bar of the scenes")
+VIBE_REAL(expected_stripe, 0.85, "", "share of its stripe that must be seen",
+          "0.88 to 0.96 of parts of the sleeve, 0.84 at most of other places, behind the bar of the scenes")
 VIBE_REAL(saturated_share, 0.5, "", "share of saturated pixels along the axis for the reason `saturated`",
           "design choice: of what is reported only")
 VIBE_REAL(clipped_share, 0.2, "", "share of saturated pixels of a marker for the same reason",
