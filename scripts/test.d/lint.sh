@@ -62,6 +62,8 @@ seesAForgottenFile() {
   tree=$(copyOfTree)
   "$tree/scripts/lint" --only tracked | grep -q '^tracked: skipped' || return 1
   git -C "$tree" init -q && git -C "$tree" add . && echo >>"$tree/src/vibe_core/src/solver/stepper.cpp" && passes tracked "$tree" || return 1
+  echo '>>>>>>> other' >"$tree/docs/merged.md" && git -C "$tree" add docs && sees tracked "$tree" -F 'docs/merged.md:1:' || return 1
+  rm "$tree/docs/merged.md"
   touch "$tree/src/vibe_core/src/solver/forgotten.hpp"
   sees tracked "$tree" -Fx 'src/vibe_core/src/solver/forgotten.hpp'
 }
