@@ -104,6 +104,19 @@ aSetIsTheSameBytes() {
   publishSet set_dask --jobs 2 && cmp "$scratch"/set{,_dask}/SHA256SUMS
 }
 
+# Each recording of the set is repeated to the bit, in a process of its own, where nothing else of the set is.
+aSessionIsRepeatedFromItsFile() {
+  local folder
+  mv "$scratch/set" "$scratch/set_away"
+  for folder in "$scratch"/set_away/sessions/*; do
+    mkdir "$scratch/alone" && cp "$folder/session.bag" "$scratch/alone" || return 1
+    inWorkspace "$devel/lib/vibe_sim/vibe_replay" alone/session.bag | tee "$scratch/said.txt" &&
+      grep -q '^the same: all 120 steps' "$scratch/said.txt" &&
+      grep -qF "\"$(sed -n 's/^state hash: //p' "$scratch/said.txt")\"" "$folder/measures.json" || return 1
+    rm -r "$scratch/alone"
+  done
+}
+
 startDask
 check 'cohorts: a row per session' aRowPerSession
 check 'cohorts: the measures of vibe_headless' theMeasuresOfHeadless
@@ -113,8 +126,9 @@ check 'cohorts: a bad scene is listed, the others go on' aBadSceneIsListed
 check 'cohorts: a learning curve' drawsACurve
 if [ -n "${VIBE_SLOW_TESTS:-}" ]; then
   check 'published set: local and through Dask the same bytes' aSetIsTheSameBytes
+  check 'published set: a session is repeated from its file alone' aSessionIsRepeatedFromItsFile
 else
-  echo 'skipped published set: local and through Dask the same bytes (scripts/test --slow makes it)'
+  echo 'skipped published set: the same bytes everywhere, and sessions from their files alone (scripts/test --slow makes it)'
 fi
 check 'cohorts: another plan is refused' refuses 2 'another plan: count was 2, not 3' cohort local --count 3
 check 'vibe_headless: a skill that is none' refuses 2 '--novice' headless --novice 1.5
