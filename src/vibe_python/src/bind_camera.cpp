@@ -132,12 +132,12 @@ py::dict camera(SimulationHandle& handle, int width, int height, double field_of
 }
 
 /// The scene's, or the defaults, but for what is given.
-InspectionScene inspectionOf(const Model& model, const py::object& field_of_view, const py::object& distance,
-                             const py::object& angle) {
+InspectionScene inspectionOf(const Model& model, std::optional<double> field_of_view, std::optional<double> distance,
+                             std::optional<double> angle) {
   InspectionScene inspection = model.scene.inspection.value_or(InspectionScene{});
-  const auto take = [](const py::object& given, const char* name, double high, double& value) {
-    if (given.is_none()) return;
-    value = number(given, name);
+  const auto take = [](std::optional<double> given, const char* name, double high, double& value) {
+    if (!given) return;
+    value = *given;
     if (!(value > 0 && value <= high))
       throw Error(std::string("'") + name + "' is not above 0 and at most " + std::to_string(high) +
                   "; give it in rad or metres, or None.");
@@ -156,8 +156,8 @@ std::vector<char> flagsOf(const py::object& given, std::size_t count) {
   return flags;
 }
 
-py::array_t<bool> sees(SimulationHandle& handle, const py::object& leave_out, const py::object& field_of_view,
-                       const py::object& distance, const py::object& angle) {
+py::array_t<bool> sees(SimulationHandle& handle, const py::object& leave_out, std::optional<double> field_of_view,
+                       std::optional<double> distance, std::optional<double> angle) {
   const Use use(handle);
   const Model& model = use.model();
   const State& state = use.state();

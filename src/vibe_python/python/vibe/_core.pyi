@@ -224,7 +224,7 @@ class Simulation:
         Returns what happened. Ctrl+C ends it after a step."""
     def save(self, file: str) -> None:
         """Writes a snapshot."""
-    def sees(self, leave_out: Any = None, field_of_view: Any = None, distance: Any = None, angle: Any = None) -> ndarray:
+    def sees(self, leave_out: Any = None, field_of_view: Optional[float] = None, distance: Optional[float] = None, angle: Optional[float] = None) -> ndarray:
         """New array (particles,) bool: which particles of the wall the lens sees now, as docs/metrics.md#coverage defines it: within the field_of_view of the round picture [rad], no farther than distance [m], within angle of the normal [rad], hidden by no fold and not by the device; None: as the section inspection of the scene says, else its defaults. leave_out: (particles,) True where nobody wants to know, which saves time."""
     def snapshot(self, prepared: bool = False) -> Snapshot:
         """The present state, in memory. prepared=True, for states that many simulations go back to: keeps what the first step after restore() takes long to make, too (a megabyte with 1,000 particles), with the same results."""
