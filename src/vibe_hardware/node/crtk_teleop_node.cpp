@@ -20,6 +20,7 @@ constexpr double kJointInterval = 0.004;    // between commands to the scope, at
 constexpr double kArmButtonInterval = 0.1;  // between messages that change nothing [s]
 constexpr int kTapped = 2;    // of a pedal of the dVRK: it went down and came up soon, which no other message says
 constexpr double kTap = 0.1;  // for which such a button counts as pressed [s]
+constexpr double kShortest = 0.02;  // and any other, so that none is lost that comes and goes between two steps [s]
 constexpr std::uint32_t kArmQueue = 10;
 
 }  // namespace
@@ -123,7 +124,11 @@ void CrtkTeleopNode::subscribe(ros::NodeHandle& handle) {
   for (std::size_t b = 0; b < mapping_.buttons.size(); ++b) {
     if (mapping_.buttons[b].topic.empty()) continue;
     listenToButton(
-        handle, mapping_.buttons[b], [this, b](bool pressed) { input_.buttons[b] = pressed ? 1 : 0; },
+        handle, mapping_.buttons[b],
+        [this, b](bool pressed) {
+          input_.buttons[b] = pressed ? 1 : 0;
+          if (pressed) tapped_[b] = std::max(tapped_[b], ros::WallTime::now().toSec() + kShortest);
+        },
         [this, b] { tapped_[b] = ros::WallTime::now().toSec() + kTap; });
     pressing_.emplace_back(b, subscribers_.back());
   }
