@@ -27,7 +27,6 @@ class HeldArms : public World {
 
   void press(Button button, bool down) override {
     for (HeldArm& arm : arms_) {
-      if (arm.waits) continue;
       const ArmButton& control = arm.mapping.buttons[static_cast<std::size_t>(button)];
       if (arm.mapping.gripper && arm.mapping.gripper->button == button) squeeze(arm, down);
       if (control.topic.empty()) continue;
@@ -50,7 +49,6 @@ class HeldArms : public World {
     std::array<double, kHandCoordinates> hand{};    // where the person intends to have it
     std::array<double, kHandCoordinates> joints{};  // of one that measures them
     bool squeezes = false;
-    bool waits = false;  // nobody holds it
     double angle = 0;    // of the gripper
   };
 
@@ -62,7 +60,6 @@ class HeldArms : public World {
   void act() override {
     if (by_ == 0) return;
     for (HeldArm& arm : arms_) {
-      if (arm.waits) continue;
       const HandJoint& map = arm.mapping.joints[static_cast<std::size_t>(joint_)];
       const auto& gripper = arm.mapping.gripper;
       if (gripper && gripper->joint == joint_) arm.squeezes = (by_ > 0) == (gripper->at_closed > gripper->at_open);
