@@ -49,7 +49,7 @@ class HeldArms : public World {
     std::array<double, kHandCoordinates> hand{};    // where the person intends to have it
     std::array<double, kHandCoordinates> joints{};  // of one that measures them
     bool squeezes = false;
-    double angle = 0;    // of the gripper
+    double angle = 0;  // of the gripper
   };
 
   std::vector<HeldArm> arms_;
