@@ -105,7 +105,7 @@ class Evaluation(unittest.TestCase):
 
     def test_the_policies_that_come_with_it_fit_their_tasks(self):
         files = sorted(glob.glob(os.path.join(os.path.dirname(learn.__file__), "policies", "*.npz")))
-        self.assertEqual(len(files), 3)
+        self.assertEqual(len(files), 4)
         for file in files:
             policy = learn.Cloned(file)
             space = learn.Environment(policy.task, particles=300, organs=[("sthenic", 1.0)], **learn.SETTINGS.get(policy.task, {}))

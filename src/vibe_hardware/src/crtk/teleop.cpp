@@ -18,12 +18,10 @@ const char* const kJumped =
     "on, its driver may publish millimetres instead of metres, or two drivers the same topic.";
 const char* const kSilent =
     "The arm has fallen silent: its forces are off and the scope stays where it is. An arm that does not hear this "
-    "either "
-    "keeps its last force and may give energy; let its driver drop forces that are not renewed.";
+    "either keeps its last force and may give energy; let its driver drop forces that are not renewed.";
 const char* const kOverdrawn =
     "The arm may have given more than its 'energy': while a force acted it moved faster, or its measurements paused "
-    "for "
-    "longer, than 'speed_limit' and 'delay' below 'arm' in the mapping allow; raise them, or make the connection "
+    "for longer, than 'speed_limit' and 'delay' below 'arm' in the mapping allow; raise them, or make the connection "
     "steadier.";
 constexpr double kAgeMemory = 10;                // in which a late measurement is forgotten to 1/e [s]; design choice
 constexpr double kOverdraft = 0.01;              // of an account, from which it is said; design choice

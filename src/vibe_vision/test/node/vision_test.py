@@ -252,6 +252,7 @@ class VisionTest(unittest.TestCase):
         node = Program("vibe_vision", "vision_node", *arguments, name="vision_node", **given)
         self.programs.append(node)
         self.assertTrue(wait_until(lambda: publisher.get_num_connections() > 0, 20), node.output())
+        self.assertTrue(tracking.waits_for_connection(), node.output())  # or what it says of the first frame is lost
         tracks = []
         for k in range(20):
             message = make(PIL.Image.open(self.scene.path("frame_{:06d}.pgm".format(k))))
