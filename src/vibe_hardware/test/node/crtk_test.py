@@ -89,6 +89,19 @@ class CrtkTest(unittest.TestCase):
         self.press(False, self.device_button)
         self.assertTrue(wait_until(lambda: abs(self.insertion() - place) > 1e-3, 20))
 
+    def test_2c_a_press_counts_that_comes_and_goes_at_once(self):
+        """The node reads both messages together, mostly, since they come between two measurements of the arm."""
+        buttons, pad = Recorder("scope/buttons", Joy), rospy.Publisher("/joy", Joy, queue_size=10)
+        self.assertTrue(buttons.waits_for_connection() and wait_until(lambda: pad.get_num_connections() > 0, 20))
+        down = lambda: [message.buttons[3] for message in buttons.messages]  # noqa: E731
+        pad.publish(Joy(buttons=[0] * 6))
+        self.assertTrue(wait_until(lambda: down()[-1:] == [0], 20))
+        for taps in range(1, 21):
+            for t_tag in (1, 0):
+                pad.publish(Joy(buttons=[0, 0, 0, 0, t_tag, 0]))
+            presses = lambda: sum(now > before for before, now in zip(down(), down()[1:]))  # noqa: E731
+            self.assertTrue(wait_until(lambda taps=taps: presses() == taps and down()[-1] == 0, 20), presses())
+
     def test_3_an_arm_that_is_paused_drives_nothing(self):
         self.assertTrue(wait_until(lambda: self.state.get_num_connections() > 0, 20))
         self.state.publish(StateCommand(string="pause"))
