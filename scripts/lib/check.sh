@@ -52,12 +52,12 @@ isSlowRun() { [ -n "${VIBE_SLOW_TESTS:-}" ] && isOrdinary "$@"; }
 hashOf() { sed -n 's/^state hash: //p' "$1"; }
 
 # pythonEnvironment NAME FILE OPTION...: build/NAME, a virtual environment with what FILE names, from the registry of Python by
-# pip with these options. It stays as long as FILE is the same.
+# pip with these options; without Debian's where SITE_PACKAGES is empty. It stays as long as FILE is the same.
 pythonEnvironment() {
   local folder=$root/build/$1 names=$2
   shift 2
   cmp -s "$names" "$folder/installed.txt" && return
-  rm -rf "$folder" && /usr/bin/python3 -m venv --system-site-packages "$folder" &&
+  rm -rf "$folder" && /usr/bin/python3 -m venv ${SITE_PACKAGES---system-site-packages} "$folder" &&
     "$folder/bin/pip" install --quiet --retries 1 --timeout 10 "$@" --requirement "$names" && cp "$names" "$folder/installed.txt"
 }
 

@@ -13,6 +13,7 @@ import random
 import re
 import shutil
 import signal
+import subprocess
 import unittest
 
 import numpy
@@ -24,6 +25,7 @@ from export_test import ExportTest, InterruptedTest
 from killed import killed
 from random_messages import content, random_message
 from sensor_msgs.msg import Image
+from sensor_msgs.point_cloud2 import read_points
 
 from vibe_sessions.export import main as export
 from vibe_sessions.export import ros2_package
@@ -109,10 +111,8 @@ class McapReaders(ExportTest):
             self.with_mcap()
 
 
-class FoxgloveLayout(ExportTest):
-    """Against a recording of the simulator with every topic, and a picture."""
-
-    DRAWN = {"sensor_msgs/msg/PointCloud2", "geometry_msgs/msg/PoseStamped"}  # by the panel 3D itself
+class SessionTest(ExportTest):
+    """A recording of the simulator with every topic, and a picture."""
 
     def setUp(self):
         super().setUp()
@@ -122,7 +122,11 @@ class FoxgloveLayout(ExportTest):
         call(["--record", self.folder + "/new.bag", self.folder + "/commands.bag"], program=replay)
         call(["--fill", self.bag, self.folder + "/new.bag"], program=replay, accepted=(0, 3))
         with rosbag.Bag(self.bag, "a") as bag:
-            bag.write("/endoscope/image_raw", Image(height=1, width=1, encoding="rgb8", step=3, data=b"abc"), genpy.Time(1))
+            bag.write("/endoscope/image_raw", Image(height=2, width=2, encoding="rgb8", step=6, data=b"abcdefghijkl"), genpy.Time(1))
+
+
+class FoxgloveLayout(SessionTest):
+    DRAWN = {"sensor_msgs/msg/PointCloud2", "geometry_msgs/msg/PoseStamped"}  # by the panel 3D itself
 
     def test_all_that_it_shows_is_there(self):
         from mcap.reader import make_reader
@@ -149,6 +153,28 @@ class FoxgloveLayout(ExportTest):
                 self.assertEqual(kind.endswith("]"), name.endswith("]"), path)
                 kind = kind.partition("[")[0]
             self.assertIn(kind, ("float64", "string"), path)
+
+
+class RerunView(SessionTest):
+    def test_rerun_reads_what_the_recording_has(self):
+        self.exports(to="mcap")
+        python, file = os.environ["VIBE_RERUN"], self.folder + "/session.rrd"
+        subprocess.run([python, self.output + "/a/mcap/rerun_view.py", "--save", file], check=True)
+        judge = os.path.join(os.path.dirname(os.path.abspath(__file__)), "rerun_judge.py")
+        found = json.loads(subprocess.run([python, "-B", judge, file], check=True, stdout=subprocess.PIPE).stdout)
+        drawn = {"/world/organ/wall": "tissue/particles", "/world/scope_tip": "scope/measured_cp", "/force": "scope/measured_cf",
+                 "/world/scope_tip/force": "scope/measured_cf", "/world/threads": "sutures", "/events": "procedure/events",
+                 "/phase": "procedure/state", "/picture": "endoscope/image_raw"}
+        self.assertEqual(found["layouts"], 1)
+        for entity, topic in drawn.items():
+            static = entity in ("/force",)  # the names of its curves
+            self.assertEqual(found["rows"].get(entity, 0) - static, len(self.messages(topic)), entity)
+        cloud, topology = self.messages("tissue/particles")[0], self.messages("tissue/topology")[0]
+        expected = numpy.array(list(read_points(cloud, ["x", "y", "z"])), numpy.float32)
+        numpy.testing.assert_array_equal(numpy.array(found["vertex_positions"], numpy.float32), expected)
+        self.assertEqual(numpy.ravel(found["triangle_indices"]).tolist(), list(topology.triangles))
+        outward = (expected - expected.mean(0)) * numpy.array(found["vertex_normals"])
+        self.assertGreater((outward.sum(1) > 0).mean(), 0.8)
 
 
 class Ros2Package(unittest.TestCase):

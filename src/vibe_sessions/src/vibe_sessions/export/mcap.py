@@ -1,4 +1,4 @@
-"""Writes MCAP files (https://mcap.dev/spec) of ROS 2 messages, in chunks that are compressed with zstd; and a layout for Foxglove."""
+"""Writes MCAP files (https://mcap.dev/spec) of ROS 2 messages, in chunks that are compressed with zstd."""
 
 import ctypes
 import ctypes.util
@@ -14,7 +14,7 @@ from .definitions import ros2_definition
 MAGIC = b"\x89MCAP0\r\n"
 HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, CHUNK_INDEX = range(1, 9)
 STATISTICS, DATA_END = 0x0B, 0x0F
-LAYOUT = "foxglove.json"
+BESIDE = "foxglove.json", "rerun_view.py"  # a layout, and what shows the file
 CHUNK_SIZE = 1 << 20  # before compression [bytes]
 LEVEL = 1  # of zstd: 2 % larger than level 3 in half its time, and smaller than bzip2 of the recorder
 
@@ -48,7 +48,8 @@ class Mcap:
     def __init__(self, folder, source, files):
         self.connections = source.chosen
         self._file = files.enter_context(open(os.path.join(folder, "session.mcap"), "wb"))
-        shutil.copy(os.path.join(os.path.dirname(__file__), LAYOUT), folder)
+        for name in BESIDE:
+            shutil.copyfile(os.path.join(os.path.dirname(__file__), name), os.path.join(folder, name))
         self._checksum = 0  # of all before the summary
         self._schemas, self._channels, self._chunks = {}, {}, []  # records; schemas by type and definition, channels by number
         self._encoders = {}  # by channel
