@@ -15,7 +15,7 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
 ARROW = 0.01  # of a force [m/N]
-SEEN = 130  # of 255: opacity of the wall, so that the scope and the threads within are seen
+SEEN = 80  # of 255: opacity of the wall, so that the scope and the threads within are seen
 STRAIN = 0.5  # with the darkest colour (ratio)
 WALL, STRAINED = numpy.array([214, 143, 134]), numpy.array([90, 0, 90])
 TUBE = {"lengths": 0.06, "radii": 0.006, "translations": [-0.06, 0, 0], "quaternions": rerun.Quaternion(xyzw=[0, 0.5**0.5, 0, 0.5**0.5])}
