@@ -52,7 +52,7 @@ double ArmWatch::timeOf(const std_msgs::Header& header, double now) {
   const Lateness late = latenessOf(mapping_, age);
   if (!late.key.empty())
     warn(late.key,
-         "Measurements on " + topic_ + " come " + std::to_string(age) + " s after their stamps, " + late.sentence);
+         "Measurements on " + topic_ + " come " + inMilliseconds(age) + " after their stamps, " + late.sentence);
   return std::min(time, now);
 }
 
@@ -99,7 +99,7 @@ void ArmWatch::fill(const TeleopState& state, diagnostic_updater::DiagnosticStat
     status.mergeSummaryf(DiagnosticStatus::OK, "the arm measures the same for %.0f s, at rest or frozen", still);
   if (withheld_ > kMissed)
     status.mergeSummaryf(DiagnosticStatus::WARN, "up to %.0f %% of a force held back to stay passive", 100 * withheld_);
-  if (mapping_.force_scale != 0 && worst_age_ > delay)
+  if (getsForces(mapping_) && worst_age_ > delay)
     status.mergeSummaryf(DiagnosticStatus::WARN, "measurements come %.0f ms late, arm.delay is %.0f ms",
                          1e3 * worst_age_, 1e3 * delay);
   double balance = 1;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A whole bite by two arms, each with a crtk_teleop: one at the scope, one at the suturing device."""
+"""A whole bite by two arms, each with a crtk_teleop: one at the scope, one at the suturing device; and a hand-over."""
 
 import os
 import sys
@@ -12,6 +12,7 @@ import yaml
 from vibe_msgs.msg import ProcedureEvent
 from vibe_testing.program import Program
 from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
 
 SHIPPED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "config", "arms")
 PATIENCE = 500  # on a machine that computes slowly [s]
@@ -31,24 +32,38 @@ def mapping_of(name, folder):
 
 
 class TwoHands(unittest.TestCase):
-    def test_two_nodes_take_a_whole_bite(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def begin(self):
+        """@return a person with two arms, and their nodes"""
+        nodes, arguments = [], []
+        for node, arm, mapping in ARMS:
+            arguments += [arm, mapping_of(mapping, self.folder.name)]
+            nodes.append(Program("vibe_hardware", "crtk_teleop", name=node, arm=arm, mapping=arguments[-1]))
+            self.addCleanup(nodes[-1].stop)
+            self.assertTrue(nodes[-1].says("waiting for"), nodes[-1].output())
+        person = Program("vibe_hardware", "two_hands", *arguments, name="person")
+        self.addCleanup(person.stop)
+        return person, nodes
+
+    def test_two_nodes_take_a_whole_bite_after_others_have_died_in_mid_bite(self):
         events = Recorder("/procedure/events", ProcedureEvent)
         self.assertTrue(events.waits_for_connection())
-        nodes, arguments = {}, []
-        for node, arm, mapping in ARMS:
-            arguments += [arm, mapping_of(mapping, folder.name)]
-            nodes[node] = Program("vibe_hardware", "crtk_teleop", name=node, arm=arm, mapping=arguments[-1])
-            self.addCleanup(nodes[node].stop)
-            self.assertTrue(nodes[node].says("waiting for"), nodes[node].output())
-        person = Program("vibe_hardware", "two_hands", *arguments)
-        self.addCleanup(person.stop)
-        self.assertEqual(person.ends(PATIENCE), 0, person.output() + nodes["right"].last_words())
+        first, first_nodes = self.begin()
+        wound = lambda: any(event.kind == ProcedureEvent.HELIX_TURNED for event in events.messages)
+        self.assertTrue(wait_until(wound, PATIENCE), first.output())
+        for program in (first, *first_nodes):
+            program.process.kill()
+        released = lambda: [event.kind for event in events.messages].count(ProcedureEvent.RELEASE) > 0
+        self.assertTrue(wait_until(released, PATIENCE), "the wall was not let go")
+        person, nodes = self.begin()
+        self.assertEqual(person.ends(PATIENCE), 0, person.output() + nodes[-1].last_words())
         print(person.output())
         happened = [event.kind for event in events.messages]
-        for kind in (ProcedureEvent.GRAB, ProcedureEvent.BITE, ProcedureEvent.RELEASE):
-            self.assertEqual(happened.count(kind), 1)
+        for kind, count in ((ProcedureEvent.GRAB, 2), (ProcedureEvent.BITE, 1), (ProcedureEvent.RELEASE, 2)):
+            self.assertEqual(happened.count(kind), count)
         self.assertFalse([kind for kind in happened if kind in MISTAKES])
 
 

@@ -5,8 +5,14 @@
 
 namespace vibe::hardware {
 
+/// Whether the arm is ever sent a force: the tissue answers to joints of the scope only.
+bool getsForces(const TeleopMapping& mapping);
+
 /// PortConfig::delay of the scope's joints, the largest; 0 where the arm moves none [s]
 double largestDelay(const TeleopMapping& mapping);
+
+/// For sentences: 0.0123 s is "12.3 ms".
+std::string inMilliseconds(double time);
 
 /// What late measurements mean for a mapping.
 struct Lateness {
