@@ -1,7 +1,9 @@
 """Episodes of a recording: which steps are rows of which goal, and how a goal ended."""
 
 import io
+import itertools
 import os
+import random
 import unittest
 
 import genpy
@@ -41,8 +43,10 @@ class EpisodesTest(InFolder):
         super().setUp()
         self.path = os.path.join(self.folder, "session.bag")
 
-    def write(self, steps=120, goals=True, reset=None, kinds=()):
-        """Joint k has the position time + k where it is measured, and minus that where it is commanded."""
+    def write(self, steps=120, goals=True, reset=None, kinds=(), late=0.0, respawn=10**6):
+        """Joint k has the position time + k where it is measured, and minus that where it is commanded. Everything is received
+        up to `late` seconds after its stamp."""
+        self.late, self.dice = late, random.Random(5)
         events = [(SLIP, ProcedureEvent.SLIP), *kinds]
         with rosbag.Bag(self.path, "w") as self.bag:
             for step in range(steps + 1):
@@ -55,7 +59,7 @@ class EpisodesTest(InFolder):
                     self.put_goals(seconds)
                 run = 2 if reset is not None and step >= reset else 1
                 joints = [-(seconds + k) for k in range(7)]
-                self.put("applied_input", StepInput(step=step, run=run, joints=joints, buttons=bytes([0, 1, 0, 0, 0, step % 2])), seconds)
+                self.put("applied_input", StepInput(step=step, session=1 + (step >= respawn), run=run, joints=joints, buttons=bytes([0, 1, 0, 0, 0, step % 2])), seconds)
         return self.path
 
     def add_pictures(self, topic="endoscope/image_raw", encoding="rgb8", rate=RATE, until=3.0):
@@ -67,7 +71,7 @@ class EpisodesTest(InFolder):
 
     def put(self, topic, message, seconds):
         message.header.stamp = genpy.Time.from_sec(seconds)
-        self.bag.write("/" + topic, message, message.header.stamp)
+        self.bag.write("/" + topic, message, genpy.Time.from_sec(seconds + self.dice.uniform(0, self.late)))
 
     def put_results(self, seconds):
         values = [seconds + k for k in range(7)]
@@ -104,8 +108,8 @@ class EpisodesTest(InFolder):
                                  ("goal 4", "failure", False)])  # fmt: skip
 
     def test_a_row_is_what_was_known_at_its_time_and_what_was_commanded_then(self):
-        self.write()
-        for fps in (20, 30, 60):
+        for fps, late in ((20, 0), (30, 0), (60, 0), (30, 0.9), (60, 2.9)):
+            self.write(late=late)
             self.assertEqual([len(episode.times) for episode, _, _ in self.episodes(fps)],
                              [0.5 * fps, round(0.7 * fps), 0.4 * fps, 0.4 * fps + 1])  # fmt: skip
             for episode, _, _ in self.episodes(fps):
@@ -130,6 +134,30 @@ class EpisodesTest(InFolder):
         self.assertEqual([column[:, grabs].sum() for column in columns], [2, 0, 0, 0])
         self.assertEqual(columns[0][5, grabs], 2)
         self.assertEqual(columns[1].sum(), 1)  # the slip
+
+    def test_no_event_is_lost_whenever_it_is_received(self):
+        kinds = [(k / 12, ProcedureEvent.GRAB) for k in range(1, 24)]
+        grabs = NAMES["observation.events"].index("grab")
+        for fps, late in itertools.product((2, 10, 60), (0, 0.9)):
+            self.write(kinds=kinds, late=late)
+            found = [episode.columns()["observation.events"][:, grabs].sum() for episode, _, _ in self.episodes(fps)]
+            self.assertEqual(found, [6, 8, 5, 4], (fps, late))  # that which ends a goal belongs to it
+
+    def test_a_goal_that_a_range_cuts_has_its_own_label(self):
+        self.write()
+        for end, labels in ((1.3, [True]), (1.6, [True, True]), (2.4, [True, True, False]), (2.9, [True, True, False, False])):
+            self.assertEqual([success for _, _, success in self.episodes(end=end)], labels, end)
+
+    def test_a_simulator_that_was_started_anew_is_another_episode(self):
+        self.write(goals=False, respawn=60)
+        self.assertEqual([len(episode.times) for episode, _, _ in self.episodes()], [30, 31])
+
+    def test_two_simulators_are_refused(self):
+        self.write()
+        with rosbag.Bag(self.path, "a") as bag:
+            bag.write("/other/applied_input", StepInput(), genpy.Time(1))
+        with self.assertRaisesRegex(BagError, "two simulators ./applied_input and /other/applied_input.*; take one of them out"):
+            self.episodes()
 
     def test_without_a_trainee_a_session_is_an_episode_and_a_reset_begins_another(self):
         self.write(goals=False, reset=60, kinds=[(1.5, ProcedureEvent.CINCHED)])

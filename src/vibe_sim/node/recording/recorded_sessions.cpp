@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <deque>
 #include <tuple>
 #include <utility>
 
@@ -35,7 +36,7 @@ struct TimedSnapshot {
 
 // Everything with one identity in one namespace, in the order of the bag's times.
 struct RawSession {
-  std::vector<TimedStep> steps;
+  std::deque<TimedStep> steps;  // they go, one by one, when they are sorted
   std::vector<TimedSnapshot> snapshots;
   std::vector<std::pair<ros::Time, vibe_msgs::SessionInfo>> infos;
   std::multimap<std::int64_t, std::string> hashes;
@@ -62,7 +63,7 @@ class SessionReader {
 
   RecordedStep readStep(const rosbag::MessageInstance& message);
   RawSession& raw(const rosbag::MessageInstance& message, std::uint64_t id);
-  void addSession(const Key& key, const RawSession& raw);
+  void addSession(const Key& key, RawSession& raw);
   bool mayBegin(const RawSession& raw, const RecordedStep& step) const;
   void complete(const RawSession& raw, RecordedSession& session) const;
   [[noreturn]] void refuseTwice(const RecordedStep& step) const;
@@ -112,7 +113,7 @@ RecordedStep SessionReader::readStep(const rosbag::MessageInstance& message) {
 }
 
 std::vector<RecordedSession> SessionReader::sessions() {
-  for (const auto& [key, raw] : raw_)
+  for (auto& [key, raw] : raw_)
     if (!raw.steps.empty()) addSession(key, raw);
   // identities begin with the time of the start, and those without are of an older release
   std::stable_sort(sessions_.begin(), sessions_.end(), [](const RecordedSession& a, const RecordedSession& b) {
@@ -122,7 +123,7 @@ std::vector<RecordedSession> SessionReader::sessions() {
 }
 
 // Without identities a session begins anew where a step comes a second time and is another one.
-void SessionReader::addSession(const Key& key, const RawSession& raw) {
+void SessionReader::addSession(const Key& key, RawSession& raw) {
   RecordedSession session;
   const auto begin = [&](const TimedStep& first) {
     session = {};
@@ -130,21 +131,22 @@ void SessionReader::addSession(const Key& key, const RawSession& raw) {
     session.begin = first.time;
   };
   begin(raw.steps.front());
-  std::map<std::pair<std::uint32_t, std::uint64_t>, RecordedStep> seen;
-  for (const TimedStep& timed : raw.steps) {
-    const auto [entry, is_new] = seen.try_emplace({timed.step.run, timed.step.step}, timed.step);
-    if (!is_new && isSame(entry->second, timed.step)) continue;  // recorded twice, or bags that were merged
+  std::map<std::pair<std::uint32_t, std::uint64_t>, std::size_t> seen;  // where in the steps of its run
+  for (; !raw.steps.empty(); raw.steps.pop_front()) {
+    const TimedStep& timed = raw.steps.front();
+    const std::pair number{timed.step.run, timed.step.step};
+    const auto [entry, is_new] = seen.try_emplace(number, session.runs[timed.step.run].steps.size());
     if (!is_new) {
-      if (key.second != 0 || !mayBegin(raw, timed.step) || timed.step.stamp <= entry->second.stamp)
-        refuseTwice(timed.step);
+      const RecordedStep& known = session.runs[timed.step.run].steps[entry->second];
+      if (isSame(known, timed.step)) continue;  // recorded twice, or bags that were merged
+      if (key.second != 0 || !mayBegin(raw, timed.step) || timed.step.stamp <= known.stamp) refuseTwice(timed.step);
       complete(raw, session);
       sessions_.push_back(std::move(session));
-      seen = {{{timed.step.run, timed.step.step}, timed.step}};
+      seen = {{number, 0}};
       begin(timed);
     }
     session.end = timed.time;
-    RecordedRun& run = session.runs[timed.step.run];
-    run.steps.push_back(timed.step);
+    session.runs[timed.step.run].steps.push_back(timed.step);
   }
   complete(raw, session);
   sessions_.push_back(std::move(session));

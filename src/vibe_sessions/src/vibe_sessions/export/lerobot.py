@@ -7,6 +7,7 @@ from vibe_msgs.msg import GoalProgress, ProcedureEvent
 
 from ..report.bag_file import BagError
 from .pictures import Images, Recorded, topic_of
+from .source import Source, in_order_of_stamps
 
 FPS = 30
 KINDS = dict(sorted((value, name) for name, value in vars(ProcedureEvent).items() if name.isupper() and isinstance(value, int)))
@@ -60,6 +61,11 @@ class Episode:
         self.times.append(time)
         self._new = [0] * len(KINDS)
 
+    def end(self):
+        """What has happened since the last row is in that one, and not lost."""
+        for kind, count in enumerate(self._new):
+            self._rows["observation.events"][kind - len(self._new)] += count
+
     def split(self, success):
         return "failure" if not success else "recovery" if self.kinds & MISHAPS else "train"
 
@@ -76,15 +82,16 @@ class Reader:
             raise BagError("{}: has no {}, which lerobot needs; record a session with a scope, and with --record-all unless it is "
                            "compact".format(source.path, missing[0]))  # fmt: skip
         self._source, self._gap = source, 1e9 / fps
-        names = (*STATES, "applied_input", "trainee/progress", "procedure/events")
-        self._names = {number: name for name in names for number in source.numbers_of(name)}
+        ranks = {**dict.fromkeys(STATES, 0), "procedure/events": 1, "trainee/progress": 2, "applied_input": 3}  # at equal stamps
+        self._ranks = {number: (rank, name) for name, rank in ranks.items() for number in source.of_one_simulator(name)}
         self._has_goals = source.count("trainee/progress") > 0
         self._latest, self._run, self._due, self._episode = {}, None, 0, None
 
     def episodes(self):
         """(episode, success)"""
-        for message in self._source.messages(self._names):
-            name = self._names[message.number]
+        messages = self._source.messages(self._ranks)
+        for message in in_order_of_stamps(messages, lambda each: self._ranks[each.number][0], self._run_of):
+            name = self._ranks[message.number][1]
             if name == "trainee/progress":
                 yield from self._goals(message.fields.goals)
             elif name == "procedure/events" and self._episode:
@@ -93,7 +100,22 @@ class Reader:
                 yield from self._step(message)
             elif name in STATES:
                 self._latest[name] = message
-        yield from self._end()
+        yield from self._end(self._is_reached_later())
+
+    def _run_of(self, message):
+        """A simulator that was started anew, a reset, another state or scene makes another one."""
+        return (message.fields.session, message.fields.run) if self._ranks[message.number][1] == "applied_input" else None
+
+    def _is_reached_later(self):
+        """Whether the goal that the end of the range cuts is reached after it."""
+        if not self._episode or not self._source.cut or not self._has_goals:
+            return False
+        with Source(self._source.path) as whole:
+            for message in whole.messages(whole.numbers_of("trainee/progress")):
+                state = next((goal.state for goal in message.fields.goals if goal.id == self._episode.goal), None)
+                if message.time > self._source.cut and state != GoalProgress.ACTIVE:
+                    return state == GoalProgress.REACHED
+        return False
 
     def _goals(self, goals):
         ours = next((goal for goal in goals if self._episode and goal.id == self._episode.goal), None)
@@ -103,13 +125,15 @@ class Reader:
             self._due = 0
 
     def _step(self, message):
-        if self._run not in (None, message.fields.run):  # a reset, or another state or scene
+        run = self._run_of(message)
+        if self._run not in (None, run):
             yield from self._end()
             self._due = 0
-        self._run = message.fields.run
+        self._run = run
         if self._episode is None and not self._has_goals:
             self._episode = Episode(None, "Endoscopic suturing of the stomach")
-        if self._episode and len(self._latest) == len(STATES) and message.time >= self._due - 1e3:
+        is_known = len(self._latest) == len(STATES) and all(each.time <= message.time for each in self._latest.values())
+        if self._episode and is_known and message.time >= self._due - 1e3:
             self._due = max(self._due or message.time, message.time - self._gap) + self._gap
             self._episode.frame(message.time, self._latest, message.fields)
 
@@ -117,6 +141,7 @@ class Reader:
         """Without goals success is a set that was cinched."""
         ended, self._episode = self._episode, None
         if ended and ended.times:
+            ended.end()
             seconds = (ended.times[-1] - ended.times[0]) / 1e9
             if len(ended.times) < 0.9e9 * seconds / self._gap:
                 raise BagError("{}: has {:.0f} steps per second, fewer than {:g} frames; give a lower --rate".format(

@@ -61,10 +61,10 @@ class Wall:
         self.connections, self._path = set(), source.path
         self._topologies, self._last = {}, -1
         for name in ("tissue/topology", "tissue/particles", *further):
-            topics = sorted(source.bag.connections[number].topic for number in source.numbers_of(name))
-            if not topics and name not in further:
+            numbers = source.of_one_simulator(name)
+            if not numbers and name not in further:
                 raise BagError("{}: has no {}, so there is no wall to write; record it, or leave mesh and gltf out".format(source.path, name))
-            self.connections.update(source.numbers_of(*topics[:1]))
+            self.connections.update(numbers)
 
     def add(self, message):
         cloud = message.fields

@@ -3,6 +3,7 @@
 import difflib
 import fnmatch
 import functools
+import heapq
 import re
 import struct
 import sys
@@ -15,12 +16,31 @@ from ..report.message_types import has_its_definition, parse, stamp_of
 
 # sent on change, and needed to understand the rest at any time
 ALWAYS = ("scene", "session_info", "tissue/topology", "trainee/progress")
+LATEST = 3  # [s]; a recorder that stands still for longer mixes times
 WHOLE = ("vibe_msgs/ProcedureEvent", "rosgraph_msgs/Log", "tf2_msgs/TFMessage")  # types of which a rate leaves none out
 
 
 def fits(topic, patterns):
     """Whether a name, or the end of it, is one of these."""
     return any(fnmatch.fnmatchcase("/" + topic.lstrip("/"), "*/" + pattern.lstrip("/")) for pattern in patterns)
+
+
+def in_order_of_stamps(messages, rank, run):
+    """What belongs to one time together, although it was received up to LATEST seconds apart: a simulator stamps the input of
+    a step with its begin and sends it after it, and a session that is filled has repeated topics beside others that
+    have the times of the recorder. At equal stamps the lower rank(message) comes first. Where run(message) is another one
+    than before (None: the message does not say), or time was set back, what came before is given first."""
+    waiting, newest, last = [], 0, None
+    for count, message in enumerate(messages):
+        before, last = last, run(message) or last
+        if before not in (None, last) or message.time < newest - 1e9 * LATEST:
+            yield from (each[-1] for each in sorted(waiting))
+            waiting, newest = [], message.time
+        heapq.heappush(waiting, (message.time, rank(message), count, message))
+        newest = max(newest, message.time)
+        while waiting[0][0] < newest - 1e9 * LATEST:
+            yield heapq.heappop(waiting)[-1]
+    yield from (each[-1] for each in sorted(waiting))
 
 
 @functools.lru_cache(maxsize=None)
@@ -50,7 +70,8 @@ class Source:
 
     def __init__(self, path, topics=None, begin=None, end=None, rate=None):
         self.path, self.bag = path, BagFile(path)
-        self._begin, self._end, self._gap = 1e9 * (begin or 0), 1e9 * (end or 1e10), 1e9 / rate if rate else 0  # [ns]
+        self._begin, self._gap = 1e9 * (begin or 0), 1e9 / rate if rate else 0  # [ns]
+        self.cut = 1e9 * end if end else None  # where it ends before the recording does [ns]
         self._always, self.chosen = set(self.numbers_of(*ALWAYS)), set(self.numbers_of(*(topics or ["*"])))
         unknown = [pattern for pattern in topics or () if not self.numbers_of(pattern)]
         problem = self._unknown(unknown[0]) if unknown else ""
@@ -77,6 +98,15 @@ class Source:
     def numbers_of(self, *names):
         """Connections whose topics end so."""
         return [number for number, each in self.bag.connections.items() if fits(each.topic, names)]
+
+    def of_one_simulator(self, name):
+        """Connections of a topic that only one namespace may have."""
+        numbers = self.numbers_of(name)
+        topics = sorted({self.bag.connections[number].topic for number in numbers})
+        if len(topics) > 1:
+            raise BagError("{}: has two simulators ({} and {}), and this format holds one; take one of them out, for example with "
+                           "`rosbag filter`".format(self.path, *topics[:2]))  # fmt: skip
+        return numbers
 
     def count(self, name):
         return sum(self.bag.count(number) for number in self.numbers_of(name))
@@ -111,9 +141,11 @@ class Source:
         )
 
     def _is_wanted(self, message, due):
-        if message.number in self._always and message.time <= self._end:
+        if self.cut is not None and message.time > self.cut:
+            return False
+        if message.number in self._always:
             return True
-        if not self._begin <= message.time <= self._end:
+        if message.time < self._begin:
             return False
         if not self._gap or message.connection.datatype in WHOLE:
             return True
