@@ -19,12 +19,16 @@ from unittest import mock
 import genpy
 import numpy
 import rosbag
+import vibe_msgs.msg
 from in_folder import InFolder
 from killed import killed
 from report_bags import SyntheticSession
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64, String
 
 from vibe_sessions.export import gltf as gltf_module
 from vibe_sessions.export import main as export
+from vibe_sessions.export.definitions import COUNTED, fields_of, parts_of
 from vibe_sessions.export.source import Source
 from vibe_sessions.whole_file import digest
 
@@ -98,6 +102,42 @@ class TablesTest(ExportTest):
         self.assertEqual({row["sutures"] + row["bites"] for row in self.table("sutures.sutures.bites")}, {"00", "01"})
         self.assertEqual(self.table("procedure_skill_metrics")[0]["log_dimensionless_jerk"], "nan")
 
+    def test_no_two_topics_share_a_table(self):
+        self.make()
+        alike = {"/left_scope/force": Float64, "/left/scope/force": Float64, "/left/scope_force": String, "/columns": Float64}
+        with rosbag.Bag(self.bag, "a") as bag:
+            for number, (topic, kind) in enumerate(alike.items()):
+                bag.write(topic, kind(str(number) if kind is String else number), genpy.Time(2))
+        self.exports()
+        found = {row["topic"]: (row["table"], row["type"], row["unit"]) for row in self.table("columns") if row["column"] == "data"}
+        self.assertEqual(len({name for name, _, _ in found.values()}), len(found))
+        for number, (topic, kind) in enumerate(alike.items()):
+            name, type_name, unit = found[topic]
+            self.assertEqual((type_name, unit), ("string" if kind is String else "float64", ""))
+            self.assertEqual([float(row["data"]) for row in self.table(name)], [number])
+
+    def test_an_invalid_stamp_and_a_joint_that_is_named_twice(self):
+        with rosbag.Bag(self.bag, "w") as bag:
+            bag.write("/joints", JointState(name=["a", "b", "a"], position=[1, 2, 3]), genpy.Time(7))
+        self.exports()
+        (row,) = self.table("joints")
+        self.assertEqual((row["received"], row["stamp"]), ("7.0", "0.0"))
+        self.assertEqual([row["position[{}]".format(k)] for k in range(3)], ["1.0", "2.0", "3.0"])
+
+    def test_units_of_our_messages(self):
+        """A number that counts, a word and a truth have none, and what is in brackets and no unit is none."""
+        seen = set()
+        for kind in vars(vibe_msgs.msg).values():
+            for part, text in parts_of(kind._type, kind._full_text).items() if hasattr(kind, "_full_text") else ():
+                for name, (type_name, unit) in fields_of(part, text).items():
+                    if part.startswith("vibe_msgs/") and unit:
+                        self.assertNotIn(type_name, COUNTED, (part, name))
+                        seen.add(unit)
+        self.assertEqual(seen, {"m", "s", "ms", "N", "J", "Pa", "rad", "px", "m/s", "N/m", "N s/m", "m^2", "m^3", "m^3/s", "m or rad",
+                                "m/s or rad/s", "N or N m", "N/m or N m/rad", "N s/m or N m s/rad"})  # fmt: skip
+        self.assertEqual(fields_of("a/B", "# At k of x[k] [m].\nfloat64 x\nbool y\nuint8 Z = 1\nfloat64 z\nuint8 n  # [px]"), {
+            "x": ("float64", "m"), "y": ("bool", ""), "z": ("float64", ""), "n": ("uint8", "px")})  # fmt: skip
+
     def test_columns_and_their_units(self):
         self.make(origin=1.7e9)
         self.exports()
@@ -107,6 +147,8 @@ class TablesTest(ExportTest):
                  ("scope_measured_cp", "pose.orientation.w"): "", ("applied_input", "buttons[0]"): ""}  # fmt: skip
         self.assertEqual({key: rows[key]["unit"] for key in units}, units)
         self.assertEqual(rows["applied_input", "state_hash"]["type"], "uint64")
+        counts = [row for row in rows.values() if row["column"].endswith(".length") or row["column"] == "sutures"]
+        self.assertEqual({row["unit"] for row in counts}, {""})
         for table in {name for name, _ in rows}:
             with open(os.path.join(self.output, "a/csv", table + ".csv"), encoding="utf-8") as file:
                 self.assertEqual(file.readline().strip().split(","), [column for name, column in rows if name == table])

@@ -79,13 +79,14 @@ class UnitsTest(ImportTest):
             begin = chance.choice([0, 1.7e9])
             digits = chance.choice([4, 6, 9, 17])
             rows = [[round(begin + t, 4), *[round(value, digits) for value in rest]]
-                    for t, *rest in wave(40, chance.uniform(10, 200), chance.uniform(0, 6))]
+                    for t, *rest in wave(40, chance.uniform(10, 200), chance.choice([0, chance.uniform(0, 6)]))]  # 0: from 50 mm
+            unit, many = chance.choice([("mm", 1e3), ("um", 1e6), ("cm", 1e2)])
             one = self.read(self.motion(rows), self.map())
             # as another program writes them: times as text with its digits, the rest from floating-point products
-            others = ["{:.1f},{!r},{!r},{!r},{!r}".format(1e3 * t - 1e3 * begin, 1e3 * d, math.degrees(r), math.degrees(b), jaw)
+            others = ["{:.1f},{!r},{!r},{!r},{!r}".format(1e3 * t - 1e3 * begin, many * d, math.degrees(r), math.degrees(b), jaw)
                       for t, d, r, b, jaw in rows]
             motion = self.write("other.csv", "t,depth,roll,bend,jaw\n" + "\n".join(others) + "\n")
-            two = self.read(motion, self.map(time="ms", length="mm", angle="deg"))
+            two = self.read(motion, self.map(time="ms", length=unit, angle="deg"))
             self.assertEqual(one[1].tobytes(), two[1].tobytes(), case)
             self.assertEqual(one[2].tobytes(), two[2].tobytes(), case)
 

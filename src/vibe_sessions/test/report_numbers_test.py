@@ -101,6 +101,20 @@ class NumbersTest(InFolder):
         dropped = numbers_of(recording)["dropped"]
         self.assertEqual((dropped["missing_steps"], dropped["restarts"]), (0, 2))
 
+    def test_where_a_reset_moves_the_tip_it_has_not_gone(self):
+        path = os.path.join(self.folder, "session.bag")
+        session = SyntheticSession(path, duration=4)
+        with rosbag.Bag(path, "w") as session.bag:
+            session._begin()
+            for session.run, steps in ((1, range(60)), (2, range(150, 210))):  # a third of a turn later
+                for step in steps:
+                    session._step(step)
+            session._end(20.0)
+        recording = read_recording(path)
+        arc = 2 * math.pi * RADIUS * 2 * (1 - 1 / 60) / 5
+        self.assertAlmostEqual(numbers_of(recording)["measures"]["recorded_path_length"], arc, delta=1e-3 * arc)
+        self.assertAlmostEqual(float(numpy.nanmax(speeds_of(recording.tip_path(), recording.resets())[1])), 2 * math.pi * RADIUS / 5, places=4)
+
     def test_steps_without_hash(self):
         _, numbers = self.read(duration=1, unhashed=(3, 4, 5))
         self.assertEqual(numbers["dropped"]["steps_without_hash"], 3)

@@ -7,6 +7,10 @@ LINE = re.compile(r"^\s*([A-Za-z][\w/]*)(\[\d*\])?\s+([A-Za-z]\w*)\s*(=\s*(.*?)\
 STRING_CONSTANT = re.compile(r"^\s*(string)()\s+([A-Za-z]\w*)\s*(=\s*(.*))()$")  # a # belongs to its value
 PRIMITIVES = {"bool", "byte", "char", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32",
               "float64", "string", "time", "duration"}  # fmt: skip
+COUNTED = PRIMITIVES - {"float32", "float64"}  # have the unit behind them only, if any
+SYMBOL = r"(?:[mu]?m|[nmu]?s|N|J|W|[mkh]?Pa|mmHg|Hz|rad|deg|k?g|px|mL|L|V|A|K|%)(?:\^-?\d)?"
+UNIT = re.compile(r"\[((?:1/)?{0}(?:[ */]{0})*)\]".format(SYMBOL))  # and neither [k] of an array nor a number of literature
+PAIRS = ({"m", "rad"}, {"N", "N m"}, {"m/s", "rad/s"}, {"N/m", "N m/rad"}, {"N s/m", "N m s/rad"})  # of joints that slide or turn
 ROS2_TYPES = {"time": "builtin_interfaces/Time", "duration": "builtin_interfaces/Duration", "char": "uint8"}
 
 
@@ -22,17 +26,25 @@ def parts_of(datatype, definition):
     return {datatype: first, **{name.strip(): text for name, _, text in (other.partition("\n") for other in others)}}
 
 
+def unit_in(words):
+    """What a comment says in brackets; nothing where it names several units, of which a reader has to find the right one."""
+    found = list(dict.fromkeys(UNIT.findall(words)))
+    return " or ".join(found) if len(found) < 2 or set(found) in PAIRS else ""
+
+
 def fields_of(datatype, text, arrays=False):
-    """(type, unit) by name, without constants. The comment above fields, or behind one, tells the unit in brackets. With
-    `arrays` a type says whether it is one, as float64[3]."""
-    fields, words, is_old = {}, "", True  # a comment is that of all fields up to the next one
+    """(type, unit) by name, without constants. The comment above fields, or behind one, tells the unit in brackets; that above
+    counts for the numbers up to the next comment or constant. With `arrays` a type says whether it is one, as float64[3]."""
+    fields, words, is_old = {}, "", True
     for line in text.splitlines():
         found = LINE.match(line)
         if found is None:
             words = line if is_old or not line.strip() else words + line
-        elif not found[4]:
-            units = re.findall(r"\[([^\]\d]{1,12}[^\]]{0,3})\]", words + (found[6] or ""))
-            fields[found[3]] = full_name(found[1], datatype.split("/")[0]) + (found[2] or "" if arrays else ""), " or ".join(dict.fromkeys(units))
+        elif found[4]:
+            words = ""
+        else:
+            unit = unit_in(found[6] or "") or unit_in("" if found[1] in COUNTED else words)
+            fields[found[3]] = full_name(found[1], datatype.split("/")[0]) + (found[2] or "" if arrays else ""), unit
         is_old = found is not None
     return fields
 

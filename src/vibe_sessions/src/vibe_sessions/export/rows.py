@@ -21,6 +21,12 @@ def columns_of(array, labels):
     return ["{}[{}]".format(array, label) for label in labels]
 
 
+@functools.lru_cache(4096)
+def labels_of(names, count):
+    """Names of the elements of an array, if each has its own; else their numbers."""
+    return names if len(names) == len(set(names)) == count else range(count)
+
+
 @functools.lru_cache(1024)
 def numbers_of(count, code):
     return struct.Struct("<{}{}".format(count, code))
@@ -127,7 +133,7 @@ class Rows:
             columns.append(column + ".length")
             values.append(len(found))
         elif found:
-            columns += columns_of(column, tuple(labels) if labels is not None and len(labels) == len(found) else range(len(found)))
+            columns += columns_of(column, labels_of(tuple(labels or ()), len(found)))
             values += found
 
 

@@ -54,7 +54,8 @@ class Message:
     def __init__(self, source, number, received, data):
         self._source, self.data = source, data
         self.number, self.connection, self.received = number, source.bag.connections[number], received  # [ns]
-        self.time = (stamp_of(data)[1] if has_header(self.connection.definition) else 0) or received  # [ns]
+        self.stamp = stamp_of(data)[1] if has_header(self.connection.definition) else received  # [ns]; 0 says: invalid
+        self.time = self.stamp or received  # [ns]
 
     @functools.cached_property
     def fields(self):

@@ -52,9 +52,25 @@ def meaning_of(types, datatype, table, column):
         return "float64", "s"
     unit = ""
     for name in [*table.split(".")[1:], *re.sub(r"\[.*\]$", "", column).split(".")]:
-        kind, own = types.get(datatype, {}).get(name, ("uint32", ""))  # the number of an element, or of elements
+        if name not in types.get(datatype, {}):  # the number of an element, or of elements
+            return "uint32", ""
+        kind, own = types[datatype][name]
         unit, datatype = own or UNITS.get(datatype + "." + name) or UNITS.get(kind) or unit, kind
     return (datatype, unit) if datatype in PRIMITIVES else ("uint32", "")
+
+
+def names_of(connections):
+    """Of tables, by topic and type: the topic with _ for /, and a number behind it where two topics would have the same one."""
+    names, taken = {}, {"columns"}
+    for topic, datatype in sorted({(each.topic, each.datatype) for each in connections}):
+        name = plain = topic.strip("/").replace("/", "_")
+        for number in itertools.count(2):
+            if name not in taken:
+                break
+            name = "{}-{}".format(plain, number)
+        names[topic, datatype] = name
+        taken.add(name)
+    return names
 
 
 class Tables:
@@ -63,19 +79,21 @@ class Tables:
     def __init__(self, folder, source, files):
         self.connections = source.chosen
         self._folder, self._files, self._tables, self._about = folder, files, {}, {}
-        self._names, self._rows = {}, {}  # by connection
+        self._names = names_of(source.bag.connections[number] for number in self.connections)
+        self._rows = {}  # (name, rows) by connection
 
     def add(self, message):
         number = message.number
         if number not in self._rows:
             self._begin(number, message.connection)
-        self._rows[number].read(message.data, self._names[number], KEY, (message.received / 1e9, message.time / 1e9))
+        name, rows = self._rows[number]
+        rows.read(message.data, name, KEY, (message.received / 1e9, message.stamp / 1e9))
 
     def _begin(self, number, connection):
-        name = self._names[number] = connection.topic.strip("/").replace("/", "_")
+        name = self._names[connection.topic, connection.datatype]
         self._about[name] = connection
         types = {kind: fields_of(kind, text, arrays=True) for kind, text in parts_of(connection.datatype, connection.definition).items()}
-        self._rows[number] = Rows(connection.datatype, types, self._add)
+        self._rows[number] = name, Rows(connection.datatype, types, self._add)
 
     def _add(self, name, columns, values):
         if name not in self._tables:
@@ -85,12 +103,12 @@ class Tables:
     def finish(self):
         with open(os.path.join(self._folder, "columns.csv"), "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(("table", "column", "type", "unit"))
+            writer.writerow(("table", "column", "type", "unit", "topic"))
             for name, table in sorted(self._tables.items()):
                 about = self._about[name.split(".")[0]]
                 types = {kind: fields_of(kind, text) for kind, text in parts_of(about.datatype, about.definition).items()}
                 columns = {each: meaning_of(types, about.datatype, name, each) for each in table.columns}
-                writer.writerows((name, each, *meaning) for each, meaning in columns.items())
+                writer.writerows((name, each, *meaning, about.topic) for each, meaning in columns.items())
                 table.write(os.path.join(self._folder, name), columns)
         return "{} tables".format(len(self._tables))
 

@@ -124,7 +124,7 @@ def inputs_of(motion, made, notes):
     for name, source in made.buttons.items():
         times, raw = series[source.column] if source.column else (at, numpy.zeros(count))
         buttons[:, BUTTONS.index(name)] = sampled(times, raw + source.offset, at, "hold") > 0
-    return period, *with_lead(joints, buttons, made, limits, period)
+    return period, *with_lead(numpy.round(joints / GRID) * GRID, buttons, made, limits, period)
 
 
 def with_lead(joints, buttons, made, limits, period):

@@ -90,20 +90,22 @@ def draw_tensions(axes, recording, unit):
     title(axes, "Largest tension of each thread")
 
 
-def speeds_of(path):
-    """Times and speeds, over periods that any recording resolves; NaN where poses are missing."""
+def speeds_of(path, resets=()):
+    """Times and speeds, over periods that any recording resolves; NaN where poses are missing, and where the scope jumps."""
     times = path[:, 0]
     stride = max(1, round(SPEED_PERIOD / max(float(numpy.median(numpy.diff(times))), 1e-6)))
     coarse = path[::stride]
     steps = numpy.diff(coarse[:, 0])
     lengths = numpy.linalg.norm(numpy.diff(coarse[:, 1:], axis=0), axis=1)
+    for reset in resets:
+        lengths[(coarse[:-1, 0] <= reset + 1e-6) & (coarse[1:, 0] >= reset - 1e-6)] = numpy.nan
     good = steps > 0
     speeds = lengths[good] / steps[good]
     return coarse[1:, 0][good], numpy.where(steps[good] > LONGEST_GAP, numpy.nan, speeds)
 
 
 def draw_speed(axes, recording, unit):
-    times, speeds = speeds_of(recording.tip_path())
+    times, speeds = speeds_of(recording.tip_path(), recording.resets())
     times, speeds = envelope(times, speeds)
     if numpy.isnan(speeds).all():
         return

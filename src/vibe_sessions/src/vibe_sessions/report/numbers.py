@@ -114,7 +114,7 @@ def measures_of(recording):
     if recording.state is not None:
         values.update({name: finite(getattr(recording.state, name)) for name in STATE_FIELDS})
     path = recording.tip_path()
-    values["recorded_path_length"] = path_length(path[:, 1:]) if len(path) > 1 else None
+    values["recorded_path_length"] = way_of(path, recording.resets()) if len(path) > 1 else None
     curve = recording.force_curve()
     values["recorded_max_force"] = largest(curve[:, 1])
     values["bites_per_5_min"] = bites_per_five_minutes(recording.sutures)
@@ -141,6 +141,16 @@ def largest(values):
 
 def ratio(part, whole):
     return part / whole if part is not None and whole else None
+
+
+def way_of(path, resets):
+    """Length of a path with times, without its jumps at resets, each the longest step of those that end, or begin, there [m]."""
+    times, steps = path[:, 0], numpy.linalg.norm(numpy.diff(path[:, 1:], axis=0), axis=1)
+    for reset in resets:
+        near = numpy.flatnonzero((times[:-1] <= reset + 1e-6) & (times[1:] >= reset - 1e-6))
+        if len(near):
+            steps[near[numpy.argmax(steps[near])]] = 0
+    return float(steps.sum())
 
 
 def path_length(points):

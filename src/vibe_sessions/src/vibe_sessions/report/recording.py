@@ -68,6 +68,11 @@ class Recording:
         """Rows of time since the first step [s], x, y, z [m]."""
         return self._since_begin(numpy.array(self.tip).reshape(-1, 4))
 
+    def resets(self):
+        """Times since the first step at which another run begins [s]: there the scope jumps."""
+        runs = numpy.array(self.runs)
+        return [self.seconds(self.stamps[k + 1]) for k in numpy.flatnonzero(numpy.diff(runs))]
+
     def force_curve(self):
         """Rows of time since the first step [s] and magnitude [N]."""
         return self._since_begin(numpy.array(self.force).reshape(-1, 2))
