@@ -4,10 +4,11 @@
 
 #include "arithmetic/elementary.hpp"
 #include "constraints/blocks.hpp"
+#include "tissue/relaxation_kernel.hpp"
 #include "tissue/shell_tissue.hpp"
+#include "vibe_core/arithmetic/machine.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/program/error.hpp"
-#include "vibe_core/solver/energy_term.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {
@@ -17,52 +18,51 @@ namespace {
 // Share of the wall's energy below which overstress does not keep it awake: a ten-thousandth of the stress.
 constexpr double kRelaxed = 1e-8;
 
-/// A term of the series, for steps of one length. What a strain rate that is constant over a step leaves of the stress
-/// is exact (Taylor, Pister, Goudreau 1970, doi 10.1002/nme.1620020106).
-struct PronyTerm {
-  PronyTerm(double share, double time, double step, double when)
-      : ratio(static_cast<float>(share)),
-        ahead(static_cast<float>(math::exp(-when * step / time))),
-        decay(static_cast<float>(math::exp(-step / time))),
-        gain(static_cast<float>(share * meanDecay(step / time))),
-        held_decay(math::exp(-2 * step / time)),
-        held_gain(meanDecay(2 * step / time)) {}
+// Of exp(-u), its mean for u from 0 to x.
+double meanDecay(double x) {
+  return -math::expm1(-x) / x;
+}
 
-  float ratio;
-  float ahead;                   // of the overstress, to where the forces of a step act
-  float decay, gain;             // of the overstress over a step, and by the change of the law's stress
-  double held_decay, held_gain;  // of the energy that it holds, and by the work done on it
-
- private:
-  // of exp(-u) for u from 0 to x
-  static double meanDecay(double x) { return -math::expm1(-x) / x; }
-};
+// What a strain rate that is constant over a step leaves of the stress is exact (Taylor, Pister, Goudreau 1970, doi
+// 10.1002/nme.1620020106).
+// @param when  the part of a step after which forces act
+PronyTerm pronyTerm(double ratio, double time, double step, double when) {
+  return {static_cast<float>(ratio),
+          static_cast<float>(math::exp(-when * step / time)),
+          static_cast<float>(math::exp(-step / time)),
+          static_cast<float>(ratio * meanDecay(step / time)),
+          math::exp(-2 * step / time),
+          meanDecay(2 * step / time)};
+}
 
 std::vector<PronyTerm> pronyTerms(const Scene& scene) {
   const RelaxationScene& relaxation = *scene.tissue.relaxation;
   const std::string fault = relaxationFault(relaxation, scene.step_period);
   if (!fault.empty()) throw Error("tissue.relaxation " + fault + ".");
-  const double when = 1 / (1 + scene.tissue.spectral_radius);  // the part after which forces act, as in TimeScheme
+  const double when = 1 / (1 + scene.tissue.spectral_radius);  // as in TimeScheme
   std::vector<PronyTerm> terms;
   for (std::size_t k = 0; k < relaxation.ratios.size(); ++k)
-    terms.emplace_back(relaxation.ratios[k], relaxation.times[k], scene.step_period, when);
+    terms.push_back(pronyTerm(relaxation.ratios[k], relaxation.times[k], scene.step_period, when));
   return terms;
+}
+
+RelaxationKernel relaxationKernel() {
+  return instructionSet() == InstructionSet::Sse2 ? relaxationKernelSse2() : relaxationKernelAvx2();
 }
 
 /// The stress of the law less what has relaxed of it: that part, with the opposite sign, is a stress which stays as it
 /// is for a step, beside the law. Each term's part is ratio * stress - overstress.
-class RelaxationBlock : public ConstraintBlock, private EnergyTerm {
+class RelaxationBlock : public ConstraintBlock {
  public:
   RelaxationBlock(const Model& model, const ShellTissue& tissue)
       : shell_(*tissue.elements()),
-        inverse_mass_(model.inverse_mass),
         terms_(pronyTerms(model.scene)),
-        start_(4 * inverse_mass_.size(), 0),
-        end_(start_),
-        at_(start_),
-        gradient_(start_),
-        relaxed_(shell_.stressCount(), 0),
-        stress_(relaxed_) {}
+        share_(relaxingShare(*model.scene.tissue.relaxation)),
+        at_(4 * shell_.mesh().nodes.size(), 0),
+        strain_(shell_.stressCount(), 0),
+        before_(strain_),
+        stress_(strain_),
+        relaxed_(strain_) {}
 
   Activity prepare(const StepContext& context, BodyLoads&) override {
     const RelaxationMemory& memory = context.state.relaxation;
@@ -74,40 +74,32 @@ class RelaxationBlock : public ConstraintBlock, private EnergyTerm {
     if (memory.stress.empty()) forget(memory);
     if (memory.stress.size() != relaxed_.size())
       throw Error("The state's wall has relaxed on another mesh; begin with a state of this scene.");
-    place(context.state, start_);
-    for (std::size_t i = 0; i < inverse_mass_.size(); ++i)
-      end_[4 * i + 3] = loads.contraction != nullptr ? (*loads.contraction)[i] : 0;
-    std::fill(relaxed_.begin(), relaxed_.end(), 0.0F);
-    for (std::size_t k = 0; k < terms_.size(); ++k) addRelaxed(memory, k, relaxed_);
+    // mostly it is where the last step has left it, and has the strain that is known
+    if (place(context.state)) shell_.stress(at_.data(), stress_.data(), strain_.data());
+    for (std::size_t i = 0; 4 * i < at_.size(); ++i)
+      at_[4 * i + 3] = loads.contraction != nullptr ? (*loads.contraction)[i] : 0;
+    loads.stress_work = kernel_.relaxed(sweep(memory, strain_), terms_.data(), terms_.size(), memory.overstress.data(),
+                                        relaxed_.data());
+    loads.stress = &relaxed_;
   }
-
-  const EnergyTerm* energyTerm(const StepContext&) override { return this; }
 
   double store(const StepContext& context, const BodyLoads&, std::vector<ToolTouch>&) override {
     State& state = context.state;
-    place(state, end_);
-    double free = 0, held = 0;
-    work_.assign(terms_.size(), 0);
-    for (std::size_t k = 0; k < terms_.size(); ++k) {
-      std::fill(stress_.begin(), stress_.end(), 0.0F);
-      addRelaxed(state.relaxation, k, stress_);
-      work_[k] = workAlong(stress_, free, held);
-    }
-    state.energy.numerical_loss += held;
-    advance(state.relaxation);
-    return free;
+    place(state);
+    before_.swap(strain_);
+    const double energy = shell_.stress(at_.data(), stress_.data(), strain_.data());
+    takeFromForeseen(advance(state.relaxation, energy), state);
+    return 0;
   }
 
   // What is led back to rest is as if it had been at rest for long.
   void recover(const StepContext& context) override {
     RelaxationMemory& memory = context.state.relaxation;
-    const double share = std::accumulate(terms_.begin(), terms_.end(), 0.0,
-                                         [](double sum, const PronyTerm& term) { return sum + term.ratio; });
-    const double before = heldEnergy(memory) - share * memory.energy;
+    const double before = heldEnergy(memory) - share_ * memory.energy;
     forget(memory);
-    place(context.state, end_);
-    memory.energy = shell_.stress(end_.data(), memory.stress.data());
-    context.state.energy.correction_work += -share * memory.energy - before;
+    place(context.state);
+    memory.energy = shell_.stress(at_.data(), memory.stress.data(), strain_.data());
+    context.state.energy.correction_work += -share_ * memory.energy - before;
   }
 
  private:
@@ -115,84 +107,70 @@ class RelaxationBlock : public ConstraintBlock, private EnergyTerm {
     return std::accumulate(memory.held.begin(), memory.held.end(), 0.0);
   }
 
-  double evaluate(const double* positions4, float* gradient4) const override {
-    const std::vector<Eigen::Vector3d>& rest = shell_.mesh().nodes;
-    for (std::size_t i = 0; i < rest.size(); ++i)
-      for (std::size_t k = 0; k < 3; ++k)
-        at_[4 * i + k] = static_cast<float>(positions4[4 * i + k] - rest[i][static_cast<Eigen::Index>(k)]);
-    return shell_.stressWork(relaxed_.data(), at_.data(), gradient4);
-  }
-  bool acts() const override { return false; }
-
   void forget(RelaxationMemory& memory) const {
     memory.stress.assign(relaxed_.size(), 0);
     memory.overstress.assign(terms_.size() * relaxed_.size(), 0);
     memory.held.assign(terms_.size(), 0);
   }
 
-  void place(const State& state, std::vector<float>& displacement4) const {
+  // @returns whether a node is not where it was the last time
+  bool place(const State& state) {
     const std::vector<Eigen::Vector3d>& rest = shell_.mesh().nodes;
+    bool moved = false;
+    const auto put = [&moved](double x, double x0, float& u) {
+      const float now = static_cast<float>(x - x0);
+      moved |= now != u;
+      u = now;
+    };
     for (std::size_t i = 0; i < rest.size(); ++i) {
-      displacement4[4 * i] = static_cast<float>(state.x[i] - rest[i].x());
-      displacement4[4 * i + 1] = static_cast<float>(state.y[i] - rest[i].y());
-      displacement4[4 * i + 2] = static_cast<float>(state.z[i] - rest[i].z());
+      put(state.x[i], rest[i].x(), at_[4 * i]);
+      put(state.y[i], rest[i].y(), at_[4 * i + 1]);
+      put(state.z[i], rest[i].z(), at_[4 * i + 2]);
     }
+    return moved;
   }
 
-  // Minus what has relaxed of a term, where the forces of the step act.
-  void addRelaxed(const RelaxationMemory& memory, std::size_t k, std::vector<float>& sum) const {
-    const PronyTerm& term = terms_[k];
-    const float* const law = memory.stress.data();
-    const float* const over = memory.overstress.data() + k * sum.size();
-    float* const out = sum.data();
-    for (std::size_t i = 0; i < sum.size(); ++i) out[i] += term.ahead * over[i] - term.ratio * law[i];
-  }
-
-  // The work of a stress is quadratic along the straight way from start to end, that of a moment nearly, so that the
-  // force in the middle gives it.
-  // @param free, held  added to: what is done on nodes that are free, and that are held
-  // @returns all of it, on the wall [J]
-  double workAlong(const std::vector<float>& stress, double& free, double& held) {
-    for (std::size_t i = 0; i < at_.size(); ++i) at_[i] = 0.5F * (start_[i] + end_[i]);
-    std::fill(gradient_.begin(), gradient_.end(), 0.0F);
-    shell_.stressWork(stress.data(), at_.data(), gradient_.data());
-    double on_free = 0, on_held = 0;
-    for (std::size_t i = 0; i < inverse_mass_.size(); ++i) {
-      double& sum = inverse_mass_[i] > 0 ? on_free : on_held;
-      for (std::size_t c = 4 * i; c < 4 * i + 3; ++c)
-        sum -= static_cast<double>(gradient_[c]) * (static_cast<double>(end_[c]) - start_[c]);
-    }
-    free += on_free, held += on_held;
-    return on_free + on_held;
+  RelaxationSweep sweep(const RelaxationMemory& memory, const std::vector<float>& strain) const {
+    return {relaxed_.size(), memory.stress.data(), strain.data(), stress_.data(), strain_.data()};
   }
 
   // To the end of the step. What the law's energy gains beyond the work of the part that has relaxed is done on the
   // overstress. Of a linear law, the energy that this holds falls twice as fast as its stress.
-  void advance(RelaxationMemory& memory) {
-    const double energy = shell_.stress(end_.data(), stress_.data()), more = energy - memory.energy;
+  // @param energy  of the law there [J]
+  // @returns the work of what had relaxed on the wall [J]
+  double advance(RelaxationMemory& memory, double energy) {
+    double all = 0;
     for (std::size_t k = 0; k < terms_.size(); ++k) {
       const PronyTerm& term = terms_[k];
-      const float *const before = memory.stress.data(), *const after = stress_.data();
-      float* const over = memory.overstress.data() + k * stress_.size();
-      for (std::size_t i = 0; i < stress_.size(); ++i)
-        over[i] = term.decay * over[i] + term.gain * (after[i] - before[i]);
-      const double done = term.ratio * more - work_[k];
+      const double work = kernel_.advance(sweep(memory, before_), term, memory.overstress.data() + k * relaxed_.size());
+      const double done = term.ratio * (energy - memory.energy) - work;
       const double held = term.held_decay * memory.held[k] + term.held_gain * done;
       memory.loss += memory.held[k] + done - held;
       memory.held[k] = held;
+      all += work;
     }
-    memory.stress = stress_;
+    memory.stress.swap(stress_);
     memory.energy = energy;
+    return all;
+  }
+
+  // The step foresees the energy of the law and of what has relaxed, of which the work of the latter is no more.
+  static void takeFromForeseen(double work, State& state) {
+    double& foreseen = state.solver.elastic_energy;
+    if (foreseen < 0) return;
+    const double left = foreseen + work;
+    foreseen = std::max(0.0, left);
+    state.energy.numerical_loss -= foreseen - left;
   }
 
   const ShellElements& shell_;
-  const std::vector<double>& inverse_mass_;
+  const RelaxationKernel kernel_ = relaxationKernel();
   const std::vector<PronyTerm> terms_;
-  std::vector<float> start_, end_;       // displacements of the step (4 per node) [m]
-  mutable std::vector<float> at_;        // the same of an evaluation
-  std::vector<float> gradient_;          // (4 per node) [N]
-  std::vector<float> relaxed_, stress_;  // minus what has relaxed, in this step; of a term, or of the law [N/m]
-  std::vector<double> work_;             // on the wall in the step, per term [J]
+  const double share_;                  // of the stress, which relaxes in the end
+  std::vector<float> at_;               // displacements where the strain is known, and contraction (4 per node) [m]
+  std::vector<float> strain_, before_;  // there, and at the start of the step, see ShellElements::stress()
+  std::vector<float> stress_;           // of the law [N/m]
+  std::vector<float> relaxed_;          // minus what has relaxed, in this step [N/m]
 };
 
 }  // namespace

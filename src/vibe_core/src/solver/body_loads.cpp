@@ -12,6 +12,8 @@ void BodyLoads::clear() {
   gas = GasLoad();
   tool_yield = ToolYield();
   contraction = nullptr;
+  stress = nullptr;
+  stress_work = 0;
   driven = false;
   held_still = false;
   extra = nullptr;

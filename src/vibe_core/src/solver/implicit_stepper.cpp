@@ -106,7 +106,7 @@ ImplicitStepper::Elastic ImplicitStepper::elastic(const MotionView& motion, Step
   for (std::size_t i = 3; i < displacement.size(); i += 4) displacement[i] = static_cast<float>(-scratch.rest[i]);
   std::fill(gradient.begin(), gradient.end(), 0.0F);
   if (!scratch.shared.shares.empty())
-    return {scratch.shared.evaluate(*body.shell, *scratch.pool, displacement.data(), gradient.data(), nullptr),
+    return {scratch.shared.evaluate(*body.shell, *scratch.pool, displacement.data(), gradient.data(), nullptr, nullptr),
             gradient};
   double energy = 0;
   for (int p = 0; p < body.elements->pieceCount(); ++p)

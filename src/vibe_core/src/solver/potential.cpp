@@ -80,9 +80,10 @@ double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gra
   double volume = 0;
   double value = addElements(gradient, volume);
   elastic_ = value;
-  noise_ = stepPolicy().elastic_noise * std::abs(value);
+  noise_ = stepPolicy().elastic_noise * (std::abs(value) + std::abs(at_.last.stress_work));
   at_.last.elastic_value = value += addRareTerms(z, gradient);
   at_.last.elastic_gradient = gradient;
+  value += at_.last.stress_work;
   if (has_gas) {
     at_.last.volume = volume;
     value += gasEnergy();
@@ -94,19 +95,24 @@ double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gra
 double Potential::addElements(std::vector<float>& gradient, double& volume) {
   const bool has_gas = gas_.control != GasLoad::Control::None;
   const float* const u = at_.last.displacement.data();
+  float* const volume_gradient = has_gas ? at_.last.volume_gradient.data() : nullptr;
+  const float* const stress = stress_ != nullptr ? stress_->data() : nullptr;
   SharedEvaluation& shared = scratch_.shared;
+  at_.last.stress_work = 0;
   if (!shared.shares.empty()) {
-    const double all = shared.evaluate(*body_.shell, *scratch_.pool, u, gradient.data(),
-                                       has_gas ? at_.last.volume_gradient.data() : nullptr);
+    const double all = shared.evaluate(*body_.shell, *scratch_.pool, u, gradient.data(), volume_gradient, stress);
     for (const double part : shared.volume) volume += part;
+    for (const double part : shared.stress_work) at_.last.stress_work += part;
     return all;
   }
   double value = 0;
   for (int p = 0; p < body_.elements->pieceCount(); ++p) {
     double part = 0;
-    value += has_gas ? body_.shell->evaluate(p, u, gradient.data(), at_.last.volume_gradient.data(), part)
-                     : body_.elements->evaluate(p, u, gradient.data());
+    ConstantStress beside{stress};
+    value += has_gas || stress != nullptr ? body_.shell->evaluate(p, u, gradient.data(), volume_gradient, part, &beside)
+                                          : body_.elements->evaluate(p, u, gradient.data());
     volume += part;
+    at_.last.stress_work += beside.work;
   }
   return value;
 }

@@ -43,8 +43,8 @@ class GasLaw {
   double volume_min_, volume_max_;  // between them the set point is kept [m^3]
 };
 
-/// What a step minimises: elastic energy, gas, foundation, dead loads, and half the inertia times the squared distance
-/// from where inertia alone would put the nodes.
+/// What a step minimises: elastic energy, work on a constant stress, gas, foundation, dead loads, and half the inertia
+/// times the squared distance from where inertia alone would put the nodes.
 class Potential {
  public:
   /// @param inertia  mass times this is the spring to z_hat [1/s^2]; 0: a static problem
@@ -53,6 +53,7 @@ class Potential {
       : body_(body),
         gas_(loads.gas),
         gas_law_(loads.gas, part),
+        stress_(loads.stress),
         extra_(loads.extra),
         inertia_(inertia),
         scratch_(scratch),
@@ -80,6 +81,7 @@ class Potential {
   const ElasticBody& body_;
   const GasLoad& gas_;
   GasLaw gas_law_;
+  const std::vector<float>* stress_;
   const EnergyTerm* extra_;
   double inertia_;
   StepperWorkspace& scratch_;

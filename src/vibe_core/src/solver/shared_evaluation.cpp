@@ -16,16 +16,16 @@ void SharedEvaluation::divide(const ShellElements* shell, int number_of_threads)
     const std::vector<float> zeros(part.size(), 0.0F);
     shares.push_back({std::move(part), zeros, zeros, zeros});
   }
-  for (auto* v : {&value, &volume}) v->assign(static_cast<std::size_t>(shell->pieceCount()), 0);
+  for (auto* v : {&value, &volume, &stress_work}) v->assign(static_cast<std::size_t>(shell->pieceCount()), 0);
 }
 
 double SharedEvaluation::evaluate(const ShellElements& shell, ThreadPool& pool, const float* displacement,
-                                  float* gradient, float* volume_gradient) {
+                                  float* gradient, float* volume_gradient, const float* stress) {
   pool.parallelFor(1 + static_cast<int>(shares.size()), 1, [&](int k, int) {
     if (k == 0)
-      evaluatePieces(shell, shares.front().part.first_piece, displacement, gradient, volume_gradient);
+      evaluatePieces(shell, shares.front().part.first_piece, displacement, gradient, volume_gradient, stress);
     else
-      evaluateShare(shell, shares[static_cast<std::size_t>(k) - 1], displacement, gradient, volume_gradient);
+      evaluateShare(shell, shares[static_cast<std::size_t>(k) - 1], displacement, gradient, volume_gradient, stress);
   });
   for (const Share& share : shares)
     for (std::size_t i = 0; i < share.part.copies.size(); ++i) {
@@ -42,19 +42,19 @@ double SharedEvaluation::evaluate(const ShellElements& shell, ThreadPool& pool, 
 
 // To the vectors of all nodes.
 void SharedEvaluation::evaluatePieces(const ShellElements& shell, int last, const float* displacement, float* gradient,
-                                      float* volume_gradient) {
+                                      float* volume_gradient, const float* stress) {
   for (int p = 0; p < last; ++p) {
     double enclosed = 0;
-    value[static_cast<std::size_t>(p)] = volume_gradient != nullptr
-                                             ? shell.evaluate(p, displacement, gradient, volume_gradient, enclosed)
-                                             : shell.evaluate(p, displacement, gradient);
+    ConstantStress beside{stress};
+    value[static_cast<std::size_t>(p)] = shell.evaluate(p, displacement, gradient, volume_gradient, enclosed, &beside);
     volume[static_cast<std::size_t>(p)] = enclosed;
+    stress_work[static_cast<std::size_t>(p)] = beside.work;
   }
 }
 
 // To the vectors of the share, and from there to the nodes that nobody else adds to meanwhile.
 void SharedEvaluation::evaluateShare(const ShellElements& shell, Share& share, const float* displacement,
-                                     float* gradient, float* volume_gradient) {
+                                     float* gradient, float* volume_gradient, const float* stress) {
   const ShellPart& part = share.part;
   float* to = share.displacement.data();
   for (const std::vector<int>* nodes : {&part.own, &part.copies})
@@ -62,10 +62,12 @@ void SharedEvaluation::evaluateShare(const ShellElements& shell, Share& share, c
   for (std::vector<float>* sum : {&share.gradient, &share.volume_gradient}) std::fill(sum->begin(), sum->end(), 0.0F);
   for (int p = part.first_piece; p < part.last_piece; ++p) {
     double enclosed = 0;
+    ConstantStress beside{stress};
     value[static_cast<std::size_t>(p)] =
         shell.evaluate(part, p, share.displacement.data(), share.gradient.data(),
-                       volume_gradient != nullptr ? share.volume_gradient.data() : nullptr, enclosed);
+                       volume_gradient != nullptr ? share.volume_gradient.data() : nullptr, enclosed, &beside);
     volume[static_cast<std::size_t>(p)] = enclosed;
+    stress_work[static_cast<std::size_t>(p)] = beside.work;
   }
   for (std::size_t i = 0; i < part.own.size(); ++i) {
     const std::size_t node = 4 * static_cast<std::size_t>(part.own[i]);

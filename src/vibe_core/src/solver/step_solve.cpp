@@ -160,10 +160,11 @@ void StepSolve::judgeEnd(bool done, StepOutcome& outcome) {
 }
 
 // The first evaluation of a step tells the energy at its start. Where it differs from what the last step has foreseen,
-// the scheme has lost the difference in the last step.
+// the scheme has lost the difference in the last step. What a constant stress takes in the step is still in what is
+// foreseen.
 void StepSolve::correctStored(StepOutcome& outcome) {
   StepWork& work = outcome.work;
-  const double start = at_.first.elastic_value - work.to_first;
+  const double start = at_.first.elastic_value + (at_.first.stress_work - loads_.stress_work) - work.to_first;
   if (memory_.elastic_energy >= 0 && memory_.steps > 1) work.numerical -= start - memory_.elastic_energy;
   const double foreseen = start + work.stored;
   memory_.elastic_energy = std::max(0.0, foreseen);  // far from the forces' linear range it may be negative

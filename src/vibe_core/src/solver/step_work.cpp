@@ -90,13 +90,14 @@ ForceAlong forceAlong(double from, double to, double first, double last, double 
   return force;
 }
 
-// How much more energy the last point of evaluation has than the trapezoidal rule says [J].
+// How much more energy the last point of evaluation has than the trapezoidal rule says, with that of a constant stress
+// [J].
 double beyondTrapezoid(const Evaluation& first, const Evaluation& last) {
   double twice = 0;
   for (std::size_t i = 0; i < last.displacement.size(); ++i)
     twice += (static_cast<double>(first.elastic_gradient[i]) + last.elastic_gradient[i]) *
              (static_cast<double>(last.displacement[i]) - first.displacement[i]);
-  return last.elastic_value - first.elastic_value - 0.5 * twice;
+  return (last.elastic_value + last.stress_work) - (first.elastic_value + first.stress_work) - 0.5 * twice;
 }
 
 // Of the rows on the body, in all.

@@ -15,10 +15,11 @@ namespace vibe {
 /// What an evaluation of the energy has found at one point.
 struct Evaluation {
   std::vector<float> displacement;      // of the point [m]
-  std::vector<float> elastic_gradient;  // of elements and foundation [N]
+  std::vector<float> elastic_gradient;  // of elements, BodyLoads::stress and foundation [N]
   std::vector<float> extra_gradient;    // of BodyLoads::extra [N]
   std::vector<float> volume_gradient;   // [m^2]
   double elastic_value = 0;             // energy of elements and foundation [J]
+  double stress_work = 0;               // of BodyLoads::stress from rest to there [J]
   double volume = 0, pressure = 0;      // [m^3], [Pa]
 };
 

@@ -196,9 +196,9 @@ std::size_t ShellElements::stressCount() const {
   return static_cast<std::size_t>(batch_count_) * kStressRows * kBatchLanes;
 }
 
-double ShellElements::stress(const float* displacement4, float* out) const {
+double ShellElements::stress(const float* displacement4, float* out, float* strain) const {
   ShellSweep sweep{};
-  sweep.displacement4 = displacement4, sweep.stress_out = out;
+  sweep.displacement4 = displacement4, sweep.stress_out = out, sweep.strain_out = strain;
   const double energy = sweepRuns(kernel_->stress, sweep);
   return batch_fibre_.empty() ? energy : energy + sweepRuns(kernel_->fibre_stress, sweep);
 }
@@ -209,8 +209,11 @@ double ShellElements::stressWork(const float* stress, const float* displacement4
   return sweepRuns(kernel_->stress_work, sweep);
 }
 
-double ShellElements::evaluatePiece(int piece, ShellSweep sweep, int first_node_batch, double* volume) const {
+double ShellElements::evaluatePiece(int piece, ShellSweep sweep, int first_node_batch, double* volume,
+                                    ConstantStress* beside) const {
   const int first = firstBatch(piece), last = firstBatch(piece + 1);
+  if (beside != nullptr && beside->stress != nullptr)
+    sweep.stress = beside->stress + first_node_batch * kStressRows * kBatchLanes;
   double energy = 0;
   for (const Run& run : runs_) {
     sweep.first = std::max(first, run.first), sweep.last = std::min(last, run.last);
@@ -218,6 +221,7 @@ double ShellElements::evaluatePiece(int piece, ShellSweep sweep, int first_node_
     energy += evaluateRun(run, first_node_batch, sweep);
   }
   if (volume != nullptr) *volume += sweep.volume;
+  if (beside != nullptr) beside->work += sweep.stress_work;
   return energy;
 }
 
@@ -225,23 +229,23 @@ double ShellElements::evaluate(int piece, const float* displacement4, float* gra
   ShellSweep sweep{};
   sweep.node = batch_node_.data();
   sweep.displacement4 = displacement4, sweep.gradient4 = gradient4;
-  return evaluatePiece(piece, sweep, 0, nullptr);
+  return evaluatePiece(piece, sweep, 0, nullptr, nullptr);
 }
 
 double ShellElements::evaluate(int piece, const float* displacement4, float* gradient4, float* volume_gradient4,
-                               double& volume) const {
+                               double& volume, ConstantStress* beside) const {
   ShellSweep sweep{};
   sweep.node = batch_node_.data();
   sweep.displacement4 = displacement4, sweep.gradient4 = gradient4, sweep.volume_gradient4 = volume_gradient4;
-  return evaluatePiece(piece, sweep, 0, &volume);
+  return evaluatePiece(piece, sweep, 0, &volume, beside);
 }
 
 double ShellElements::evaluate(const ShellPart& part, int piece, const float* displacement4, float* gradient4,
-                               float* volume_gradient4, double& volume) const {
+                               float* volume_gradient4, double& volume, ConstantStress* beside) const {
   ShellSweep sweep{};
   sweep.node = part.node.data();
   sweep.displacement4 = displacement4, sweep.gradient4 = gradient4, sweep.volume_gradient4 = volume_gradient4;
-  return evaluatePiece(piece, sweep, part.first_batch, volume_gradient4 != nullptr ? &volume : nullptr);
+  return evaluatePiece(piece, sweep, part.first_batch, &volume, beside);
 }
 
 void ShellElements::gather(std::size_t triangle, const double* displacement, double (&v)[5][3]) const {
@@ -260,7 +264,7 @@ double ShellElements::evaluate(const double* displacement, const float* contract
   for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
     const auto material = static_cast<std::size_t>(materialOf(e));
     const Material& m = mesh_.materials[material];
-    double u[5][3], bent[5][3], f[5][3];
+    double u[5][3], bent[5][3], f[5][3], no_work;
     gather(e, displacement, u);
     std::copy(&u[0][0], &u[0][0] + 15, &bent[0][0]);  // shellEnergy clamps the ghosts, which fibres do not see
     const auto rows = [values = rest(e)](int row) { return values[row]; };
@@ -268,8 +272,10 @@ double ShellElements::evaluate(const double* displacement, const float* contract
     energy += withLaw(m.law, [&](auto tag) {
       constexpr Law law = decltype(tag)::value;
       const WallTerms<double> terms(constants_[material], m.poisson_ratio);
-      return hasMuscle(e) ? shellEnergy<law, kReferenceSteps, kShellMuscleRows>(terms, rows, shorter, bent, f)
-                          : shellEnergy<law, kReferenceSteps, kShellGhostRows>(terms, rows, 0.0, bent, f);
+      const NoStress<double> none;
+      return hasMuscle(e)
+                 ? shellEnergy<law, kReferenceSteps, kShellMuscleRows>(terms, rows, shorter, none, bent, f, no_work)
+                 : shellEnergy<law, kReferenceSteps, kShellGhostRows>(terms, rows, 0.0, none, bent, f, no_work);
     });
     if (!fibre_rest_.empty())
       energy += fibreEnergy(

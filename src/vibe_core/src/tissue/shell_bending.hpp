@@ -171,9 +171,11 @@ template <class B>
 }
 
 /// Adds the gradient to f; returns the energy.
-template <class B, class Rest>
-[[gnu::always_inline]] inline B bendingEnergy(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& x,
-                                              const Patch<B>& u, Patch<B>& f) {
+/// @param beside  a constant stress that acts as well
+/// @param work    of its moments from rest to here, added to
+template <class B, class Rest, class Stress>
+[[gnu::always_inline]] inline B bendingEnergy(const WallTerms<B>& terms, const Rest& rest, const Stress& beside,
+                                              const Patch<B>& x, const Patch<B>& u, Patch<B>& f, B& work) {
   const B two = constant<B>(2);
   const Bent<B> s = bentSurface(rest, x, u);
   const Moments<B> bent = momentsOf(terms, rest, s);
@@ -182,8 +184,14 @@ template <class B, class Rest>
       mulAdd(rest(kShellBend) * factor.by_thin, bent.form, B(bent.whole * factor.mean_by_thin * bent.square));
   // half the derivative with respect to c.c
   const B widen = -mulAdd(B(by_thin * s.thin), B(s.inverse * s.inverse), B(bent.whole * bent.gauss));
-  B p[3], pull0[3], pull1[3];
-  turningOf(s, bent.m, p);
+  B m[3] = {bent.m[0], bent.m[1], bent.m[2]}, p[3], pull0[3], pull1[3];
+  if (beside.given())
+    for (int c = 0; c < 3; ++c) {
+      const B more = beside(9 + c);
+      work = mulAdd(more, s.change[c], work);
+      m[c] = m[c] + more;
+    }
+  turningOf(s, m, p);
   for (int r = 0; r < 3; ++r) p[r] = mulAdd(B(two * widen), s.c[r], p[r]);
   cross(s.g[1], p, pull0);
   cross(p, s.g[0], pull1);
@@ -193,7 +201,7 @@ template <class B, class Rest>
     pull0[r] = mulAdd(by0, s.g[0][r], B(mulAdd(by1, s.g[1][r], pull0[r])));
     pull1[r] = mulAdd(by2, s.g[1][r], B(mulAdd(by1, s.g[0][r], pull1[r])));
   }
-  addMomentForces(bent.m, s.n, pull0, pull1, f);
+  addMomentForces(m, s.n, pull0, pull1, f);
   return bent.energy();
 }
 

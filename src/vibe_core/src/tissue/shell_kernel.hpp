@@ -46,9 +46,11 @@ struct ShellSweep {
   float* gradient4;            ///< added to [N]
   float* volume_gradient4;     ///< added to [m^2]; null: not computed
   const float* next;           ///< per node, what the contraction becomes; for the work of the muscle only (ratio)
-  const float* stress;         ///< (all batches * kStressRows * kBatchLanes); for its work only [N/m]
+  const float* stress;         ///< that stays as it is (all batches * kStressRows * kBatchLanes) [N/m]; null: none
   float* stress_out;           ///< the same; for the stress only [N/m]
+  float* strain_out;           ///< the same, see ShellElements::stress(); null: not wanted
   double volume;               ///< out, added to, if requested [m^3]
+  double stress_work;          ///< out, added to: of `stress` from rest to here [J]
 };
 
 /// Returns the energy [J] and adds its gradient.
@@ -57,10 +59,10 @@ using ShellSweepFunction = double (*)(ShellSweep& sweep);
 /// The kernel of one instruction path.
 struct ShellKernel {
   const char* name;
-  ShellSweepFunction sweep;
+  ShellSweepFunction sweep;   ///< of the law, whose gradient is that of `stress` as well
   ShellSweepFunction fibres;  ///< contribution of fibres to the above, without the volume
   ShellSweepFunction muscle;  ///< by how much the energy grows while nothing moves and the contraction becomes the next
-  ShellSweepFunction stress;  ///< writes stress and moments, without fibres, and returns the energy
+  ShellSweepFunction stress;  ///< writes stress, moments and strain, without fibres, and returns the energy
   ShellSweepFunction fibre_stress;  ///< contribution of fibres to the above
   ShellSweepFunction stress_work;   ///< returns the work of a constant stress from rest to here and adds its gradient
 };

@@ -47,10 +47,16 @@ struct ShellKernelOfPairs {
     for (int a = 0; a < 3; ++a) Single::Lanes::add(s.volume_gradient4, offset[a].lane, half);
   }
 
+  struct Stress {
+    Single::Stress a, b;
+    bool given() const { return a.given(); }
+    Pack operator()(int row) const { return both(a(row), b(row)); }
+  };
+
   template <Law law, int kRows>
   static double sweepAll(ShellSweep& s) {
     const WallTerms<Pack> terms(*s.constants, s.poisson_ratio);
-    Single::Lanes::Sum energy, enclosed;
+    Single::Sums sums;
     const BatchReals* rows = s.rest;
     const bool volume = s.volume_gradient4 != nullptr;
     int batch = s.first;
@@ -65,23 +71,26 @@ struct ShellKernelOfPairs {
       if constexpr (kRows == kShellMuscleRows)
         shorter = both(Single::contraction(s, offset, 0), Single::contraction(s, offset + 6, 0));
       if constexpr (kRows == kShellGhostRows) placeGhosts(rest, u);
-      const Pack value = shellEnergy<law, LawFormula<law>::kThicknessSteps, kRows>(terms, rest, shorter, u, f);
-      energy.add(first(value)), energy.add(second(value));
+      const Stress beside{Single::Stress::of(s, batch, 0), Single::Stress::of(s, batch + 1, 0)};
+      Pack work;
+      const Pack value =
+          shellEnergy<law, LawFormula<law>::kThicknessSteps, kRows>(terms, rest, shorter, beside, u, f, work);
+      sums.energy.add(first(value)), sums.energy.add(second(value));
+      if (beside.given()) sums.stress_work.add(first(work)), sums.stress_work.add(second(work));
       if constexpr (kRows == kShellGhostRows) returnGhosts(rest, f);
       scatter(s, offset, f, first);
       scatter(s, offset + 6, f, second);
       if (volume) {
         Pack share[3];
         const Pack cone = coneVolume(rest, u, u1, share);
-        enclosed.add(first(cone)), enclosed.add(second(cone));
+        sums.enclosed.add(first(cone)), sums.enclosed.add(second(cone));
         addShares(s, offset, share, first);
         addShares(s, offset + 6, share, second);
       }
     }
     if (batch < s.last)
-      Single::sweepBatch<law, kRows>(s, WallTerms<Half>(*s.constants, s.poisson_ratio), batch, rows, energy, enclosed);
-    if (volume) s.volume += enclosed.total();
-    return energy.total();
+      Single::sweepBatch<law, kRows>(s, WallTerms<Half>(*s.constants, s.poisson_ratio), batch, rows, sums);
+    return sums.addTo(s);
   }
 };
 

@@ -47,10 +47,29 @@ struct ShellKernelOf {
       for (int part = 0; part < kParts; ++part) Lanes::add(s.gradient4, offset[a + 1].lane + part * kWidth, f[part][a]);
   }
 
+  struct Sums {
+    typename Lanes::Sum energy, enclosed, stress_work;
+    double addTo(ShellSweep& s) const {
+      if (s.volume_gradient4 != nullptr) s.volume += enclosed.total();
+      if (s.stress != nullptr) s.stress_work += stress_work.total();
+      return energy.total();
+    }
+  };
+
+  /// The constant stress of a part of a batch.
+  struct Stress {
+    const float* numbers;  // null: there is none
+    static Stress of(const ShellSweep& s, int batch, int lane) {
+      return {s.stress == nullptr ? nullptr : s.stress + batch * kStressRows * kBatchLanes + lane};
+    }
+    bool given() const { return numbers != nullptr; }
+    Pack operator()(int row) const { return Pack::load_unaligned(numbers + row * kBatchLanes); }
+  };
+
   /// @param terms  made from the sweep
-  template <Law law, int kRows, class Sum>
+  template <Law law, int kRows>
   [[gnu::always_inline]] static void sweepBatch(ShellSweep& s, const WallTerms<Pack>& terms, int batch,
-                                                const BatchReals* rows, Sum& energy, Sum& enclosed) {
+                                                const BatchReals* rows, Sums& sums) {
     const BatchOffsets* offset = s.node + batch * 6;
     const bool volume = s.volume_gradient4 != nullptr;  // no parameter of the template: a kernel compiles twice as fast
     Pack f[kParts][5][3], share[kParts][3];
@@ -62,9 +81,14 @@ struct ShellKernelOf {
       Pack shorter(0.0f);
       if constexpr (kRows == kShellMuscleRows) shorter = contraction(s, offset, lane);
       if constexpr (kRows == kShellGhostRows) placeGhosts(rest, u);
-      energy.add(shellEnergy<law, LawFormula<law>::kThicknessSteps, kRows>(terms, rest, shorter, u, f[part]), part);
+      const Stress beside = Stress::of(s, batch, lane);
+      Pack work;
+      sums.energy.add(
+          shellEnergy<law, LawFormula<law>::kThicknessSteps, kRows>(terms, rest, shorter, beside, u, f[part], work),
+          part);
+      if (beside.given()) sums.stress_work.add(work, part);
       if constexpr (kRows == kShellGhostRows) returnGhosts(rest, f[part]);
-      if (volume) enclosed.add(coneVolume(rest, u, u1, share[part]), part);
+      if (volume) sums.enclosed.add(coneVolume(rest, u, u1, share[part]), part);
     }
     scatter(s, offset, f);
     if (volume)
@@ -76,12 +100,11 @@ struct ShellKernelOf {
   template <Law law, int kRows>
   static double sweepAll(ShellSweep& s) {
     const WallTerms<Pack> terms(*s.constants, s.poisson_ratio);
-    typename Lanes::Sum energy, enclosed;
+    Sums sums;
     const BatchReals* rows = s.rest;
     for (int batch = s.first; batch < s.last; ++batch, rows += kRows)
-      sweepBatch<law, kRows>(s, terms, batch, rows, energy, enclosed);
-    if (s.volume_gradient4 != nullptr) s.volume += enclosed.total();
-    return energy.total();
+      sweepBatch<law, kRows>(s, terms, batch, rows, sums);
+    return sums.addTo(s);
   }
 
   // The membrane's alone: bending does not contract. Batches through which no wave passes are left out.
@@ -98,13 +121,13 @@ struct ShellKernelOf {
         const Pack to = meanOf([&s](std::uint32_t at) { return s.next[at / 4]; }, offset, lane);
         if (xsimd::all(from == to)) continue;
         const auto rest = [=](int row) { return Pack::load_aligned(rows[row].lane + lane); };
-        Pack u1[3], u[5][3], x[5][3], unused[5][3];
+        Pack u1[3], u[5][3], x[5][3], unused[5][3], no_work(0.0f);
         gather(s, offset, lane, u1, u);
         for (int a = 0; a < 5; ++a)
           for (int r = 0; r < 3; ++r) x[a][r] = rest(kShellPatch + 3 * a + r), unused[a][r] = Pack(0.0f);
         const auto energy = [&](const Pack& shorter) __attribute__((always_inline)) {
-          return membraneEnergy<law, LawFormula<law>::kThicknessSteps, kShellMuscleRows>(terms, rest, shorter, x, u,
-                                                                                         unused);
+          return membraneEnergy<law, LawFormula<law>::kThicknessSteps, kShellMuscleRows>(
+              terms, rest, shorter, NoStress<Pack>(), x, u, unused, no_work);
         };
         twice.add(energy(to) - energy(from), part);
       }
@@ -148,14 +171,18 @@ struct ShellKernelOf {
       for (int part = 0; part < kParts; ++part) {
         const int lane = part * kWidth;
         const BatchOffsets* offset = s.node + batch * 6;
-        float* const numbers = s.stress_out + batch * kStressRows * kBatchLanes + lane;
+        const int first = batch * kStressRows * kBatchLanes + lane;
         const auto rest = [=](int row) { return Pack::load_aligned(rows[row].lane + lane); };
-        Pack u1[3], u[5][3], found[kStressRows], shorter(0.0f);
+        Pack u1[3], u[5][3], stress[kStressRows], strain[kStressRows], shorter(0.0f);
         gather(s, offset, lane, u1, u);
         if constexpr (kRows == kShellMuscleRows) shorter = contraction(s, offset, lane);
         if constexpr (kRows == kShellGhostRows) placeGhosts(rest, u);
-        energy.add(shellStress<law, LawFormula<law>::kThicknessSteps, kRows>(terms, rest, shorter, u, found), part);
-        for (int row = 0; row < kStressRows; ++row) found[row].store_unaligned(numbers + row * kBatchLanes);
+        energy.add(shellStress<law, LawFormula<law>::kThicknessSteps, kRows>(terms, rest, shorter, u, stress, strain),
+                   part);
+        for (int row = 0; row < kStressRows; ++row) {
+          stress[row].store_unaligned(s.stress_out + first + row * kBatchLanes);
+          if (s.strain_out != nullptr) strain[row].store_unaligned(s.strain_out + first + row * kBatchLanes);
+        }
       }
     return energy.total();
   }
@@ -210,13 +237,11 @@ struct ShellKernelOf {
       Pack f[kParts][5][3];
       for (int part = 0; part < kParts; ++part) {
         const int lane = part * kWidth;
-        const float* const numbers = s.stress + batch * kStressRows * kBatchLanes + lane;
         const auto rest = [=](int row) { return Pack::load_aligned(rows[row].lane + lane); };
-        const auto stress = [=](int row) { return Pack::load_unaligned(numbers + row * kBatchLanes); };
         Pack u1[3], u[5][3];
         gather(s, offset, lane, u1, u);
         if constexpr (ghosts) placeGhosts(rest, u);
-        work.add(shellStressWork<ghosts>(rest, stress, u, f[part]), part);
+        work.add(shellStressWork<ghosts>(rest, Stress::of(s, batch, lane), u, f[part]), part);
         if constexpr (ghosts) returnGhosts(rest, f[part]);
       }
       scatter(s, offset, f);

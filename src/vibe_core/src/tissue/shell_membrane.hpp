@@ -114,25 +114,38 @@ template <class B>
   }
 }
 
-/// Twice the membrane energy at the midpoint of a side, and the derivatives of the energy, see sideStress().
-template <Law law, int Steps, int rows, class B, class Rest>
-[[gnu::always_inline]] inline B sideEnergy(const WallTerms<B>& terms, const Rest& rest, const B& contraction, int side,
-                                           const B (&e)[3], const B (&d)[3], const B (&ue)[3], const B (&ud)[3],
-                                           B (&fe)[3], B (&fd)[3]) {
-  B a[3];
-  const B twice = sideStress<law, Steps, rows>(terms, rest, contraction, side, e, d, ue, ud, a);
-  stressForces(a, e, d, ue, ud, fe, fd);
-  return twice;
-}
-
-/// Twice the work of a constant stress from rest to here, and the derivatives of the work with respect to e and d.
+/// Twice the work of a constant stress from rest to here.
 template <class B>
 [[gnu::always_inline]] inline B stressWork(const B (&a)[3], const B (&e)[3], const B (&d)[3], const B (&ue)[3],
-                                           const B (&ud)[3], B (&fe)[3], B (&fd)[3]) {
+                                           const B (&ud)[3]) {
   B change[3];
   metricChange(e, d, ue, ud, change);
-  stressForces(a, e, d, ue, ud, fe, fd);
   return mulAdd(a[0], change[0], B(mulAdd(B(constant<B>(2) * a[1]), change[1], B(a[2] * change[2]))));
+}
+
+/// No stress beside that of the law; others have their numbers by row, kStressRows of them.
+template <class B>
+struct NoStress {
+  constexpr bool given() const { return false; }
+  B operator()(int /*row*/) const { return constant<B>(0); }
+};
+
+/// Twice the membrane energy at the midpoint of a side, and the derivatives of the energy, see sideStress().
+/// @param beside      a constant stress that acts as well
+/// @param twice_work  of that, added to
+template <Law law, int Steps, int rows, class B, class Rest, class Stress>
+[[gnu::always_inline]] inline B sideEnergy(const WallTerms<B>& terms, const Rest& rest, const B& contraction,
+                                           const Stress& beside, int side, const B (&e)[3], const B (&d)[3],
+                                           const B (&ue)[3], const B (&ud)[3], B (&fe)[3], B (&fd)[3], B& twice_work) {
+  B a[3];
+  const B twice = sideStress<law, Steps, rows>(terms, rest, contraction, side, e, d, ue, ud, a);
+  if (beside.given()) {
+    const B more[3] = {beside(3 * side), beside(3 * side + 1), beside(3 * side + 2)};
+    twice_work = twice_work + stressWork(more, e, d, ue, ud);
+    for (int c = 0; c < 3; ++c) a[c] = a[c] + more[c];
+  }
+  stressForces(a, e, d, ue, ud, fe, fd);
+  return twice;
 }
 
 /// Nodes 2 and 3 and the apexes, each relative to node 1.
@@ -159,12 +172,14 @@ template <class Side, class B>
 }
 
 /// Adds the membrane gradient to f; returns twice the energy.
-template <Law law, int Steps, int rows, class B, class Rest>
+/// @param beside, twice_work  see sideEnergy()
+template <Law law, int Steps, int rows, class B, class Rest, class Stress>
 [[gnu::always_inline]] inline B membraneEnergy(const WallTerms<B>& terms, const Rest& rest, const B& contraction,
-                                               const Patch<B>& x, const Patch<B>& u, Patch<B>& f) {
+                                               const Stress& beside, const Patch<B>& x, const Patch<B>& u, Patch<B>& f,
+                                               B& twice_work) {
   const auto side = [&](int k, const B(&e)[3], const B(&d)[3], const B(&ue)[3], const B(&ud)[3], B(&fe)[3], B(&fd)[3])
       __attribute__((always_inline)) {
-    return sideEnergy<law, Steps, rows>(terms, rest, contraction, k, e, d, ue, ud, fe, fd);
+    return sideEnergy<law, Steps, rows>(terms, rest, contraction, beside, k, e, d, ue, ud, fe, fd, twice_work);
   };
   return overSides(side, x, u, f);
 }

@@ -108,37 +108,47 @@ template <bool ghosts, class B, class Rest, class Membrane, class Bending>
 /// Energy of a triangle. Its gradient with respect to nodes 2 to 6 is written to f; that of node 1 is minus their sum.
 /// @tparam rows        of the triangle
 /// @param contraction  of its muscle, see shorten(); unused without
+/// @param beside       a constant stress that acts as well, as shellStress() gives it
 /// @param u            with ghosts as placeGhosts leaves them
-template <Law law, int Steps, int rows, class B, class Rest>
+/// @param work         out: of the constant stress from rest to here
+template <Law law, int Steps, int rows, class B, class Rest, class Stress>
 [[gnu::always_inline]] inline B shellEnergy(const WallTerms<B>& terms, const Rest& rest, const B& contraction,
-                                            Patch<B>& u, Patch<B>& f) {
+                                            const Stress& beside, Patch<B>& u, Patch<B>& f, B& work) {
+  B twice_work = constant<B>(0), bending_work = constant<B>(0);
   const auto membrane = [&](const Patch<B>& x, const Patch<B>& at, Patch<B>& to) __attribute__((always_inline)) {
-    return membraneEnergy<law, Steps, rows>(terms, rest, contraction, x, at, to);
+    return membraneEnergy<law, Steps, rows>(terms, rest, contraction, beside, x, at, to, twice_work);
   };
   const auto bending = [&](const Patch<B>& x, const Patch<B>& at, Patch<B>& to) __attribute__((always_inline)) {
-    return bendingEnergy(terms, rest, x, at, to);
+    return bendingEnergy(terms, rest, beside, x, at, to, bending_work);
   };
-  return membraneAndBending<rows == kShellGhostRows>(rest, membrane, bending, u, f);
+  const B energy = membraneAndBending<rows == kShellGhostRows>(rest, membrane, bending, u, f);
+  work = mulAdd(constant<B>(0.5), twice_work, bending_work);
+  return energy;
 }
 
-/// The energy of a triangle; `out` takes its stress and its moments, kStressRows numbers in order.
+/// The energy of a triangle.
+/// @param out     its stress and its moments, kStressRows numbers in order
+/// @param strain  with each of which these work
 template <Law law, int Steps, int rows, class B, class Rest>
 [[gnu::always_inline]] inline B shellStress(const WallTerms<B>& terms, const Rest& rest, const B& contraction,
-                                            Patch<B>& u, B (&out)[kStressRows]) {
+                                            Patch<B>& u, B (&out)[kStressRows], B (&strain)[kStressRows]) {
+  const B half = constant<B>(0.5);
   const auto membrane = [&](const Patch<B>& x, const Patch<B>& at, Patch<B>& to) __attribute__((always_inline)) {
     const auto side = [&](int k, const B(&e)[3], const B(&d)[3], const B(&ue)[3], const B(&ud)[3], B(&fe)[3], B(&fd)[3])
         __attribute__((always_inline)) {
-      B a[3];
+      B a[3], change[3];
       const B twice = sideStress<law, Steps, rows>(terms, rest, contraction, k, e, d, ue, ud, a);
-      for (int c = 0; c < 3; ++c) out[3 * k + c] = a[c];
+      metricChange(e, d, ue, ud, change);
+      for (int c = 0; c < 3; ++c) out[3 * k + c] = a[c], strain[3 * k + c] = c == 1 ? change[c] : half * change[c];
       for (int r = 0; r < 3; ++r) fe[r] = fd[r] = constant<B>(0);
       return twice;
     };
     return overSides(side, x, at, to);
   };
   const auto bending = [&](const Patch<B>& x, const Patch<B>& at, Patch<B>&) __attribute__((always_inline)) {
-    const Moments<B> bent = momentsOf(terms, rest, bentSurface(rest, x, at));
-    for (int c = 0; c < 3; ++c) out[9 + c] = bent.m[c];
+    const Bent<B> surface = bentSurface(rest, x, at);
+    const Moments<B> bent = momentsOf(terms, rest, surface);
+    for (int c = 0; c < 3; ++c) out[9 + c] = bent.m[c], strain[9 + c] = surface.change[c];
     return bent.energy();
   };
   Patch<B> unused;
@@ -153,7 +163,8 @@ template <bool ghosts, class B, class Rest, class Stress>
     const auto side = [&](int k, const B(&e)[3], const B(&d)[3], const B(&ue)[3], const B(&ud)[3], B(&fe)[3], B(&fd)[3])
         __attribute__((always_inline)) {
       const B a[3] = {stress(3 * k), stress(3 * k + 1), stress(3 * k + 2)};
-      return stressWork(a, e, d, ue, ud, fe, fd);
+      stressForces(a, e, d, ue, ud, fe, fd);
+      return stressWork(a, e, d, ue, ud);
     };
     return overSides(side, x, at, to);
   };

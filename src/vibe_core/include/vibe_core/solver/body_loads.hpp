@@ -157,6 +157,10 @@ struct BodyLoads {
   /// Contraction of the muscle of ElasticBody::shell during the step, per node (ratio); null: it is relaxed. It lives
   /// until the end of the step.
   const std::vector<float>* contraction = nullptr;
+  /// A stress of ElasticBody::shell that stays as it is during the step, beside that of the law, see
+  /// ShellElements::stress(); null: none. It lives until the end of the step [N/m]
+  const std::vector<float>* stress = nullptr;
+  double stress_work = 0;  ///< of `stress` from rest to the start of the step [J]
   /// What moves the body changes smoothly, as breath and muscle do: it goes on with its velocity, however small that
   /// is.
   bool driven = false;

@@ -31,6 +31,12 @@ struct ShellFibres {
       direction;  ///< per triangle, projected onto its plane; 0: the family is absent; unit vector
 };
 
+/// A stress that stays as it is, beside that of the law.
+struct ConstantStress {
+  const float* stress;  ///< (ShellElements::stressCount()) [N/m], [N]; null: none
+  double work = 0;      ///< out, added to: the sum of stress times strain, see ShellElements::stress() [J]
+};
+
 /// A thin wall at rest, described by its middle surface.
 struct ShellMesh {
   std::vector<Eigen::Vector3d> nodes;         ///< [m]
@@ -91,9 +97,12 @@ class ShellElements : public ElasticElements {
   /// Numbers of stress(): per triangle the stress at the three sides, as components along material vectors times the
   /// volume [N/m], and the moments [N], in the order of the kernel's batches. Rigid motions do not change them.
   std::size_t stressCount() const;
-  /// Stress and moments as the law gives them, with fibres. @param out  (stressCount())
+  /// Stress and moments as the law gives them, with fibres.
+  /// @param out     (stressCount())
+  /// @param strain  (stressCount()) by number the strain with which it works: the sum of their products is
+  ///                stressWork() [m^2], [m]; null: not wanted
   /// @returns the energy [J]
-  double stress(const float* displacement4, float* out) const;
+  double stress(const float* displacement4, float* out, float* strain = nullptr) const;
   /// The work that stresses and moments which stay as they are do from rest to the displacements [J]; adds its gradient
   /// [N], minus which is the force on the wall. With those of the law here it is the elastic one, but for how the
   /// bending stiffness depends on the stretch.
@@ -101,15 +110,17 @@ class ShellElements : public ElasticElements {
 
   /// Like evaluate, and also adds the piece's share of the volume [m^3] enclosed by the surface, and a third of each
   /// triangle's area vector to its nodes [m^2]. The latter is the force of a pressure of 1 Pa and, for a closed
-  /// surface, the gradient of the volume. Virtual so that a solver can be tested on other walls.
-  virtual double evaluate(int piece, const float* displacement4, float* gradient4, float* volume_gradient4,
-                          double& volume) const;
+  /// surface, the gradient of the volume.
+  /// @param volume_gradient4  null: volumes are not wanted
+  /// @param beside            the gradient of its work is added as well, as in stressWork(); null: none
+  double evaluate(int piece, const float* displacement4, float* gradient4, float* volume_gradient4, double& volume,
+                  ConstantStress* beside = nullptr) const;
   /// The pieces after the first of `count` shares, in as many parts less one. The first share adds to the vectors of
   /// all nodes. Empty where there are fewer pieces, and with fibres, which add to a node once more.
   std::vector<ShellPart> partsOf(int count) const;
-  /// Like evaluate, with vectors of a part; volume_gradient4 may be null.
+  /// Like evaluate, with vectors of a part.
   double evaluate(const ShellPart& part, int piece, const float* displacement4, float* gradient4,
-                  float* volume_gradient4, double& volume) const;
+                  float* volume_gradient4, double& volume, ConstantStress* beside = nullptr) const;
   /// The volume and its gradient, as above, in double precision; interleaved (3 * nodeCount), overwritten.
   double volume(const double* displacement, double* gradient) const;
 
@@ -156,7 +167,7 @@ class ShellElements : public ElasticElements {
   void setRun(const Run& run, ShellSweep& sweep) const;
   double evaluateRun(const Run& run, int first_node_batch, ShellSweep& sweep) const;
   double sweepRuns(double (*function)(ShellSweep&), ShellSweep sweep) const;
-  double evaluatePiece(int piece, ShellSweep sweep, int first_node_batch, double* volume) const;
+  double evaluatePiece(int piece, ShellSweep sweep, int first_node_batch, double* volume, ConstantStress* beside) const;
 
   double areaOf(std::size_t triangle) const;
   bool held(int node) const { return !mesh_.fixed.empty() && mesh_.fixed[static_cast<std::size_t>(node)] != 0; }
