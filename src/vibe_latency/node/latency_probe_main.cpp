@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "latency_probe.hpp"
-#include "vibe_ros_utils/parameter_reader.hpp"
 #include "vibe_ros_utils/startup.hpp"
 
 namespace {

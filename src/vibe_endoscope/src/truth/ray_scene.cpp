@@ -7,7 +7,6 @@
 #endif
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <string>
 

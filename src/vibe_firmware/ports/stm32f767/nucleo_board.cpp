@@ -1,7 +1,5 @@
 #include "nucleo_board.hpp"
 
-#include <initializer_list>
-
 #include "clocks.hpp"
 #include "registers.hpp"
 

@@ -2,7 +2,6 @@
 
 #include <QHeaderView>
 #include <array>
-#include <cmath>
 
 #include "panels/panel_style.hpp"
 #include "vibe_operator/messages/number_text.hpp"
