@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "latency_probe.hpp"
+#include "vibe_ros_utils/parameter_reader.hpp"
 #include "vibe_ros_utils/startup.hpp"
 
 namespace {

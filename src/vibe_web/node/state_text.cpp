@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "vibe_operator/messages/number_text.hpp"
 #include "vibe_operator/messages/procedure_text.hpp"
 #include "vibe_operator/messages/reference_values.hpp"
 #include "vibe_operator/messages/table_rows.hpp"

@@ -7,6 +7,7 @@
 #endif
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <string>
 

@@ -1,5 +1,7 @@
 #include "nucleo_board.hpp"
 
+#include <initializer_list>
+
 #include "clocks.hpp"
 #include "registers.hpp"
 

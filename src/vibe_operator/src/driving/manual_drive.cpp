@@ -1,6 +1,7 @@
 #include "vibe_operator/driving/manual_drive.hpp"
 
 #include <utility>
+#include <vector>
 
 #include "vibe_operator/messages/command_messages.hpp"
 

@@ -2,6 +2,7 @@
 
 #include <QHeaderView>
 #include <array>
+#include <cmath>
 
 #include "panels/panel_style.hpp"
 #include "vibe_operator/messages/number_text.hpp"

@@ -15,6 +15,7 @@
 #include <rviz/viewport_mouse_event.h>
 
 #include <QCursor>
+#include <cmath>
 
 #include "vibe_graphics/graphics/offscreen_camera.hpp"
 #include "vibe_rviz_plugins/display_base/topic_display.hpp"
