@@ -182,7 +182,8 @@ def parameters(root):
 # --- Python
 
 def python_module(root):
-    tree = ast.parse((root / "src/vibe_python/python/vibe/_core.pyi").read_text(encoding="utf-8"))
+    stubs = root / "devel/lib/python3/dist-packages/vibe/_core.pyi"
+    tree = ast.parse(stubs.read_text(encoding="utf-8") if stubs.exists() else "")
     lines = ["# Python module `vibe`\n", "Signatures and docstrings of the module, from its stubs. How to use it: "
              "[Python](../docs/python.md).\n"]
     for item in tree.body:

@@ -13,6 +13,7 @@
 #   // includes: ../vibe_firmware/fuzz ...         folders for headers of the file, relative to its package
 #   // packages: yaml-cpp ...                      of pkg-config
 #   // units: 100                                  that it must execute at least, if not 1000
+#   // corpus: scenes ...                          folders with more examples, relative to its package
 # Every file may include public headers of all packages, and those of the src, node and fuzz folders of its own. A source that
 # several programs name is compiled once, and with those of its folder that the same programs name.
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
@@ -84,10 +85,17 @@ links() {
   clang++ "${flags[@]}" "${objects[@]}" ${modules:+$(pkg-config --libs $modules)} -o "$2"
 }
 
-# runs PROGRAM SECONDS [CORPUS]: notes how it ends
+# corpusOf FILE: the folders of its examples
+corpusOf() {
+  local folder package=${1%/fuzz/*} name
+  name=$(basename "$1" _fuzz.cpp)
+  [ ! -d "${1%/*}/corpus/$name" ] || echo "${1%/*}/corpus/$name"
+  for folder in $(named "$1" corpus); do realpath -e -- "$package/$folder"; done
+}
+
+# runs PROGRAM SECONDS [CORPUS...]: notes how it ends
 runs() {
-  local status=0 corpus=("$1.corpus")
-  [ ! -d "${3:-}" ] || corpus+=("$3")
+  local status=0 corpus=("$1.corpus" "${@:3}")
   mkdir -p "$1.corpus" "$1.findings"
   "$1" -max_total_time="$2" -max_len=4096 -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
     -artifact_prefix="$1.findings/" "${corpus[@]}" >"$1.log" 2>&1 </dev/null || status=$?
@@ -114,7 +122,8 @@ for file in "${fuzz_files[@]}"; do
 done
 for file in "${fuzz_files[@]}"; do
   name=$(basename "$file" .cpp)
-  [ ! -x "$scratch/$name" ] || twoAtOnce runs "$scratch/$name" "$seconds" "${file%/*}/corpus/${name%_fuzz}"
+  # shellcheck disable=SC2046
+  [ ! -x "$scratch/$name" ] || twoAtOnce runs "$scratch/$name" "$seconds" $(corpusOf "$file")
 done
 wait
 for file in "${fuzz_files[@]}"; do

@@ -95,7 +95,7 @@ setup(
     install_requires=["numpy"],
     packages=["vibe", "vibe.data", "vibe.env", "vibe.patient"],
     package_dir={"": "python"},
-    package_data={"vibe": ["py.typed", "*.pyi"]},
+    package_data={"vibe": ["py.typed"]},
     ext_modules=[Extension("vibe._core", sources=[])],
     options={"build": {"build_base": SCRATCH}, "egg_info": {"egg_base": SCRATCH}},
     cmdclass={"build_ext": BuildWithCMake, "bdist_wheel": WheelOfSeveralPythons, "sdist": SourceDistribution},

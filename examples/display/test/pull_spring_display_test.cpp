@@ -5,7 +5,6 @@
 #include <vibe_msgs/TissuePullState.h>
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <limits>
 #include <pluginlib/class_loader.hpp>
 #include <vibe_rviz_plugins/display_base/message_shape_display.hpp>

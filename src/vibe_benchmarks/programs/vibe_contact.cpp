@@ -13,6 +13,7 @@
 #include "vibe_core/arithmetic/machine.hpp"
 #include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/files/files.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/command_line.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
@@ -192,8 +193,8 @@ void runHard(const Options& options) {
   const auto run = [&](const HardCase& hard) {
     results.push_back(runHardCase(hard, output));
     const HardResult& r = results.back();
-    printTo(std::cerr, "%s: %.2f ms per step, %d crossings, %d pierced\n", r.name.c_str(), r.times.p50, r.crossings,
-            r.pierced);
+    std::cerr << formatted("%s: %.2f ms per step, %d crossings, %d pierced\n", r.name.c_str(), r.times.p50, r.crossings,
+                           r.pierced);
   };
   const bool all = options.names.empty() && options.scripts.empty();
   for (const std::string& name : all ? hardCaseNames() : options.names)

@@ -8,6 +8,7 @@
 #include "suture/set_scenario.hpp"
 #include "vibe_core/arithmetic/machine.hpp"
 #include "vibe_core/files/files.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/command_line.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
@@ -66,8 +67,8 @@ void runScenarios(const Options& options) {
   std::cerr << machineInfo().processor << ", one thread steps, one more prepares factors; the cheapest of "
             << options.repeats << (options.repeats == 1 ? " run\n" : " runs\n");
   for (const ScenarioResult& result : results)
-    printTo(std::cerr, "%s: %.1f times real time, walls %s\n", result.name.c_str(), result.real_time_factor,
-            result.crossed ? "CROSS one another" : "do not cross");
+    std::cerr << formatted("%s: %.1f times real time, walls %s\n", result.name.c_str(), result.real_time_factor,
+                           result.crossed ? "CROSS one another" : "do not cross");
   report(options.csv, [&](std::ostream& out) { writeScenarios(results, out); });
 }
 

@@ -53,7 +53,7 @@ TEST(FemCase, readsABlock) {
 
 TEST(FemCase, namesFileLineAndNearestKey) {
   EXPECT_ERROR(read(replaced(good(), "density:", "densty:")),
-               "vibe_case.yaml:7: densty: is no key of a case; "
+               "vibe_case.yaml:7: densty: is not a known key; "
                "did you mean 'density'?");
   EXPECT_ERROR(read(replaced(good(), "tets_per_cell", "tet_per_cell")), "did you mean 'tets_per_cell'?");
   EXPECT_ERROR(read(replaced(good(), "direction:", "directon:")), "did you mean 'direction'?");

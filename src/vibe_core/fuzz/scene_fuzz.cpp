@@ -2,6 +2,7 @@
 // sources: src/geometry/surface_mesh.cpp src/files/foreign_content.cpp src/arithmetic/elementary_*.cpp
 // sources: src/files/number_text.cpp
 // packages: yaml-cpp
+// corpus: scenes
 #include <cstdlib>
 #include <string>
 

@@ -5,6 +5,7 @@
 // sources: src/scene/words.cpp src/files/foreign_content.cpp
 // sources: src/arithmetic/elementary_*.cpp src/files/number_text.cpp src/arithmetic/symmetric_eigen.cpp
 // packages: yaml-cpp bullet
+// corpus: trainees
 #include <cmath>
 #include <cstdlib>
 #include <string>

@@ -16,6 +16,7 @@
 #include "vibe_core/builder/scope_fit.hpp"
 #include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/files/files.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/metrics/session_outcome.hpp"
 #include "vibe_core/metrics/session_report.hpp"
 #include "vibe_core/program/command_line.hpp"
@@ -134,12 +135,9 @@ std::string goalSentence(const Trainee* trainee, const SessionMetrics& metrics) 
   if (trainee == nullptr) return "";
   const std::vector<Measure> measures = goalMeasures(trainee, metrics.skill.sets);
   const auto count = [&](const char* name) { return static_cast<int>(valueOf(measures, name).value_or(0)); };
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "goals              %8d     reached %d   sets as planned %d   bites given up %d of %d\n",
-                count("goals"), count("goals_reached"), count("sets_as_planned"), count("bites_given_up"),
-                count("bites_planned"));
-  return text;
+  return formatted("goals              %8d     reached %d   sets as planned %d   bites given up %d of %d\n",
+                   count("goals"), count("goals_reached"), count("sets_as_planned"), count("bites_given_up"),
+                   count("bites_planned"));
 }
 
 // 0: until the goals have ended

@@ -1,6 +1,6 @@
 // sources: src/driver/report_stream.cpp ../vibe_core/src/clocks/device_clock.cpp src/driver/device_connection.cpp
 // sources: src/driver/device_driver.cpp src/driver/haptic_driver.cpp src/driver/joint_scale.cpp
-// sources: src/hid/report_descriptor.cpp
+// sources: src/hid/report_descriptor.cpp ../vibe_core/src/files/number_text.cpp
 // includes: ../vibe_firmware/fuzz
 #include "vibe_hardware/driver/haptic_driver.hpp"
 

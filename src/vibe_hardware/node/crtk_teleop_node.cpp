@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <std_msgs/Bool.h>
 #include <boost/algorithm/string/join.hpp>

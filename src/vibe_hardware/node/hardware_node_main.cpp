@@ -2,7 +2,6 @@
 #include <ros/node_handle.h>
 #include <ros/param.h>
 #include <ros/ros.h>
-#include <cstdio>
 #include <memory>
 #include <mutex>
 #include <optional>

@@ -10,6 +10,7 @@
 
 #include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/files/files.hpp"
+#include "vibe_core/input/joint_unit.hpp"
 #include "vibe_core/program/command_line.hpp"
 #include "vibe_hardware/gamepad/pad_drive.hpp"
 #include "vibe_hardware/gamepad/pad_recording.hpp"
@@ -118,7 +119,7 @@ int testMotors(const Options& options) {
 void printCommand(const hardware::DriveState& drive) {
   for (int i = 0; i < vibe::kJointCount; ++i) {
     const auto joint = static_cast<std::size_t>(i);
-    const bool length = hardware::jointUnit(i) == std::string("m");
+    const bool length = vibe::isPrismatic(i);
     std::printf("%s %.1f %s  ", vibe::kJointNames[joint], drive.joints[joint] * (length ? 1e3 : 57.29577951308232),
                 length ? "mm" : "deg");
   }

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <exception>
 #include <functional>
-#include <optional>
 #include <set>
 #include <thread>
 

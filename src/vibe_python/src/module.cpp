@@ -4,7 +4,6 @@
 
 #include "bindings.hpp"
 #include "unlocked.hpp"
-#include "vibe_core/input/step_input.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::python {

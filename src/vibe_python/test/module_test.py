@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The module vibe: the bits of the programs in C++, arrays, snapshots, forces, pictures, and what is refused."""
+import ast
 import copy
 import gc
 import os
@@ -416,11 +417,14 @@ class RefusalTest(Worlds):
 
 
 class StubsTest(unittest.TestCase):
-    def test_stubs_are_those_of_the_module(self):
-        made = subprocess.run(
-            [sys.executable, "-B", os.path.join(HERE, "../scripts/make_stubs.py"), "--check",
-             os.path.join(HERE, "../python/vibe/_core.pyi")], stderr=subprocess.PIPE, text=True)
-        self.assertEqual(made.stderr, "")
+    @unittest.skipIf("asan" in os.environ.get("LD_PRELOAD", ""), "a build with sanitizers makes no stubs")
+    def test_stubs_tell_every_class_and_its_members(self):
+        with open(os.path.join(os.path.dirname(vibe._core.__file__), "_core.pyi"), encoding="utf-8") as file:
+            told = {item.name: {member.name for member in item.body if isinstance(member, ast.FunctionDef)}
+                    for item in ast.parse(file.read()).body if isinstance(item, ast.ClassDef)}
+        for name, thing in vars(vibe._core).items():
+            if isinstance(thing, type):
+                self.assertLessEqual({member for member in vars(thing) if not member.startswith("_")}, told[name], name)
 
     def test_everything_is_documented(self):
         for name in vibe.__all__:

@@ -1,7 +1,7 @@
 // sources: src/camera/frame_table.cpp src/calibrate/stop_list.cpp ../vibe_core/src/scene/yaml_source.cpp
 // sources: ../vibe_core/src/scene/yaml_guard.cpp ../vibe_core/src/scene/unit.cpp ../vibe_core/src/scene/words.cpp
 // sources: ../vibe_core/src/files/files.cpp ../vibe_core/src/files/foreign_content.cpp
-// sources: ../vibe_core/src/files/number_text.cpp
+// sources: ../vibe_core/src/files/number_text.cpp ../vibe_core/src/files/csv_row.cpp
 // includes: ../vibe_core/src
 // packages: yaml-cpp
 #include <sys/mman.h>

@@ -1,12 +1,12 @@
 #include "vision_publisher.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include <cv_bridge/cv_bridge.h>
 #include <sensor_msgs/image_encodings.h>
 
 #include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_vision/record/annotation.hpp"
 #include "vision_messages.hpp"
 
@@ -18,16 +18,12 @@ constexpr std::uint32_t kQueue = 10;
 
 std::string describe(const InstrumentConfig& instrument, const Measurement& measurement, const JointSample& sample) {
   if (!sample.tracked()) return instrument.name + ": lost, " + toText(sample.reason);
-  char text[160];
-  std::snprintf(text, sizeof text, ": %.3f mm +- %.1f um", 1e3 * sample.slide, 1e6 * std::sqrt(sample.variance[0]));
-  std::string line = instrument.name + text;
+  std::string line =
+      instrument.name + formatted(": %.3f mm +- %.1f um", 1e3 * sample.slide, 1e6 * std::sqrt(sample.variance[0]));
   if (sample.has_rotation) {
-    std::snprintf(text, sizeof text, ", %.1f deg +- %.2f", sample.rotation * 180 / M_PI,
-                  std::sqrt(sample.variance[1]) * 180 / M_PI);
-    line += text;
+    line += formatted(", %.1f deg +- %.2f", sample.rotation * 180 / M_PI, std::sqrt(sample.variance[1]) * 180 / M_PI);
   }
-  std::snprintf(text, sizeof text, ", score %.2f", measurement.score);
-  return line + text;
+  return line + formatted(", score %.2f", measurement.score);
 }
 
 }  // namespace

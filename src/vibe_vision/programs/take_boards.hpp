@@ -1,11 +1,11 @@
 #pragma once
-#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 
 #include "image_files.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_vision/calibrate/board_guide.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
@@ -52,11 +52,7 @@ class BoardTaker {
   std::optional<BoardGuide> guide_;  // from the first picture on
   std::optional<std::vector<Eigen::Vector2d>> before_;
 
-  std::string fileOf(std::size_t number) const {
-    char name[32];
-    std::snprintf(name, sizeof name, "board_%03zu.png", number);
-    return folder_ / name;
-  }
+  std::string fileOf(std::size_t number) const { return folder_ / formatted("board_%03zu.png", number); }
   static double distance(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).norm();

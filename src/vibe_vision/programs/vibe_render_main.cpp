@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <filesystem>
 #include <iomanip>
 #include <optional>
@@ -6,6 +5,7 @@
 #include "image_files.hpp"
 #include "program_options.hpp"
 #include "vibe_core/files/files.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
 #include "video_file.hpp"
@@ -30,8 +30,7 @@ class Recording {
 
   void add(const vision::Frame& frame) {
     if (video_) return video_->add(frame.image.mat());
-    char name[32];
-    std::snprintf(name, sizeof name, "frame_%06llu.png", static_cast<unsigned long long>(frame.sequence));
+    const std::string name = vibe::formatted("frame_%06llu.png", static_cast<unsigned long long>(frame.sequence));
     vision::writePicture(folder_ / name, frame.image.mat(), "The picture", {cv::IMWRITE_PNG_COMPRESSION, 1});
   }
 

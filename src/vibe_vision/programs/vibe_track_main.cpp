@@ -11,6 +11,7 @@
 #include "image_files.hpp"
 #include "program_options.hpp"
 #include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 #include "vibe_vision/record/annotation.hpp"
@@ -65,9 +66,8 @@ class Annotator {
     if (target_.empty()) return;
     const cv::Mat picture = vision::annotate(config, frame, measurements);
     if (is_video_) return addToVideo(picture);
-    char name[40];
-    std::snprintf(name, sizeof name, "/frame_%06llu.png", static_cast<unsigned long long>(count_++));
-    vision::writePicture(target_ + name, picture);
+    vision::writePicture(target_ + vibe::formatted("/frame_%06llu.png", static_cast<unsigned long long>(count_++)),
+                         picture);
   }
 
   void finish() {

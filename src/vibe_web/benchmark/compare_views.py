@@ -4,7 +4,6 @@ How much the page's picture of the endoscope is that of endoscope_camera, in the
 similarity (Wang 2004, Gaussian window of 1.5 px) of the grey pictures, of all of it and of the circle alone. Needs a
 workspace that is built, with the page, and Chromium. Pictures go into the folder, those of the page as eye_VIEW_web.png."""
 
-import functools
 import os
 import re
 import shutil
@@ -13,22 +12,12 @@ import sys
 
 import numpy
 from PIL import Image
-from scipy.ndimage import gaussian_filter
 from vibe_bringup import take_views, views
+from vibe_system_tests.compare_pictures import similarity_map
 from vibe_testing.program import find_program
 
 SIZE = 480  # [px]
 PORT = 8899
-
-
-def structural_similarity(one, other):
-    """A map of values up to 1."""
-    blur = functools.partial(gaussian_filter, sigma=1.5)
-    a, b = one.astype(float), other.astype(float)
-    mean_a, mean_b = blur(a), blur(b)
-    var_a, var_b, both = blur(a * a) - mean_a**2, blur(b * b) - mean_b**2, blur(a * b) - mean_a * mean_b
-    c1, c2 = (0.01 * 255) ** 2, (0.03 * 255) ** 2
-    return (2 * mean_a * mean_b + c1) * (2 * both + c2) / ((mean_a**2 + mean_b**2 + c1) * (var_a + var_b + c2))
 
 
 def page_work():
@@ -68,7 +57,8 @@ def main(folder, names):
     circle = numpy.hypot(x, y) < SIZE / 2
     for view in arguments.views:
         files = [os.path.join(folder, "eye_{}{}.png".format(view.name, end)) for end in ("", "_web")]
-        similarity = structural_similarity(*(numpy.asarray(Image.open(file).convert("L")) for file in files))
+        # lightness of 100 for white, as similarity_map() takes it
+        similarity = similarity_map(*(numpy.asarray(Image.open(file).convert("L")) / 2.55 for file in files))
         print("{:12} {:.3f}  circle {:.3f}".format(view.name, similarity.mean(), similarity[circle].mean()))
     return status
 

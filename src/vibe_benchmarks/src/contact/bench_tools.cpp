@@ -1,11 +1,11 @@
 #include "contact/bench_tools.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include <Eigen/Geometry>
 
 #include "vibe_core/builder/model_builder.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
@@ -74,9 +74,7 @@ void setAttribute(const std::string& name, double value, std::size_t from, std::
   const std::size_t begin = text.find(opening, from) + opening.size();
   const std::size_t end = text.find('"', begin);
   if (begin < from || end > to) throw Error("A <limit> of the URDF has no attribute " + name + "; add it.");
-  char number[40];
-  std::snprintf(number, sizeof number, "%.17g", value);
-  text.replace(begin, end - begin, number);
+  text.replace(begin, end - begin, formatted("%.17g", value));
 }
 
 }  // namespace

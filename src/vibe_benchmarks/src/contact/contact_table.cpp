@@ -6,15 +6,15 @@
 
 #include "output/result_row.hpp"
 #include "vibe_core/arithmetic/machine.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks {
 namespace {
 
 std::string textOf(const ContactSetting& setting) {
-  char text[90];
-  std::snprintf(text, sizeof text, "%d Hz, %d it, radius %g", setting.rate, setting.iterations,
-                setting.spectral_radius);
+  const std::string text =
+      formatted("%d Hz, %d it, radius %g", setting.rate, setting.iterations, setting.spectral_radius);
   return text + (setting.threads > 1 ? ", " + std::to_string(setting.threads) + " threads" : std::string());
 }
 
@@ -114,17 +114,18 @@ void writeContactRows(const std::vector<ContactRow>& rows, std::ostream& out) {
          "wall_p99,ms_all_threads\n";
   for (const ContactRow& row : rows) {
     const ContactTrace& t = row.trace;
-    printTo(out, "%s,%d,%d,%g,%.4g,%.4g,%.4g,%.4g,%.4g,%.3g,%d,%d,%d,%d,%d,%.4g,%d,%.6g,%.6g,", row.name.c_str(),
-            row.setting.rate, row.setting.iterations, row.setting.spectral_radius, row.times.mean, row.times.p50,
-            row.times.p99, row.times.max, row.ratio, t.iterations, t.max_iterations, t.fallback_steps, t.contacts,
-            t.pairs, t.crossings, 1e3 * t.depth, t.events, t.balance, t.work);
+    out << formatted("%s,%d,%d,%g,%.4g,%.4g,%.4g,%.4g,%.4g,%.3g,%d,%d,%d,%d,%d,%.4g,%d,%.6g,%.6g,", row.name.c_str(),
+                     row.setting.rate, row.setting.iterations, row.setting.spectral_radius, row.times.mean,
+                     row.times.p50, row.times.p99, row.times.max, row.ratio, t.iterations, t.max_iterations,
+                     t.fallback_steps, t.contacts, t.pairs, t.crossings, 1e3 * t.depth, t.events, t.balance, t.work);
     if (row.errors)
-      printTo(out, "%.4g,%.4g,%.4g,%.4g,%.4g,%016llx", row.errors->motion, row.errors->motion_end, row.errors->force,
-              row.errors->force_end, row.errors->largest, static_cast<unsigned long long>(t.hash));
+      out << formatted("%.4g,%.4g,%.4g,%.4g,%.4g,%016llx", row.errors->motion, row.errors->motion_end,
+                       row.errors->force, row.errors->force_end, row.errors->largest,
+                       static_cast<unsigned long long>(t.hash));
     else
-      printTo(out, ",,,,,%016llx", static_cast<unsigned long long>(t.hash));
-    printTo(out, ",%d,%.4g,%.4g,%.4g,%.4g\n", row.setting.threads, row.wall.mean, row.wall.p50, row.wall.p99,
-            row.times.mean + t.others);
+      out << formatted(",,,,,%016llx", static_cast<unsigned long long>(t.hash));
+    out << formatted(",%d,%.4g,%.4g,%.4g,%.4g\n", row.setting.threads, row.wall.mean, row.wall.p50, row.wall.p99,
+                     row.times.mean + t.others);
   }
 }
 

@@ -10,6 +10,7 @@
 #include "suture/suture_session.hpp"
 #include "vibe_core/arithmetic/rotation.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks {
@@ -153,8 +154,8 @@ std::vector<RefinementRow> refineGrip(const Scene& scene, const std::vector<int>
 void writeRefinement(const std::vector<RefinementRow>& rows, std::ostream& out) {
   out << "grip,particles,site,held,distance_m,force_N\n";
   for (const RefinementRow& row : rows) {
-    printTo(out, "%s,%d,%d,%d,%.6g,%.6g\n", row.grip.c_str(), row.particles, row.site, row.held, row.distance,
-            row.force);
+    out << formatted("%s,%d,%d,%d,%.6g,%.6g\n", row.grip.c_str(), row.particles, row.site, row.held, row.distance,
+                     row.force);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "contact/way_counts.hpp"
 #include "output/result_row.hpp"
 #include "suture/suture_session.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/model/accounting.hpp"
 
 namespace vibe::benchmarks {
@@ -119,18 +120,19 @@ class Runner {
 
   void writeStep(const HardPhase& phase, double ms, double balance) const {
     const State& state = simulation_->state();
-    printTo(*output_.steps, "%s,%s,%.4f,%.3f,%d,%d,%d,%d,%d,%.4g,%.4g,%.4g,%.5g,%.5g", hard_.name.c_str(),
-            phase.name.c_str(), result_.steps * simulation_->stepPeriod(), ms, simulation_->report().iterations,
-            simulation_->report().fallback ? 1 : 0, state.contact_count, result_.last_crossings, tool_.pierced,
-            1e3 * tool_.depth, state.tool_force.norm(), state.grip_force, balance, maxSpeed(state));
+    *output_.steps << formatted("%s,%s,%.4f,%.3f,%d,%d,%d,%d,%d,%.4g,%.4g,%.4g,%.5g,%.5g", hard_.name.c_str(),
+                                phase.name.c_str(), result_.steps * simulation_->stepPeriod(), ms,
+                                simulation_->report().iterations, simulation_->report().fallback ? 1 : 0,
+                                state.contact_count, result_.last_crossings, tool_.pierced, 1e3 * tool_.depth,
+                                state.tool_force.norm(), state.grip_force, balance, maxSpeed(state));
     writeWork();
   }
 
   void writeWork() const {
     const StepReport& report = simulation_->report();
-    printTo(*output_.steps, ",%d,%d,%d,%d,%d,%.4g", report.solves, report.evaluations, report.rows, report.wall_pairs,
-            report.arrived ? 1 : 0, report.residual);
-    for (const double seconds : report.stage_times) printTo(*output_.steps, ",%.3f", 1e3 * seconds);
+    *output_.steps << formatted(",%d,%d,%d,%d,%d,%.4g", report.solves, report.evaluations, report.rows,
+                                report.wall_pairs, report.arrived ? 1 : 0, report.residual);
+    for (const double seconds : report.stage_times) *output_.steps << formatted(",%.3f", 1e3 * seconds);
     *output_.steps << "\n";
   }
 
@@ -183,16 +185,16 @@ void writeHardResults(const std::vector<HardResult>& results, std::ostream& out)
   forEachTerm([&](const char* name, double EnergyAccount::*) { out << "," << name << "_J"; });
   out << ",speed_mm_s,away_mm,returns,state_hash\n";
   for (const HardResult& r : results) {
-    printTo(out,
-            "%s,%d,%.4g,%.4g,%.4g,%.4g,%.4g,%.3g,%d,%d,%d,%d,%d,%.4g,%d,%.4g,%d,%.4g,%.4g,%.4g,%d,%d,%d,%d,%.6g,"
-            "%.6g,%.6g",
-            r.name.c_str(), r.steps, r.times.mean, r.times.p50, r.times.p99, r.times.max, r.real_time, r.iterations,
-            r.max_iterations, r.fallback_steps, r.crossings, r.crossed_steps, r.last_crossings, r.first_crossing,
-            r.pierced, 1e3 * r.depth, r.contacts, r.force, r.grip_force, r.tension, r.slips, r.tear_outs, r.breaks,
-            r.recoveries, r.work, r.balance, r.worst_balance);
-    forEachTerm([&](const char*, double EnergyAccount::*term) { printTo(out, ",%.6g", r.account.*term); });
-    printTo(out, ",%.4g,%.4g,%d,%016llx\n", 1e3 * r.speed, 1e3 * r.away, r.returns ? 1 : 0,
-            static_cast<unsigned long long>(r.hash));
+    out << formatted(
+        "%s,%d,%.4g,%.4g,%.4g,%.4g,%.4g,%.3g,%d,%d,%d,%d,%d,%.4g,%d,%.4g,%d,%.4g,%.4g,%.4g,%d,%d,%d,%d,%.6g,"
+        "%.6g,%.6g",
+        r.name.c_str(), r.steps, r.times.mean, r.times.p50, r.times.p99, r.times.max, r.real_time, r.iterations,
+        r.max_iterations, r.fallback_steps, r.crossings, r.crossed_steps, r.last_crossings, r.first_crossing, r.pierced,
+        1e3 * r.depth, r.contacts, r.force, r.grip_force, r.tension, r.slips, r.tear_outs, r.breaks, r.recoveries,
+        r.work, r.balance, r.worst_balance);
+    forEachTerm([&](const char*, double EnergyAccount::*term) { out << formatted(",%.6g", r.account.*term); });
+    out << formatted(",%.4g,%.4g,%d,%016llx\n", 1e3 * r.speed, 1e3 * r.away, r.returns ? 1 : 0,
+                     static_cast<unsigned long long>(r.hash));
   }
 }
 

@@ -7,6 +7,7 @@
 #include "output/result_row.hpp"
 #include "suture/suture_session.hpp"
 #include "vibe_core/arithmetic/random.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
 namespace vibe::benchmarks {
@@ -147,10 +148,10 @@ void writeHeldHeader(std::ostream& out) {
 }
 
 void writeHeldPose(const HeldPose& pose, std::ostream& out) {
-  printTo(out, "%d,%d,%.3f,%.4f,%.4f,%.4f,%.4g,%.3g,%d,%.4g,%.4g,%.4g,%d,%s\n", pose.particles, pose.pose,
-          1e3 * pose.joints[Insertion], pose.joints[Rotation], pose.joints[TipUpDown], pose.joints[TipLeftRight],
-          pose.force, pose.force_range, pose.contacts, 1e3 * pose.motion, 1e3 * pose.drift, 1e3 * pose.speed,
-          pose.period, nameOf(pose.wall));
+  out << formatted("%d,%d,%.3f,%.4f,%.4f,%.4f,%.4g,%.3g,%d,%.4g,%.4g,%.4g,%d,%s\n", pose.particles, pose.pose,
+                   1e3 * pose.joints[Insertion], pose.joints[Rotation], pose.joints[TipUpDown],
+                   pose.joints[TipLeftRight], pose.force, pose.force_range, pose.contacts, 1e3 * pose.motion,
+                   1e3 * pose.drift, 1e3 * pose.speed, pose.period, nameOf(pose.wall));
 }
 
 }  // namespace vibe::benchmarks

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "output/result_row.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
 
 namespace vibe::benchmarks {
@@ -29,8 +30,8 @@ class WayCounts {
     for (std::size_t k = 0; k < kStepWayCount; ++k) {
       const Sum& sum = of_[k];
       if (sum.steps == 0) continue;
-      printTo(out, "%s,%d,%s,%d,%.3g,%.3g\n", name_.c_str(), all_.steps, nameOf(static_cast<StepWay>(k)), sum.steps,
-              sum.evaluations / sum.steps, all_.evaluations / all_.steps);
+      out << formatted("%s,%d,%s,%d,%.3g,%.3g\n", name_.c_str(), all_.steps, nameOf(static_cast<StepWay>(k)), sum.steps,
+                       sum.evaluations / sum.steps, all_.evaluations / all_.steps);
     }
   }
 

@@ -1,10 +1,8 @@
 #include "fem/case_reader.hpp"
 
 #include <cmath>
-#include <set>
 
 #include "fem/bench_mesh.hpp"
-#include "vibe_core/scene/words.hpp"
 
 namespace vibe::benchmarks {
 
@@ -15,16 +13,8 @@ CaseReader::CaseReader(const std::string& file)
 void CaseReader::readMap(const YamlField& field, const std::vector<std::string>& needed, const Readers& readers) const {
   std::vector<std::string> known;
   for (const auto& reader : readers) known.push_back(reader.first);
-  std::set<std::string> seen;
-  for (const YamlField& entry : source_.map(field)) {
-    const auto reader = readers.find(entry.key);
-    if (reader == readers.end()) source_.fail(entry, "is no key of a case; " + suggestKey(entry.key, known));
-    seen.insert(entry.key);
-    reader->second(entry);
-  }
-  for (const std::string& key : needed) {
-    if (seen.count(key) == 0) source_.fail(field, "lacks the key '" + key + "'; add it");
-  }
+  const std::vector<YamlField> entries = source_.map(field, known, needed);
+  for (const YamlField& entry : entries) readers.at(entry.key)(entry);
 }
 
 void CaseReader::readList(const YamlField& field, const std::function<void(const YamlField&)>& reader) const {

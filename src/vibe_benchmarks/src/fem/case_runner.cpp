@@ -1,12 +1,12 @@
 #include "fem/case_runner.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "fem/case_model.hpp"
 #include "fem/case_symmetry.hpp"
 #include "fem/static_path.hpp"
 #include "fem/vibration.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::benchmarks {
@@ -39,18 +39,15 @@ double referenceError(const Sample& sample, std::size_t level, double value) {
 }
 
 void printSample(const Sample& sample, std::size_t level, const std::string& at, double value, std::ostream& log) {
-  char line[200];
   const double error = referenceError(sample, level, value);
   if (isDifference(sample)) {
-    std::snprintf(line, sizeof line, "  %-28s %-14s difference %.3f %%\n", sample.name.c_str(), at.c_str(),
-                  100 * value);
+    log << formatted("  %-28s %-14s difference %.3f %%\n", sample.name.c_str(), at.c_str(), 100 * value);
   } else if (std::isnan(error)) {
-    std::snprintf(line, sizeof line, "  %-28s %-14s %.6g\n", sample.name.c_str(), at.c_str(), value);
+    log << formatted("  %-28s %-14s %.6g\n", sample.name.c_str(), at.c_str(), value);
   } else {
-    std::snprintf(line, sizeof line, "  %-28s %-14s %.6g  reference %.6g  error %.3f %%\n", sample.name.c_str(),
-                  at.c_str(), value, *sample.reference[level], 100 * error);
+    log << formatted("  %-28s %-14s %.6g  reference %.6g  error %.3f %%\n", sample.name.c_str(), at.c_str(), value,
+                     *sample.reference[level], 100 * error);
   }
-  log << line;
 }
 
 std::vector<ResultRow> runModes(const FemCase& bench_case, std::ostream& log, std::vector<CaseValue>& values) {
@@ -85,9 +82,7 @@ namespace {
 const char* const kPlanes[3] = {"x", "y", "z"};
 
 std::string levelName(double level) {
-  char text[32];
-  std::snprintf(text, sizeof text, "level %.5g", level);
-  return text;
+  return formatted("level %.5g", level);
 }
 
 /// The vertex of the parabola through the largest value and its neighbours, for equidistant levels.

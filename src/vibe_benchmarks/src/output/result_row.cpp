@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cinttypes>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <iomanip>
 #include <iostream>
 #include <numeric>
@@ -12,6 +10,7 @@
 
 #include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/files/files.hpp"
+#include "vibe_core/files/number_text.hpp"
 
 namespace vibe::benchmarks {
 namespace {
@@ -19,16 +18,12 @@ namespace {
 std::string show(const char* format, double value) {
   if (std::isnan(value)) return "";
   if (std::isinf(value)) return "inf";  // the solution of the method diverged
-  char text[40];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
+  return formatted(format, value);
 }
 
 std::string showHash(std::uint64_t hash) {
   if (hash == 0) return "";
-  char text[24];
-  std::snprintf(text, sizeof text, "%016" PRIx64, hash);
-  return text;
+  return formatted("%016" PRIx64, hash);
 }
 
 const char* branchName(Branch branch) {
@@ -129,15 +124,6 @@ void report(const std::string& file, const std::function<void(std::ostream&)>& w
   write(csv);
   printTable(csv, std::cerr);
   save(file, [&](std::ostream& out) { out << csv.str(); });
-}
-
-void printTo(std::ostream& out, const char* format, ...) {
-  char text[1000];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  out << text;
 }
 
 double threadMilliseconds() {

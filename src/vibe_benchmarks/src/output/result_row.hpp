@@ -58,9 +58,6 @@ void save(const std::string& file, const std::function<void(std::ostream&)>& wri
 /// Prints a CSV table with its columns aligned to the standard error output, and saves it as save() does.
 void report(const std::string& file, const std::function<void(std::ostream&)>& write);
 
-/// Writes as std::printf() does, at most 1,000 characters.
-[[gnu::format(printf, 2, 3)]] void printTo(std::ostream& out, const char* format, ...);
-
 /// CPU time of this thread [ms].
 double threadMilliseconds();
 

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "contact/bench_tools.hpp"
 #include "contact/contact_table.hpp"
 #include "vibe_core/arithmetic/random.hpp"
 #include "vibe_core/files/fnv1a.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
 namespace vibe::benchmarks {
@@ -165,11 +165,11 @@ void writePolicyTotal(const PolicyTrace& total, std::ostream& out) {
 void writePolicyEffect(const PolicyNumber& number, const PolicyEffect& effect, std::ostream& out) {
   std::string states;
   for (const std::string& state : effect.states) states += (states.empty() ? "" : " ") + state;
-  char text[300];
-  std::snprintf(text, sizeof text, "%g,%g,%s,%.3g,%.3g,%.3g,%.3g,%ld,%ld,%d,%d,\n", effect.factor, effect.value,
-                states.c_str(), effect.force, 1e3 * effect.motion_rms, 1e3 * effect.motion_max, effect.stiffness,
-                effect.iterations, effect.evaluations, effect.solved_again, effect.fallback);
-  out << number.name << "," << text << std::flush;
+  out << number.name << ","
+      << formatted("%g,%g,%s,%.3g,%.3g,%.3g,%.3g,%ld,%ld,%d,%d,\n", effect.factor, effect.value, states.c_str(),
+                   effect.force, 1e3 * effect.motion_rms, 1e3 * effect.motion_max, effect.stiffness, effect.iterations,
+                   effect.evaluations, effect.solved_again, effect.fallback)
+      << std::flush;
 }
 
 namespace {

@@ -1,13 +1,13 @@
 #include "pulling/pulled_plate.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <sstream>
 
 #include "fem/case_model.hpp"
 #include "fem/case_runner.hpp"
 #include "vibe_core/files/files.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/procedure/procedure_registry.hpp"
 #include "vibe_core/procedure/stitch.hpp"
 #include "vibe_core/simulation/simulation.hpp"
@@ -182,9 +182,7 @@ struct Table {
            double force, const std::vector<double>& times) {
     const double level = bench_case.statics->levels[number];
     ResultRow row;
-    char name[40];
-    std::snprintf(name, sizeof name, "bites_%.0f_mm", 1e3 * distanceAt(level));
-    row.bench_case = name, row.method = method, row.setting = setting;
+    row.bench_case = formatted("bites_%.0f_mm", 1e3 * distanceAt(level)), row.method = method, row.setting = setting;
     row.particles = plate.nodeCount();
     setTimes(times, row);
     const double wanted = *bench_case.samples[tension].reference[number];
@@ -219,9 +217,8 @@ void runWay(const PullWay& way, Table& table, std::ostream& log) {
   }
   for (int k = 0; level < levels.size() && k < kRest; ++k) plate.step(), times.push_back(plate.milliseconds());
   ResultRow end;
-  char name[40];
-  std::snprintf(name, sizeof name, "end_%.1f_mm_%.2f_N", 1e3 * plate.apart(), plate.tension());
-  end.bench_case = name, end.method = way.method, end.setting = nameOf(way);
+  end.bench_case = formatted("end_%.1f_mm_%.2f_N", 1e3 * plate.apart(), plate.tension()), end.method = way.method,
+  end.setting = nameOf(way);
   end.particles = table.plate.nodeCount();
   setTimes(times, end);
   table.rows.push_back(end);

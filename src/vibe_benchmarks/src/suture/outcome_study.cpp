@@ -8,6 +8,7 @@
 #include "output/result_row.hpp"
 #include "suture/suture_session.hpp"
 #include "vibe_core/files/files.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
 #include "vibe_core/trainee/suture_pattern.hpp"
 
@@ -214,7 +215,7 @@ void writeOutcomes(const std::vector<OutcomeRow>& rows, std::ostream& out) {
                                row.drawn,
                                row.settled,
                                row.change}) {
-      printTo(out, ",%.6g", value);
+      out << formatted(",%.6g", value);
     }
     out << ',' << row.recognised << ',' << row.torn_out << ',' << row.broken << ',' << row.loose << ','
         << (row.crossed ? 1 : 0) << '\n';

@@ -6,6 +6,7 @@
 
 #include "output/result_row.hpp"
 #include "suture/suture_session.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/suture/technique.hpp"
 
@@ -110,14 +111,14 @@ void writeScenarios(const std::vector<ScenarioResult>& results, std::ostream& ou
     for (std::size_t k = 0; k < result.rows.size(); ++k) {
       const ScenarioRow& row = result.rows[k];
       const SewnSet& set = row.set;
-      printTo(out,
-              "%s,%zu,%d,%s,%zu,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.6g,%.4g,%d,%d,%d,"
-              "%d,%d,%d,%016" PRIx64 "\n",
-              result.name.c_str(), k + 1, set.bites, techniqueOf(set), set.pulling.cpu.size(), row.pulling.mean,
-              row.pulling.p50, row.pulling.p99, row.pulling.max, row.pulling_median, row.pulling_wall, row.after.mean,
-              row.after.p50, row.after.p99, row.after.max, result.reference, set.tension, set.drawn, set.volume,
-              set.balance, set.tear_outs, set.breaks, set.recoveries, set.refusals, set.loose, set.fallback_steps,
-              result.state_hash);
+      out << formatted(
+          "%s,%zu,%d,%s,%zu,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.6g,%.4g,%d,%d,%d,"
+          "%d,%d,%d,%016" PRIx64 "\n",
+          result.name.c_str(), k + 1, set.bites, techniqueOf(set), set.pulling.cpu.size(), row.pulling.mean,
+          row.pulling.p50, row.pulling.p99, row.pulling.max, row.pulling_median, row.pulling_wall, row.after.mean,
+          row.after.p50, row.after.p99, row.after.max, result.reference, set.tension, set.drawn, set.volume,
+          set.balance, set.tear_outs, set.breaks, set.recoveries, set.refusals, set.loose, set.fallback_steps,
+          result.state_hash);
     }
 }
 

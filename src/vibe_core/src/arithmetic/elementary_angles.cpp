@@ -1,6 +1,5 @@
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "arithmetic/double_double.hpp"
 #include "arithmetic/elementary.hpp"

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -12,6 +11,7 @@
 #include "arithmetic/turn.hpp"
 #include "geometry/surface_check.hpp"
 #include "scene/size_estimate.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/geometry/mesh_file.hpp"
 #include "vibe_core/program/error.hpp"
 
@@ -35,9 +35,7 @@ bool plausible(double size) {
 }
 
 std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
+  return formatted("%.4g", value);
 }
 
 /// The remedy for a wrong or missing unit: the one that gives the most likely size.

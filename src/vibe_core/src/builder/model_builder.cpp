@@ -1,7 +1,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 #include "arithmetic/turn.hpp"
@@ -11,6 +10,7 @@
 #include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/builder/tissue_registry.hpp"
 #include "vibe_core/constraints/gas.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/procedure/procedure_registry.hpp"
 #include "vibe_core/program/error.hpp"
 
@@ -143,12 +143,10 @@ void finishModel(const std::string& tool_urdf, Model& model, const Progress& pro
 std::string softnessWarning(const Model& model) {
   const double ratio = model.tissue->stiffnessRatio();
   if (ratio > 0.999) return "";
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "The wall has only %.0f %% of its stiffness in places; raise tissue.substeps from %d to %.0f, or lower "
-                "tissue.stiffness_damping.",
-                100 * ratio, model.substeps, std::ceil(model.substeps / std::sqrt(ratio)));
-  return text;
+  return formatted(
+      "The wall has only %.0f %% of its stiffness in places; raise tissue.substeps from %d to %.0f, or lower "
+      "tissue.stiffness_damping.",
+      100 * ratio, model.substeps, std::ceil(model.substeps / std::sqrt(ratio)));
 }
 
 State initialState(const Model& model, std::uint64_t seed) {

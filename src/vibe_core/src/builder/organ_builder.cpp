@@ -15,7 +15,6 @@
 #include "geometry/remesh.hpp"
 #include "geometry/stomach_knots.hpp"
 #include "geometry/surface_check.hpp"
-#include "geometry/surface_operators.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
 #include "vibe_core/program/error.hpp"
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "arithmetic/turn.hpp"
 #include "constraints/supports.hpp"
 #include "vibe_core/builder/scope_fit.hpp"
+#include "vibe_core/files/number_text.hpp"
 
 namespace vibe {
 
@@ -67,9 +67,7 @@ std::pair<int, double> widestLink(const ToolModel& tool) {
 }
 
 std::string inMillimetres(double length) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.1f mm", 1e3 * length);
-  return text;
+  return formatted("%.1f mm", 1e3 * length);
 }
 
 }  // namespace

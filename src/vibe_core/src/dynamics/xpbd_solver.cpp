@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "arithmetic/elementary.hpp"
-#include "constraints/blocks.hpp"
 #include "constraints/supports.hpp"
 #include "model/step_accounts.hpp"
 #include "tool/tool_motion.hpp"

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 
 #include "events/event_table.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_core/state/procedure_state.hpp"
 #include "vibe_core/state/state.hpp"
@@ -39,9 +39,7 @@ constexpr std::array<NumberFormat, 10> kFormats = {{{"mm", 1e3, "%.1f mm", "%.1f
 std::string numberText(double number, const std::string& format) {
   for (const NumberFormat& known : kFormats) {
     if (format != known.name) continue;
-    char text[64];
-    std::snprintf(text, sizeof text, number == 1 ? known.one : known.many, number * known.scale);
-    return text;
+    return formatted(number == 1 ? known.one : known.many, number * known.scale);
   }
   return "?";
 }

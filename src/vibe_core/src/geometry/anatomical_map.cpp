@@ -3,12 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 #include <utility>
 
 #include "geometry/regions.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/geometry/stomach_axis.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
@@ -76,16 +76,12 @@ double turned(double angle) {
 }
 
 std::string placeText(double along, double around) {
-  char text[80];
-  std::snprintf(text, sizeof text, "%.0f %% of the axis and %.0f deg around it", 100 * along, around * 180 / M_PI);
-  return text;
+  return formatted("%.0f %% of the axis and %.0f deg around it", 100 * along, around * 180 / M_PI);
 }
 
 [[noreturn]] void failWalk(const char* why, double walked, double distance) {
-  char text[160];
-  std::snprintf(text, sizeof text, "%s after %.0f of %.0f mm along the wall; choose a place farther from there.", why,
-                1e3 * walked, 1e3 * std::abs(distance));
-  throw Error(text);
+  throw Error(formatted("%s after %.0f of %.0f mm along the wall; choose a place farther from there.", why,
+                        1e3 * walked, 1e3 * std::abs(distance)));
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <iterator>
 #include <numeric>
@@ -12,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
 #include "vibe_core/program/error.hpp"
 
@@ -31,9 +31,7 @@ struct Side {
 };
 
 std::string place(const Eigen::Vector3d& p) {
-  char text[96];
-  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", p.x(), p.y(), p.z());
-  return text;
+  return formatted("(%.6g, %.6g, %.6g)", p.x(), p.y(), p.z());
 }
 
 std::string counted(int count, const char* one, const char* many) {
@@ -229,8 +227,7 @@ void checkVolume(const SurfaceMesh& mesh, const std::string& name) {
     for (const int v : t) box.extend(mesh.vertices[v]);
   const double side = box.sizes().maxCoeff(), volume = std::abs(enclosedVolume(mesh));
   if (volume > kThinnest * side * side * side) return;
-  char sizes[96];
-  std::snprintf(sizes, sizeof sizes, "%.3g cubic units, with a largest side of %.4g units", volume, side);
+  const std::string sizes = formatted("%.3g cubic units, with a largest side of %.4g units", volume, side);
   throw Error(name + " encloses next to nothing, " + sizes +
               "; it may have been flattened, as by a scale of 0: give it its thickness back");
 }

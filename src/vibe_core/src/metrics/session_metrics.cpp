@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "metrics/skill_text.hpp"
-#include "tool/tool_motion.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/model/accounting.hpp"
 
 namespace vibe {
@@ -87,21 +86,18 @@ namespace {
 // What was put in, what was lost, and what is left over.
 std::string summariseEnergy(const EnergyAccount& e, double balance) {
   const auto shown = [](double energy) { return rounded(energy, 4); };
-  char text[512];
-  std::snprintf(text, sizeof text,
-                "work               tool %.4f J   gas %.4f J   threads %.4f J   pull spring %.4f J\n"
-                "losses             sliding tool %.4f J   mass damping %.4f J   stiffness damping %.4f J\n"
-                "                   walls in contact %.4f J   time scheme %.4f J\n"
-                "solver             corrections %.4f J   residuals %.4f J   energy balance %.4f J\n",
-                shown(e.tool_work), shown(e.gas_work), shown(e.thread_work), shown(e.pull_work), shown(e.friction_loss),
-                shown(e.damping_loss), shown(e.viscous_loss), shown(e.contact_loss), shown(e.numerical_loss),
-                shown(e.correction_work), shown(e.residual_work), shown(balance));
-  return text;
+  return formatted(
+      "work               tool %.4f J   gas %.4f J   threads %.4f J   pull spring %.4f J\n"
+      "losses             sliding tool %.4f J   mass damping %.4f J   stiffness damping %.4f J\n"
+      "                   walls in contact %.4f J   time scheme %.4f J\n"
+      "solver             corrections %.4f J   residuals %.4f J   energy balance %.4f J\n",
+      shown(e.tool_work), shown(e.gas_work), shown(e.thread_work), shown(e.pull_work), shown(e.friction_loss),
+      shown(e.damping_loss), shown(e.viscous_loss), shown(e.contact_loss), shown(e.numerical_loss),
+      shown(e.correction_work), shown(e.residual_work), shown(balance));
 }
 
 std::string summariseRelaxation(double loss) {
-  char text[64];
-  std::snprintf(text, sizeof text, "                   relaxation of the wall %.4f J\n", rounded(loss, 4));
+  const std::string text = formatted("                   relaxation of the wall %.4f J\n", rounded(loss, 4));
   return loss != 0 ? text : "";
 }
 
@@ -111,23 +107,18 @@ std::string doubtsOf(const SessionMetrics& m) {
   const double works = std::abs(e.tool_work) + std::abs(e.gas_work) + std::abs(e.thread_work) + std::abs(e.pull_work);
   const double work = std::max(works, kLeastWork);
   std::string lines;
-  char text[400];
   if (std::abs(e.correction_work) > kDoubtful * work) {
-    std::snprintf(
-        text, sizeof text,
+    lines += formatted(
         "                   The corrections are %.3g %% of the work put in: walls or tool were stopped after a step, "
         "or the wall was led back to rest;\n"
         "                   forces of that time are doubtful; possibly the scope moves too fast.\n",
         100 * std::abs(e.correction_work) / work);
-    lines += text;
   }
   if (m.balance_closes && std::abs(m.energy_balance) > kDoubtful * work) {
-    std::snprintf(
-        text, sizeof text,
+    lines += formatted(
         "                   The energy balance is off by %.3g %% of the work put in: forces and energies of this "
         "session are doubtful.\n",
         100 * std::abs(m.energy_balance) / work);
-    lines += text;
   }
   return lines;
 }
@@ -136,14 +127,11 @@ std::string doubtsOf(const SessionMetrics& m) {
 std::string summariseCoverage(const CoverageSkill& coverage) {
   if (!coverage.whole) return {};
   const auto percent = [](double share) { return rounded(100 * share, 1); };
-  char text[80];
-  std::snprintf(text, sizeof text, "wall seen          %8.1f %%    ", percent(*coverage.whole));
-  std::string line = text;
+  std::string line = formatted("wall seen          %8.1f %%    ", percent(*coverage.whole));
   for (int k = 0; k < kRegionCount; ++k) {
     const std::optional<double>& share = coverage.region[static_cast<std::size_t>(k)];
     if (!share) continue;
-    std::snprintf(text, sizeof text, "%s %.1f %%   ", toString(static_cast<Region>(k)), percent(*share));
-    line += text;
+    line += formatted("%s %.1f %%   ", toString(static_cast<Region>(k)), percent(*share));
   }
   line.erase(line.find_last_not_of(' ') + 1);
   return line + "\n";
@@ -153,25 +141,24 @@ std::string summariseCoverage(const CoverageSkill& coverage) {
 
 std::string summarise(const SessionMetrics& m) {
   using Kind = Event::Kind;
-  char text[4096];
-  std::snprintf(
-      text, sizeof text,
-      "simulated time     %8.2f s\n"
-      "in contact         %8.2f s   holding tissue %.2f s   insufflating %.2f s\n"
-      "path of the tip    %8.3f m\n"
-      "grabs              %8d     missed %d   released %d   slipped %d\n"
-      "force on the tool  %8.2f N max   %.2f N mean\n"
-      "lumen              %8.1f mL now   %.1f mL max   at %.1f mmHg now   %.1f mmHg max\n"
-      "strain of the wall %8.1f %% max\n"
-      "%s%s"
-      "warnings           %8d",
-      m.time, m.contact_time, m.grip_time, m.insufflation_time, m.path_length, m.events.of(Kind::Grab),
-      m.events.of(Kind::GrabMissed), m.events.of(Kind::Release), m.events.of(Kind::Slip), m.max_force, m.mean_force,
-      m.volume * 1e6, m.max_volume * 1e6, m.pressure / 133.322, m.max_pressure / 133.322, 100 * m.max_strain,
-      summariseCoverage(m.coverage).c_str(),
-      (summariseEnergy(m.energy, m.energy_balance) + summariseRelaxation(m.relaxation_loss) + doubtsOf(m)).c_str(),
-      m.warnings());
-  return text + ("\n" + summarise(m.skill));
+  return formatted(
+             "simulated time     %8.2f s\n"
+             "in contact         %8.2f s   holding tissue %.2f s   insufflating %.2f s\n"
+             "path of the tip    %8.3f m\n"
+             "grabs              %8d     missed %d   released %d   slipped %d\n"
+             "force on the tool  %8.2f N max   %.2f N mean\n"
+             "lumen              %8.1f mL now   %.1f mL max   at %.1f mmHg now   %.1f mmHg max\n"
+             "strain of the wall %8.1f %% max\n"
+             "%s%s"
+             "warnings           %8d",
+             m.time, m.contact_time, m.grip_time, m.insufflation_time, m.path_length, m.events.of(Kind::Grab),
+             m.events.of(Kind::GrabMissed), m.events.of(Kind::Release), m.events.of(Kind::Slip), m.max_force,
+             m.mean_force, m.volume * 1e6, m.max_volume * 1e6, m.pressure / 133.322, m.max_pressure / 133.322,
+             100 * m.max_strain, summariseCoverage(m.coverage).c_str(),
+             (summariseEnergy(m.energy, m.energy_balance) + summariseRelaxation(m.relaxation_loss) + doubtsOf(m))
+                 .c_str(),
+             m.warnings()) +
+         "\n" + summarise(m.skill);
 }
 
 }  // namespace vibe

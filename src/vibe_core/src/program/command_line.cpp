@@ -13,8 +13,6 @@
 #include <limits>
 #include <optional>
 
-#include "vibe_core/program/error.hpp"
-
 namespace vibe {
 
 namespace {

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <numeric>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "geometry/surface_check.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/size_estimate.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/geometry/mesh_file.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
@@ -121,18 +121,12 @@ std::string doubtsAbout(const Guess& guess, const std::string& mesh_file) {
 }
 
 std::string describe(const GeometryScene& g, const Guess& guess, const std::string& mesh_file) {
-  const auto point = [](const Eigen::Vector3d& p) {
-    char text[96];
-    std::snprintf(text, sizeof text, "[%.4g, %.4g, %.4g]", p.x(), p.y(), p.z());
-    return std::string(text);
-  };
-  char head[160];
-  std::snprintf(head, sizeof head, "unit: %g\nrotation_rpy: [%.6f, %.6f, %.6f]\nlandmarks:\n", g.unit,
-                g.rotation_rpy[0], g.rotation_rpy[1], g.rotation_rpy[2]);
+  const auto point = [](const Eigen::Vector3d& p) { return formatted("[%.4g, %.4g, %.4g]", p.x(), p.y(), p.z()); };
+  const std::string head = formatted("unit: %g\nrotation_rpy: [%.6f, %.6f, %.6f]\nlandmarks:\n", g.unit,
+                                     g.rotation_rpy[0], g.rotation_rpy[1], g.rotation_rpy[2]);
   const auto& moved = guess.landmarks.spread;
-  char sureness[200];
-  std::snprintf(sureness, sizeof sureness,
-                "\n# confidence %.2f of 1; axes tilted by 20 degrees move them by up to %.0f, %.0f, %.0f and %.0f mm",
+  const std::string sureness =
+      formatted("\n# confidence %.2f of 1; axes tilted by 20 degrees move them by up to %.0f, %.0f, %.0f and %.0f mm",
                 *g.landmark_confidence, 1e3 * moved[0], 1e3 * moved[1], 1e3 * moved[2], 1e3 * moved[3]);
   return "Unit, axes and landmarks of " + mesh_file + " are guesses; look at the regions, and state them in " +
          sidecarOf(mesh_file) + ":\n" + head + "  oesophagus: " + point(*g.oesophagus) +
@@ -200,10 +194,7 @@ std::string useMesh(Scene& scene, const std::string& mesh_file) {
 
 std::string landmarkRemark(const Scene& scene) {
   if (!scene.geometry.landmark_confidence) return "";
-  char text[64];
-  std::snprintf(text, sizeof text, "landmarks          guessed, confidence %.2f\n",
-                *scene.geometry.landmark_confidence);
-  return text;
+  return formatted("landmarks          guessed, confidence %.2f\n", *scene.geometry.landmark_confidence);
 }
 
 }  // namespace vibe

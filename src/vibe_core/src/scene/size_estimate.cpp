@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "arithmetic/elementary.hpp"
 #include "geometry/regions.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/scene/unit.hpp"
 
 namespace vibe {
@@ -34,10 +34,8 @@ double markOf(double value, const Span& span) {
 }
 
 std::string quantity(double value, double factor, const char* unit) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.2g %s", value * factor, unit);
-  if (value * factor >= 100 && value * factor < 1e6) std::snprintf(text, sizeof text, "%.0f %s", value * factor, unit);
-  return text;
+  const double number = value * factor;
+  return formatted(number >= 100 && number < 1e6 ? "%.0f %s" : "%.2g %s", number, unit);
 }
 
 std::string volumeText(double volume) {

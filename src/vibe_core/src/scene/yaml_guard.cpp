@@ -5,11 +5,11 @@
 
 #include <array>
 #include <cstdint>
-#include <cstdio>
 #include <iterator>
 #include <sstream>
 #include <string_view>
 
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe {
@@ -153,14 +153,13 @@ std::uint32_t nextCode(std::string_view text, std::size_t& at) {
 
 /// "a no-break space (U+00A0) in the place of ' '", or nothing for an ordinary character.
 std::string described(std::uint32_t code) {
-  char number[32];
-  std::snprintf(number, sizeof number, " (U+%04X) in the place of ", code);
+  const std::string number = formatted(" (U+%04X) in the place of ", code);
   for (const Sign& sign : kSigns)
-    if (code >= sign.first && code <= sign.last) return sign.name + std::string(number) + sign.place;
+    if (code >= sign.first && code <= sign.last) return sign.name + number + sign.place;
   for (const Alike& alike : kAlike)
-    if (code == alike.code) return "a letter of another alphabet" + std::string(number) + "'" + alike.latin + "'";
+    if (code == alike.code) return "a letter of another alphabet" + number + "'" + alike.latin + "'";
   if (code >= 0xff01 && code <= 0xff5e)
-    return "a full-width character" + std::string(number) + "'" + static_cast<char>(code - 0xff01 + '!') + "'";
+    return "a full-width character" + number + "'" + static_cast<char>(code - 0xff01 + '!') + "'";
   return "";
 }
 

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <set>
 
 #include "scene/yaml_guard.hpp"
 #include "vibe_core/files/foreign_content.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/unit.hpp"
 #include "vibe_core/scene/words.hpp"
@@ -28,9 +28,7 @@ std::string quoted(const std::string& text) {
 }
 
 std::string showDegrees(double radians) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g deg", radians * 180 / M_PI);
-  return text;
+  return formatted("%.4g deg", radians * 180 / M_PI);
 }
 
 const char* kindName(const YAML::Node& node) {
@@ -256,13 +254,13 @@ std::string YamlSource::choice(const YamlField& field, const std::vector<std::st
 }
 
 std::string showQuantity(double value, const std::string& si_unit) {
-  char text[40];
+  std::string text;
   // The shortest text that reads back as the same number.
   for (int digits = 6; digits <= 17; ++digits) {
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
+    text = formatted("%.*g", digits, value);
     if (parseNumber(text).value == value) break;
   }
-  return si_unit == "1" || si_unit.empty() ? text : std::string(text) + " " + si_unit;
+  return si_unit == "1" || si_unit.empty() ? text : text + " " + si_unit;
 }
 
 }  // namespace vibe

@@ -1,7 +1,8 @@
 #include "vibe_core/simulation/stage_summary.hpp"
 
-#include <cstdio>
 #include <numeric>
+
+#include "vibe_core/files/number_text.hpp"
 
 namespace vibe {
 
@@ -18,24 +19,20 @@ void StageSummary::add(const StepReport& report) {
 std::string StageSummary::text() const {
   const double steps = static_cast<double>(whole_.count());
   if (steps == 0) return "";
-  char line[160];
   std::string text = "stage     ms per step    p50    p99   share\n";
   const auto add = [&](const char* name, const DurationHistogram& times) {
-    std::snprintf(line, sizeof line, "%-10s%11.3f%7.3f%7.3f%6.1f %%\n", name, 1e3 * times.mean(),
-                  1e3 * times.quantile(0.5), 1e3 * times.quantile(0.99), 100 * times.mean() / whole_.mean());
-    text += line;
+    text += formatted("%-10s%11.3f%7.3f%7.3f%6.1f %%\n", name, 1e3 * times.mean(), 1e3 * times.quantile(0.5),
+                      1e3 * times.quantile(0.99), 100 * times.mean() / whole_.mean());
   };
   for (int k = 0; k < kStepStages; ++k) add(toString(static_cast<StepStage>(k)), stages_[static_cast<std::size_t>(k)]);
   add("all", whole_);
-  std::snprintf(line, sizeof line, "per step: %.2f iterations, %.2f evaluations, %.1f rows, %.1f pairs of walls\n",
-                iterations_ / steps, evaluations_ / steps, rows_ / steps, wall_pairs_ / steps);
-  text += line;
+  text += formatted("per step: %.2f iterations, %.2f evaluations, %.1f rows, %.1f pairs of walls\n",
+                    iterations_ / steps, evaluations_ / steps, rows_ / steps, wall_pairs_ / steps);
   text += "ways per 1,000 steps (docs/computation.md):";
   const char* separator = " ";
   for (std::size_t k = 0; k < kStepWayCount; ++k) {
     if (ways_[k] == 0) continue;
-    std::snprintf(line, sizeof line, "%s%s %.1f", separator, nameOf(static_cast<StepWay>(k)), 1e3 * ways_[k] / steps);
-    text += line;
+    text += formatted("%s%s %.1f", separator, nameOf(static_cast<StepWay>(k)), 1e3 * ways_[k] / steps);
     separator = ", ";
   }
   return text + "\n";

@@ -1,7 +1,6 @@
 #include "solver/half_rows.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 namespace vibe {
 

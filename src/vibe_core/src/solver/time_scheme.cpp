@@ -1,7 +1,5 @@
 #include "solver/time_scheme.hpp"
 
-#include <cmath>
-
 #include <Eigen/Geometry>
 
 #include "arithmetic/turn.hpp"

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
+#include "vibe_core/files/csv_row.hpp"
 #include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/suture/technique_patterns.hpp"
@@ -16,29 +16,6 @@ namespace {
 
 using Fields = std::vector<std::string>;
 
-std::string trimmed(const std::string& text) {
-  const char* const kSpace = " \t\r\v\f";
-  const std::size_t begin = text.find_first_not_of(kSpace);
-  return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(kSpace) - begin + 1);
-}
-
-Fields split(const std::string& row) {
-  Fields fields;
-  for (std::size_t begin = 0;;) {
-    const std::size_t end = row.find(',', begin);
-    fields.push_back(trimmed(row.substr(begin, end - begin)));
-    if (end == std::string::npos) return fields;
-    begin = end + 1;
-  }
-}
-
-bool toNumber(const std::string& text, double& value) {
-  const char* begin = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
-  const char* end = text.data() + text.size();
-  const auto [stop, fault] = readReal(begin, end, value);  // unlike strtod(), independent of the locale
-  return fault == std::errc() && stop == end;
-}
-
 class Reader {
  public:
   explicit Reader(const std::string& name) : name_(name) {}
@@ -46,8 +23,8 @@ class Reader {
   void take(std::string line) {
     if (++number_ == 1 && line.compare(0, 3, "\xef\xbb\xbf") == 0) line.erase(0, 3);  // byte order mark
     const bool blank = trimmed(line).empty();
-    const std::string row = trimmed(line.substr(0, line.find('#')));
-    if (!row.empty()) return takeRow(split(row));
+    const std::string row(trimmed(line.substr(0, line.find('#'))));
+    if (!row.empty()) return takeRow(cellsOf(row));
     if (blank && !sets_.empty() && !sets_.back().empty()) sets_.emplace_back();
   }
 
@@ -67,8 +44,8 @@ class Reader {
     if (first) {
       bool header = true;
       for (const std::string& field : fields)
-        header =
-            header && !field.empty() && std::isalpha(static_cast<unsigned char>(field[0])) != 0 && !isSpecial(field);
+        header = header && !field.empty() && std::isalpha(static_cast<unsigned char>(field[0])) != 0 &&
+                 !numberOf(field);  // "nan" and "infinity" begin with letters
       column_count_ = header ? fields.size() : 3;
       columns_ = header ? namedColumns(fields) : std::vector<std::size_t>{0, 1, 2};
       if (header) return;
@@ -78,12 +55,6 @@ class Reader {
            "; write x,y,z with commas between them.");
     if (sets_.empty()) sets_.emplace_back();
     sets_.back().push_back({number(fields, 0), number(fields, 1), number(fields, 2)});
-  }
-
-  /// "nan" and "infinity" begin with letters but are meant as numbers.
-  static bool isSpecial(const std::string& field) {
-    double value;
-    return toNumber(field, value);
   }
 
   std::vector<std::size_t> namedColumns(const Fields& names) const {
@@ -103,10 +74,10 @@ class Reader {
   double number(const Fields& fields, std::size_t axis) const {
     const std::string& text = fields[columns_[axis]];
     const std::string where = std::string(1, "xyz"[axis]) + " '" + text.substr(0, 40) + "'";
-    double value;
-    if (!toNumber(text, value)) fail(where + " is not a number; write it like 0.012 or 1.2e-2.");
-    if (!std::isfinite(value)) fail(where + " is not finite; correct the position or leave the bite out.");
-    return value;
+    const std::optional<double> value = numberOf(text);
+    if (!value) fail(where + " is not a number; write it like 0.012 or 1.2e-2.");
+    if (!std::isfinite(*value)) fail(where + " is not finite; correct the position or leave the bite out.");
+    return *value;
   }
 
   std::string name_;
@@ -136,9 +107,7 @@ bool sameAnswer(int a, int b, bool three_way) {
 
 /// Per cent; never rounded up to 100.
 std::string percent(double share) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%.1f", share < 1 ? std::min(100 * share, 99.9) : 100.0);
-  return text;
+  return formatted("%.1f", share < 1 ? std::min(100 * share, 99.9) : 100.0);
 }
 
 const char* ruleName(TechniqueRule rule) {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <Eigen/Geometry>
 
 #include "arithmetic/elementary.hpp"
 #include "geometry/ray.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe {
@@ -16,10 +16,8 @@ namespace {
 
 void expect(const char* key, double value, double low, double high, const char* unit) {
   if (value >= low && value <= high) return;
-  char text[160];
-  std::snprintf(text, sizeof text, "marking.%s: %g is not from %g to %g %s; give a value in that range.", key, value,
-                low, high, unit);
-  throw Error(text);
+  throw Error(
+      formatted("marking.%s: %g is not from %g to %g %s; give a value in that range.", key, value, low, high, unit));
 }
 
 }  // namespace

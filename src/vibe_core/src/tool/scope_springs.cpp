@@ -1,7 +1,6 @@
 #include "vibe_core/tool/scope_springs.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "vibe_core/solver/step_policy.hpp"
 

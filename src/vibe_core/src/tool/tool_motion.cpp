@@ -1,11 +1,8 @@
 #include "tool/tool_motion.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
-
-#include "vibe_core/solver/step_policy.hpp"
 
 namespace vibe {
 

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "trainee/bite_attempt.hpp"
 #include "trainee/operator.hpp"
 #include "trainee/picture.hpp"
+#include "vibe_core/files/number_text.hpp"
 
 namespace vibe {
 
@@ -50,10 +50,9 @@ GoalResult perform(const InspectGoal& goal, Operator& me) {
   me.hand.wait(me.skill().reaction_time + goal.time);
   const View view = viewOf(me.position(target), me.view());
   const bool seen = view.angle < kHalfView && view.distance < kFarthestView * goal.distance;
-  char text[160];
-  std::snprintf(text, sizeof text, "%s from %.0f mm, %.0f deg off the middle of the picture",
-                seen ? "seen" : "the scope does not get the place into its picture: it is seen", 1e3 * view.distance,
-                view.angle * 180 / M_PI);
+  const std::string text = formatted("%s from %.0f mm, %.0f deg off the middle of the picture",
+                                     seen ? "seen" : "the scope does not get the place into its picture: it is seen",
+                                     1e3 * view.distance, view.angle * 180 / M_PI);
   return {seen, text};
 }
 

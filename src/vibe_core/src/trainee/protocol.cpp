@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 
 #include "scene/yaml_guard.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/words.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
@@ -22,20 +22,15 @@ constexpr double kLongestPattern = 0.3;  // along or around the organ: beyond an
 constexpr double kLongestTime = 3600;    // of one goal [s]
 
 std::string at(const Place& place) {
-  char text[120];
-  std::snprintf(text, sizeof text, " at %.0f %% of the %s, %.0f deg", 100 * place.along,
-                place.region ? toString(*place.region) : "axis", place.around * 180 / M_PI);
-  return text;
+  return formatted(" at %.0f %% of the %s, %.0f deg", 100 * place.along,
+                   place.region ? toString(*place.region) : "axis", place.around * 180 / M_PI);
 }
 
 struct Describer {
   std::string operator()(const InsufflateGoal&) const { return "insufflate"; }
   std::string operator()(const InspectGoal& goal) const { return "inspect" + at(goal.place); }
   std::string operator()(const SurveyGoal& goal) const {
-    char text[80];
-    std::snprintf(text, sizeof text, "inspect %.0f %% of the %s", 100 * goal.coverage,
-                  goal.region ? toString(*goal.region) : "wall");
-    return text;
+    return formatted("inspect %.0f %% of the %s", 100 * goal.coverage, goal.region ? toString(*goal.region) : "wall");
   }
   std::string operator()(const MarkGoal& goal) const { return "mark" + at(goal.place); }
   std::string operator()(const BiteGoal& goal) const { return "bite" + at(goal.place); }

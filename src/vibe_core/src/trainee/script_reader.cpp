@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "scene/yaml_guard.hpp"
+#include "vibe_core/files/number_text.hpp"
+#include "vibe_core/input/joint_unit.hpp"
 #include "vibe_core/scene/words.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 #include "vibe_core/trainee/trainee_script.hpp"
@@ -53,22 +54,12 @@ const Verb* findVerb(const std::string& name) {
   return nullptr;
 }
 
-bool isLength(int joint) {
-  return joint == Insertion || joint == HelixAdvance || joint == NeedleDriver;
-}
-const char* unitOf(int joint) {
-  return isLength(joint) ? "m" : "rad";
-}
-const char* speedUnitOf(int joint) {
-  return isLength(joint) ? "m/s" : "rad/s";
-}
-
 /// Far beyond any device. The simulator clamps to the tool's own limits; this check only rejects unit errors.
 double largestPosition(int joint) {
-  return isLength(joint) ? 1.0 : 100.0;
+  return isPrismatic(joint) ? 1.0 : 100.0;
 }
 double largestTremor(int joint) {
-  return isLength(joint) ? 0.01 : 0.2;
+  return isPrismatic(joint) ? 0.01 : 0.2;
 }
 
 template <typename Names>
@@ -82,9 +73,7 @@ int indexOf(const YamlSource& source, const YamlField& field, const std::string&
 }
 
 std::string seconds(double time) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.3f s", time);
-  return text;
+  return formatted("%.3f s", time);
 }
 
 }  // namespace
@@ -96,18 +85,14 @@ class ScriptReader {
 
   /// @throws Error "file:line: key: what is wrong; remedy"
   TraineeScript read() {
-    static const std::vector<std::string> keys{"name", "seed", "start", "tremor", "actions"};
     TremorSettings tremor;
     std::uint64_t seed = 1;
-    const std::vector<YamlField> fields = source_.map(source_.root());
+    const std::vector<YamlField> fields = source_.map(source_.root(), {"name", "seed", "start", "tremor", "actions"});
     for (const YamlField& field : fields) {
       if (field.key == "name") script_.name_ = source_.text(field);
       if (field.key == "seed") seed = static_cast<std::uint64_t>(source_.integer(field, 0, 9007199254740991));
       if (field.key == "tremor") tremor = readTremor(field);
       if (field.key == "start") readStart(field);
-      if (std::find(keys.begin(), keys.end(), field.key) == keys.end()) {
-        source_.fail(field, "is not a known key; " + suggestKey(field.key, keys));
-      }
     }
     // In a second pass, because the actions need the start, which may stand anywhere in the file.
     for (const YamlField& field : fields) {
@@ -136,25 +121,19 @@ class ScriptReader {
     for (const YamlField& entry : source_.map(field)) {
       const int joint = jointOf(entry);
       const double limit = largestPosition(joint);
-      script_.timeline_.setStart(joint, source_.quantity(entry, unitOf(joint), -limit, limit));
+      script_.timeline_.setStart(joint, source_.quantity(entry, jointUnit(joint), -limit, limit));
     }
   }
 
   TremorSettings readTremor(const YamlField& field) const {
-    static const std::vector<std::string> keys{"frequency", "amplitude", "scale"};
     TremorSettings settings;
-    for (const YamlField& entry : source_.map(field)) {
-      if (entry.key == "frequency") {
-        readTremorBand(entry, settings);
-      } else if (entry.key == "scale") {
-        settings.scale = source_.quantity(entry, "1", 0, 10);
-      } else if (entry.key == "amplitude") {
-        for (const YamlField& one : source_.map(entry)) {
-          const int joint = jointOf(one);
-          settings.amplitude[joint] = source_.quantity(one, unitOf(joint), 0, largestTremor(joint));
-        }
-      } else {
-        source_.fail(entry, "is not a known key; " + suggestKey(entry.key, keys));
+    for (const YamlField& entry : source_.map(field, {"frequency", "amplitude", "scale"})) {
+      if (entry.key == "frequency") readTremorBand(entry, settings);
+      if (entry.key == "scale") settings.scale = source_.quantity(entry, "1", 0, 10);
+      if (entry.key != "amplitude") continue;
+      for (const YamlField& one : source_.map(entry)) {
+        const int joint = jointOf(one);
+        settings.amplitude[joint] = source_.quantity(one, jointUnit(joint), 0, largestTremor(joint));
       }
     }
     return settings;
@@ -243,7 +222,7 @@ class ScriptReader {
     for (const YamlField& entry : source_.map(action.verb)) {
       const int joint = jointOf(entry);
       const double limit = largestPosition(joint);
-      const double value = source_.quantity(entry, unitOf(joint), -limit, limit);
+      const double value = source_.quantity(entry, jointUnit(joint), -limit, limit);
       const double now = script_.timeline_.jointTarget(joint);
       if (begin < script_.timeline_.jointFreeAt(joint) - kRounding) {
         source_.fail(entry, "begins to move at " + seconds(begin) + ", but an action before still moves it until " +
@@ -254,8 +233,8 @@ class ScriptReader {
       targets.push_back(relative ? now + value : value);
       distances.push_back(std::abs(targets.back() - now));
       if (std::abs(targets.back()) > limit) {
-        source_.fail(entry, "leads to " + showQuantity(targets.back(), unitOf(joint)) + "; stay within " +
-                                showQuantity(limit, unitOf(joint)));
+        source_.fail(entry, "leads to " + showQuantity(targets.back(), jointUnit(joint)) + "; stay within " +
+                                showQuantity(limit, jointUnit(joint)));
       }
     }
     if (joints.empty()) source_.fail(action.verb, "names no joint; write for example 'move: {insertion: 10 cm}'");
@@ -277,8 +256,8 @@ class ScriptReader {
     if (speed == nullptr) return duration;
     if (!std::isnan(duration)) source_.fail(*speed, "contradicts 'in'; keep one of the two");
     if (distances.size() != 1) source_.fail(*speed, "needs a single joint; write 'in' to move several at once");
-    const double limit = isLength(joint) ? 10 : 100;
-    const double value = source_.quantity(*speed, speedUnitOf(joint), 1e-6, limit);
+    const double limit = isPrismatic(joint) ? 10 : 100;
+    const double value = source_.quantity(*speed, jointSpeedUnit(joint), 1e-6, limit);
     return std::max(distances.front() / value, kShortestMotion);
   }
 

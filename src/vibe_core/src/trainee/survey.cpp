@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "trainee/operator.hpp"
 #include "trainee/picture.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/simulation/wall_coverage.hpp"
 
 namespace vibe {
@@ -39,9 +39,8 @@ class Survey {
       for (std::optional<int> next = choose(); next && !isOver(); next = choose()) visit(*next, distance);
     }
     const double seen = share();
-    char text[160];
-    std::snprintf(text, sizeof text, "saw %.1f %% %sin %.0f s", 100 * seen, goal_.region ? "of the region " : "",
-                  me_.view().time - begin_);
+    const std::string text = formatted("saw %.1f %% %sin %.0f s", 100 * seen, goal_.region ? "of the region " : "",
+                                       me_.view().time - begin_);
     return {seen >= goal_.coverage, seen >= goal_.coverage ? text : text + leastSeen()};
   }
 
@@ -83,10 +82,7 @@ class Survey {
 
   void visit(int particle, double distance) {
     const WallPoint place = pointAt(particle);
-    char text[80];
-    std::snprintf(text, sizeof text, "looks at the %s, %.0f %% seen", toString(me_.model().organ.region[particle]),
-                  100 * share());
-    me_.say(text);
+    me_.say(formatted("looks at the %s, %.0f %% seen", toString(me_.model().organ.region[particle]), 100 * share()));
     if (travel(bestView(me_.position(place), me_.outward(place), distance, me_), me_))
       me_.hand.wait(me_.skill().reaction_time + kPause);
     if (!isUnseen(static_cast<std::size_t>(particle))) return;
@@ -112,10 +108,8 @@ class Survey {
       if (!seen || *seen >= goal_.coverage || *seen > kAllButSeen ||
           (goal_.region && static_cast<int>(*goal_.region) != k))
         continue;
-      char part[60];
-      std::snprintf(part, sizeof part, "%s%s %.0f %%", text.empty() ? "; not seen: " : ", ",
-                    toString(static_cast<Region>(k)), 100 * (1 - *seen));
-      text += part;
+      text += formatted("%s%s %.0f %%", text.empty() ? "; not seen: " : ", ", toString(static_cast<Region>(k)),
+                        100 * (1 - *seen));
     }
     return text;
   }

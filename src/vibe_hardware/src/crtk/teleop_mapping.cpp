@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "vibe_core/input/joint_unit.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
 namespace vibe::hardware {

@@ -1,15 +1,14 @@
 #include "vibe_hardware/crtk/tool_trail.hpp"
 
+#include "vibe_core/input/joint_unit.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <string>
-
-#include "vibe_hardware/gamepad/pad_mapping.hpp"
 
 namespace vibe::hardware {
 
 double unnoticed(int joint) {
-  return jointUnit(joint) == std::string("m") ? 0.5e-3 : 0.5 * M_PI / 180;
+  return isPrismatic(joint) ? 0.5e-3 : 0.5 * M_PI / 180;
 }
 
 void resumeTrail(double position, JointTrail& joint) {

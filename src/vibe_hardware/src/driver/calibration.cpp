@@ -1,11 +1,11 @@
 #include "vibe_hardware/driver/calibration.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 
 #include "vibe_core/files/files.hpp"
+#include "vibe_core/input/joint_unit.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
 namespace vibe::hardware {
@@ -14,21 +14,12 @@ namespace {
 const std::vector<std::string> kDeviceNames{"haptic", "input"};
 constexpr double kMinScale = 1e-6, kMaxScale = 1e3;
 
-bool isLength(int joint) {
-  return joint == Insertion || joint == HelixAdvance || joint == NeedleDriver;
-}
-const char* unitOf(int joint) {
-  return isLength(joint) ? "m" : "rad";
-}
 const char* scaleUnitOf(int joint) {
-  return isLength(joint) ? "m/rad" : "1";
-}
-const char* speedUnitOf(int joint) {
-  return isLength(joint) ? "m/s" : "rad/s";
+  return isPrismatic(joint) ? "m/rad" : "1";
 }
 /// Far beyond any device: rejects errors of units.
 double largestPosition(int joint) {
-  return isLength(joint) ? 2.0 : 100.0;
+  return isPrismatic(joint) ? 2.0 : 100.0;
 }
 
 template <class Names>
@@ -118,7 +109,8 @@ class CalibrationReader {
       if (entry.key == "scale") result.scale.scale = source_.quantity(entry, scaleUnitOf(joint), kMinScale, kMaxScale);
       if (entry.key == "direction") direction = source_.choice(entry, {"1", "-1"}) == "1" ? 1 : -1;
       if (entry.key == "offset") {
-        result.scale.offset = source_.quantity(entry, unitOf(joint), -largestPosition(joint), largestPosition(joint));
+        result.scale.offset =
+            source_.quantity(entry, jointUnit(joint), -largestPosition(joint), largestPosition(joint));
       }
       if (entry.key == "limits") readLimits(entry, joint, result.lower, result.upper);
     }
@@ -128,7 +120,7 @@ class CalibrationReader {
 
   void readLimits(const YamlField& field, int joint, double& lower, double& upper) const {
     const double largest = largestPosition(joint);
-    const std::vector<double> limits = source_.quantities(field, 2, unitOf(joint), -largest, largest);
+    const std::vector<double> limits = source_.quantities(field, 2, jointUnit(joint), -largest, largest);
     if (limits[0] >= limits[1]) source_.fail(field, "does not have its lower end first; write [lower, upper]");
     lower = limits[0];
     upper = limits[1];
@@ -142,7 +134,7 @@ class CalibrationReader {
       for (const YamlField& position : source_.map(entry, names)) {
         const int joint = indexOf(names, position.key);
         const double largest = largestPosition(joint);
-        const double home = source_.quantity(position, unitOf(joint), -largest, largest);
+        const double home = source_.quantity(position, jointUnit(joint), -largest, largest);
         checkHome(position, joint, home);
         calibration_.joints[static_cast<std::size_t>(joint)].home = home;
       }
@@ -181,7 +173,8 @@ class CalibrationReader {
     for (const YamlField& entry : source_.map(field, keys, keys)) {
       if (entry.key == "forward") drive.forward = readButton(entry);
       if (entry.key == "backward") drive.backward = readButton(entry);
-      if (entry.key == "speed") drive.speed = source_.quantity(entry, speedUnitOf(joint), 1e-6, largestPosition(joint));
+      if (entry.key == "speed")
+        drive.speed = source_.quantity(entry, jointSpeedUnit(joint), 1e-6, largestPosition(joint));
       if (entry.key == "limits") readLimits(entry, joint, drive.lower, drive.upper);
     }
     if (drive.lower > 0 || drive.upper < 0) {
@@ -205,8 +198,8 @@ class CalibrationReader {
   void checkHome(const YamlField& field, int joint, double home) const {
     const JointCalibration& calibration = calibration_.joints[static_cast<std::size_t>(joint)];
     if (home >= calibration.lower && home <= calibration.upper) return;
-    source_.fail(field, "is outside the limits of the joint, " + showQuantity(calibration.lower, unitOf(joint)) +
-                            " to " + showQuantity(calibration.upper, unitOf(joint)) +
+    source_.fail(field, "is outside the limits of the joint, " + showQuantity(calibration.lower, jointUnit(joint)) +
+                            " to " + showQuantity(calibration.upper, jointUnit(joint)) +
                             "; write a position between them");
   }
 };

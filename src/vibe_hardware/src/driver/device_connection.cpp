@@ -1,8 +1,8 @@
 #include "vibe_hardware/driver/device_connection.hpp"
 
 #include <cmath>
-#include <cstdio>
 
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::hardware {
@@ -15,9 +15,7 @@ constexpr std::size_t kLargestReport = 64;
 constexpr const char* kInstall = "; its firmware may be of another release: install that of this one.";
 
 std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
+  return formatted("%.4g", value);
 }
 
 [[noreturn]] void failUnanswered(const std::string& request, const NoAnswer& silence) {

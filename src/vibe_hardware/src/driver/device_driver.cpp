@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::hardware {
@@ -39,9 +40,7 @@ std::string identify(const HidInfo& info) {
 }
 
 std::string hexadecimal(std::uint16_t number) {
-  char text[8];
-  std::snprintf(text, sizeof text, "%04x", number);
-  return text;
+  return formatted("%04x", number);
 }
 
 }  // namespace

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <string_view>
 
+#include "vibe_core/files/csv_row.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/files/number_text.hpp"
+#include "vibe_core/input/joint_unit.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/words.hpp"
 
@@ -24,36 +25,8 @@ std::vector<std::string> columnNames() {
   return names;
 }
 
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-std::vector<std::string_view> cellsOf(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (std::size_t comma = 0; comma != std::string_view::npos;) {
-    comma = line.find(',');
-    cells.push_back(trimmed(line.substr(0, comma)));
-    if (comma != std::string_view::npos) line.remove_prefix(comma + 1);
-  }
-  return cells;
-}
-
-/// The whole cell as a number; NaN if it is none. readReal() takes no leading plus.
-double numberOf(std::string_view cell) {
-  if (cell.size() > 1 && cell[0] == '+' && cell[1] != '-') cell.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = readReal(cell.data(), cell.data() + cell.size(), value);
-  return error == std::errc() && end == cell.data() + cell.size() ? value : std::nan("");
-}
-
 std::string show(double value, int joint) {
-  const bool is_length = joint == Insertion || joint == HelixAdvance || joint == NeedleDriver;
-  char text[40];
-  std::snprintf(text, sizeof text, "%.4g %s", value, is_length ? "m" : "rad");
-  return text;
+  return formatted("%.4g %s", value, jointUnit(joint));
 }
 
 }  // namespace
@@ -107,10 +80,9 @@ class RecordingReader {
   void readHeader(std::string_view line) {
     const std::vector<std::string> names = columnNames();
     std::vector<bool> seen(names.size(), false);
-    for (const std::string_view cell : cellsOf(line)) {
+    for (const std::string& cell : cellsOf(line)) {
       const auto found = std::find(names.begin(), names.end(), cell);
-      if (found == names.end())
-        fail("column '" + std::string(cell) + "' is not known; " + suggestKey(std::string(cell), names));
+      if (found == names.end()) fail("column '" + cell + "' is not known; " + suggestKey(cell, names));
       const auto column = found - names.begin();
       if (seen[column]) fail("column '" + names[column] + "' is there twice; remove one");
       seen[column] = true;
@@ -121,7 +93,7 @@ class RecordingReader {
   }
 
   void readRow(std::string_view line) {
-    const std::vector<std::string_view> cells = cellsOf(line);
+    const std::vector<std::string> cells = cellsOf(line);
     if (cells.size() != columns_.size())
       fail("has " + std::to_string(cells.size()) + " values; write " + std::to_string(columns_.size()) +
            ", one for each column");
@@ -134,19 +106,17 @@ class RecordingReader {
     hand_.rows_.push_back(row);
   }
 
-  void readCell(std::string_view cell, int column, RecordedHand::Row& row) const {
+  void readCell(const std::string& cell, int column, RecordedHand::Row& row) const {
     const std::string name = columnNames()[column];
-    const double value = numberOf(cell);
-    if (!std::isfinite(value))
-      fail(name + ": '" + std::string(cell) + "' is not a finite number; write one, with a point");
+    const double value = numberOf(cell).value_or(std::nan(""));
+    if (!std::isfinite(value)) fail(name + ": '" + cell + "' is not a finite number; write one, with a point");
     if (column == 0) {
       row.time = value;
     } else if (column < kFirstButton) {
       checkRange(value, column - 1);
       row.sample.joints[column - 1] = value;
     } else {
-      if (value != 0 && value != 1)
-        fail(name + ": '" + std::string(cell) + "' is not 0 or 1; write 1 while it is pressed");
+      if (value != 0 && value != 1) fail(name + ": '" + cell + "' is not 0 or 1; write 1 while it is pressed");
       row.sample.buttons[column - kFirstButton] = value != 0 ? 1 : 0;
     }
   }

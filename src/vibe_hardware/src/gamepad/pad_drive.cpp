@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
+
+#include "vibe_core/files/number_text.hpp"
 
 namespace vibe::hardware {
 namespace {
@@ -164,11 +165,9 @@ std::string waitingControls(const PadMapping& mapping, const DriveState& state) 
     if (joint.mode != JointMapping::Mode::Position || state.engaged[i] || !std::isfinite(state.targets[i])) continue;
     const double range = joint.high - joint.low;
     const double wanted = (std::clamp(state.joints[i], joint.low, joint.high) - joint.low) / range;
-    char part[160];
-    std::snprintf(part, sizeof part, "%s%s (now at %.0f %% of its way, %s is at %.0f %%)", list.empty() ? "" : ", ",
-                  eventCodeName(EV_ABS, joint.forward).c_str(), 100 * (state.targets[i] - joint.low) / range,
-                  kJointNames[i], 100 * wanted);
-    list += part;
+    list += formatted("%s%s (now at %.0f %% of its way, %s is at %.0f %%)", list.empty() ? "" : ", ",
+                      eventCodeName(EV_ABS, joint.forward).c_str(), 100 * (state.targets[i] - joint.low) / range,
+                      kJointNames[i], 100 * wanted);
   }
   return list.empty() ? "" : "Move each of these to where its joint is, to pick the joint up: " + list + ".";
 }

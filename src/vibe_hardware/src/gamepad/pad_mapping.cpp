@@ -1,7 +1,6 @@
 #include "vibe_hardware/gamepad/pad_mapping.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <string>
@@ -10,6 +9,8 @@
 #include <linux/input-event-codes.h>
 
 #include "vibe_core/files/files.hpp"
+#include "vibe_core/files/number_text.hpp"
+#include "vibe_core/input/joint_unit.hpp"
 #include "vibe_core/scene/words.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 #include "vibe_hardware/gamepad/pad_state.hpp"
@@ -41,9 +42,7 @@ std::vector<std::string> codeNames(int type) {
 
 /// So many digits that a limit which is copied from a message is within kRounding of it.
 std::string show(double value, const std::string& unit) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.7g ", value);
-  return text + unit;
+  return formatted("%.7g ", value) + unit;
 }
 
 template <std::size_t N>
@@ -135,8 +134,7 @@ class PadMappingReader {
     const YamlField* rate = find(entries, "rate");
     if (rate == nullptr) source_.fail(field, "has no rate, the speed at full deflection; write 'rate: ...'");
     const double fastest = limits_[static_cast<std::size_t>(index)].velocity;
-    const std::string unit = std::string(jointUnit(index)) + "/s";
-    joint.rate = within(*rate, unit, 0, fastest);
+    joint.rate = within(*rate, jointSpeedUnit(index), 0, fastest);
   }
 
   void readPosition(const YamlField& field, const std::vector<YamlField>& entries, int index, JointMapping& joint) {
@@ -153,9 +151,8 @@ class PadMappingReader {
     joint.high = within(ends[1], jointUnit(index), limits.lower, limits.upper);
     if (!(joint.low < joint.high))
       source_.fail(*range, "has its ends in the wrong order; write [lowest, highest] and 'reversed: true' if needed");
-    const std::string unit = jointUnit(index) == std::string("m") ? "N" : "N*m";
     if (const YamlField* effort = find(entries, "full_effort"))
-      joint.full_effort = source_.quantity(*effort, unit, 0, kLargestEffort);
+      joint.full_effort = source_.quantity(*effort, isPrismatic(index) ? "N" : "N*m", 0, kLargestEffort);
   }
 
   void readButtons(const YamlField& field) {
@@ -254,10 +251,6 @@ PadMapping loadPadMapping(const std::string& file, const ToolLimits& limits) {
 PadMapping parsePadMapping(const std::string& text, const std::string& place, const ToolLimits& limits) {
   const YamlSource source = YamlSource::parse(text, place, kLimits);
   return PadMappingReader(source, limits).read();
-}
-
-const char* jointUnit(int joint) {
-  return joint == Insertion || joint == HelixAdvance || joint == NeedleDriver ? "m" : "rad";
 }
 
 }  // namespace vibe::hardware

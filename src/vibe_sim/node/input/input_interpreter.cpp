@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "input/target_checks.hpp"
 #include "input/tip_velocity.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe::sim {
@@ -196,12 +196,10 @@ std::string InputInterpreter::applyTwist(const DueInput& due, const Model& model
   if (share > 0) return "";
   twist_.reset();
   if (twist.velocity.isZero()) return "";
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "scope/servo_cv has been silent for %.2g s, so the scope has stopped; its sender may hang or be slow: "
-                "send a velocity at 10 Hz while it is to last.",
-                1e-9 * age);
-  return text;
+  return formatted(
+      "scope/servo_cv has been silent for %.2g s, so the scope has stopped; its sender may hang or be slow: "
+      "send a velocity at 10 Hz while it is to last.",
+      1e-9 * age);
 }
 
 void InputInterpreter::applyMoves(std::int64_t stamp, JointArray& joints) {

@@ -1,7 +1,6 @@
 #include "input/input_sample.hpp"
 
-#include <cstdio>
-
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/word_of.hpp"
 
 namespace vibe::sim {
@@ -32,10 +31,8 @@ std::string faultOf(std::int64_t stamp, std::int64_t now, const InputWindow& win
   if (!early && !late) return "";
   const double off = 1e-9 * static_cast<double>(early ? stamp - now : now - stamp);
   const double limit = 1e-9 * static_cast<double>(early ? window.look_ahead : window.staleness);
-  char text[200];
-  std::snprintf(text, sizeof text, "its stamp is %.1f s %s the simulator's time, and %.3g s are accepted", off,
-                early ? "ahead of" : "behind", limit);
-  return text;
+  return formatted("its stamp is %.1f s %s the simulator's time, and %.3g s are accepted", off,
+                   early ? "ahead of" : "behind", limit);
 }
 
 }  // namespace vibe::sim

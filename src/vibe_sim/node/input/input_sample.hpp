@@ -46,11 +46,6 @@ bool isOfOneNode(const SampleSender* a, const SampleSender* b);
 /// Of its sender; without one, that which its values suggest.
 std::string topicOf(const InputSample& sample);
 
-/// Whether a joint slides [m] or turns [rad]; the inputs of a tool have fixed kinds.
-constexpr bool isPrismatic(int joint) {
-  return joint == Insertion || joint == HelixAdvance || joint == NeedleDriver;
-}
-
 /// Which stamps a message of an input may have, compared with the simulator's time at its arrival. A node whose clock
 /// is wrong is told so; its messages neither wait nor count.
 struct InputWindow {

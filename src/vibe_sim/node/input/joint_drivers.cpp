@@ -1,5 +1,7 @@
 #include "input/joint_drivers.hpp"
 
+#include "vibe_core/input/joint_unit.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>

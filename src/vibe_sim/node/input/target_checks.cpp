@@ -1,8 +1,8 @@
 #include "input/target_checks.hpp"
 
-#include <cmath>
-#include <cstdarg>
-#include <cstdio>
+#include "vibe_core/files/number_text.hpp"
+#include "vibe_core/input/joint_unit.hpp"
+
 #include <vector>
 
 namespace vibe::sim {
@@ -10,15 +10,6 @@ namespace {
 
 constexpr double kFarthest = 3;       // times what there is
 constexpr double kBeyondLimit = 0.1;  // of the range of a joint
-
-__attribute__((format(printf, 1, 2))) std::string print(const char* format, ...) {
-  char text[400];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
 
 /// Distance of the tip from the root link with the scope straight and all the way in [m].
 double reachOf(const Model& model) {
@@ -35,7 +26,7 @@ std::string refusalOfPlace(const InputSample& sample, const Model& model) {
                                     : sample.tip_pose.translation();
   const double reach = reachOf(model);
   if (place.norm() <= kFarthest * reach) return "";
-  return print(
+  return formatted(
       "%s asks for a place %.3g m from the base of the scope, which reaches %.2g m, and is ignored; the place may be "
       "in millimetres or in another frame: give metres in world or scope_base.",
       topicOf(sample).c_str(), place.norm(), reach);
@@ -45,11 +36,11 @@ std::string refusalOfVelocity(const InputSample& sample, const Model& model) {
   const double linear = sample.tip_twist.head<3>().norm(), most = kFarthest * reachOf(model);
   const double angular = sample.tip_twist.tail<3>().norm(), turn = kFarthest * model.tool->limits()[Rotation].velocity;
   if (linear > most)
-    return print("%s asks for %.3g m/s, more than %.2g m/s, and is ignored; it may be in millimetres: give m/s.",
-                 topicOf(sample).c_str(), linear, most);
+    return formatted("%s asks for %.3g m/s, more than %.2g m/s, and is ignored; it may be in millimetres: give m/s.",
+                     topicOf(sample).c_str(), linear, most);
   if (angular > turn)
-    return print("%s asks for %.3g rad/s, more than %.2g rad/s, and is ignored; it may be in degrees: give rad/s.",
-                 topicOf(sample).c_str(), angular, turn);
+    return formatted("%s asks for %.3g rad/s, more than %.2g rad/s, and is ignored; it may be in degrees: give rad/s.",
+                     topicOf(sample).c_str(), angular, turn);
   return "";
 }
 
@@ -61,7 +52,7 @@ std::string refusalOfPull(const InputSample& sample, const Model& model) {
   const double far =
       (sample.pull_target - model.organ.surface.vertices[static_cast<std::size_t>(sample.pull_particle)]).norm();
   if (far <= kFarthest * size) return "";
-  return print(
+  return formatted(
       "tissue/pull asks for a target %.3g m from its particle, in an organ of %.2g m, and is ignored; the target may "
       "be in millimetres: give metres in world.",
       far, size);
@@ -86,11 +77,10 @@ std::string beyondLimits(const InputSample& sample, const Model& model) {
     const JointLimits& limit = model.tool->limits()[i];
     const double slack = kBeyondLimit * (limit.upper - limit.lower), asked = sample.joints[i];
     if (asked >= limit.lower - slack && asked <= limit.upper + slack) continue;
-    const bool slides = isPrismatic(j);
-    return print(
+    return formatted(
         "%s asks for %s at %.3g %s, and it goes from %.3g to %.3g: it goes to its limit; the value may be in %s.",
-        topicOf(sample).c_str(), kJointNames[i], asked, slides ? "m" : "rad", limit.lower, limit.upper,
-        slides ? "millimetres: give metres" : "degrees: give radians");
+        topicOf(sample).c_str(), kJointNames[i], asked, jointUnit(j), limit.lower, limit.upper,
+        isPrismatic(j) ? "millimetres: give metres" : "degrees: give radians");
   }
   return "";
 }

@@ -8,6 +8,7 @@
 #include "replay/bag_filler.hpp"
 #include "replay/replay.hpp"
 #include "vibe_core/clocks/step_timer.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/metrics/session_report.hpp"
 #include "vibe_core/program/command_line.hpp"
 #include "vibe_core/program/error.hpp"
@@ -63,9 +64,7 @@ void check(const Options& o) {
 }
 
 std::string seconds(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f s", value);
-  return text;
+  return formatted("%.2f s", value);
 }
 
 int reportDifference(const ReplayDifference& d, std::uint64_t same) {

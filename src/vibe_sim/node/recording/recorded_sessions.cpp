@@ -1,7 +1,6 @@
 #include "recording/recorded_sessions.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <deque>
 #include <tuple>
 #include <utility>
@@ -12,6 +11,7 @@
 #include <vibe_msgs/StepInput.h>
 
 #include "conversions/conversions.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::sim {
@@ -205,9 +205,7 @@ std::string RecordedSession::nameSpace() const {
 
 std::string RecordedSession::idText() const {
   if (id == 0) return "-";
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(id));
-  return text;
+  return formatted("%016llx", static_cast<unsigned long long>(id));
 }
 
 std::unique_ptr<rosbag::View> viewOf(const Bags& bags,

@@ -1,7 +1,6 @@
 #include "simulator/phase_lock.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace vibe::sim {
 

@@ -1,11 +1,11 @@
 #include "simulator/run_statistics.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "conversions/conversions.hpp"
 #include "conversions/procedure_message.hpp"
 #include "conversions/session_message.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/metrics/session_report.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 
@@ -102,12 +102,10 @@ vibe_msgs::SolverStatistics RunStatistics::wholeMessage(const TimedSimulation& s
 
 std::string RunStatistics::progressLine(const TimedSimulation& simulation) const {
   const DurationHistogram& times = simulation.timer().cpu.window;
-  char line[160];
-  std::snprintf(line, sizeof line, "t = %7.2f s  %-12s  %5.2f x real time  solver p50 %5.2f ms  p99 %5.2f ms",
-                simulation.state().time, toolStateOf(simulation.state(), simulation.input()),
-                ratio(window_simulated_, steadyTime() - window_begin_), 1e3 * times.quantile(0.5),
-                1e3 * times.quantile(0.99));
-  return line;
+  return formatted("t = %7.2f s  %-12s  %5.2f x real time  solver p50 %5.2f ms  p99 %5.2f ms", simulation.state().time,
+                   toolStateOf(simulation.state(), simulation.input()),
+                   ratio(window_simulated_, steadyTime() - window_begin_), 1e3 * times.quantile(0.5),
+                   1e3 * times.quantile(0.99));
 }
 
 std::string RunStatistics::summary(const TimedSimulation& simulation) const {

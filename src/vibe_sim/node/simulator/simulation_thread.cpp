@@ -10,6 +10,7 @@
 #include "conversions/conversions.hpp"
 #include "conversions/session_message.hpp"
 #include "vibe_core/files/files.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_ros_utils/startup.hpp"
 #include "vibe_ros_utils/wall_clock.hpp"
 
@@ -275,9 +276,7 @@ void SimulationThread::reportLag(double lag) {
   const DurationRecord& cpu = simulation_.timer().cpu;
   const double longest = std::max(cpu.window.max(), last_longest_step_), period = simulation_.time().period();
   const double usual = cpu.all.quantile(0.5);
-  char sentence[400];
-  std::snprintf(
-      sentence, sizeof sentence,
+  const std::string sentence = formatted(
       "The simulation is %.2f s behind the wall clock and gives that time up: a step simulates %.1f ms and takes "
       "%.1f ms of processor time in the median, lately %.1f ms at most; %s.",
       lag, 1e3 * period, 1e3 * usual, 1e3 * longest, lagRemedy(usual, longest, period));

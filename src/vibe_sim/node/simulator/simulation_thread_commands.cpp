@@ -2,6 +2,7 @@
 
 #include "simulation/scene_source.hpp"
 #include "simulator/simulation_thread.hpp"
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
@@ -16,9 +17,7 @@ namespace {
 const Reply kShuttingDown{false, "The simulator is shutting down."};
 
 std::string seconds(double time) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f s", time);
-  return text;
+  return formatted("%.3f s", time);
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <cstdio>
 
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
@@ -70,9 +70,8 @@ StraightLine roughLine(const std::vector<Eigen::Vector2d>& points) {
     }
   }
   if (longest >= kShortestPath) return best;
-  char text[40];
-  std::snprintf(text, sizeof text, "%.1f", longest);
-  throw Error(std::string("the marker moved by ") + text + " px only; move the instrument over its whole range");
+  throw Error(std::string("the marker moved by ") + formatted("%.1f", longest) +
+              " px only; move the instrument over its whole range");
 }
 
 }  // namespace

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
 #include <vector>
 
 #include <Eigen/Dense>
+
+#include "vibe_core/files/number_text.hpp"
 
 namespace vibe::vision {
 
@@ -65,9 +66,7 @@ inline std::string listOf(const std::vector<std::string>& words) {
 }
 
 inline std::string withDecimals(double value, int decimals) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
+  return formatted("%.*f", decimals, value);
 }
 
 }  // namespace vibe::vision

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "vibe_core/files/csv_row.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
@@ -11,13 +12,6 @@ namespace vibe::vision {
 namespace {
 
 constexpr double kLargestSlide = 1;  // [m]
-
-std::string trimmed(const std::string& text) {
-  const char* const kSpaces = " \t\r\n";
-  const std::size_t begin = text.find_first_not_of(kSpaces);
-  if (begin == std::string::npos) return "";
-  return text.substr(begin, text.find_last_not_of(kSpaces) - begin + 1);
-}
 
 }  // namespace
 
@@ -28,7 +22,7 @@ std::vector<StopImage> parseStopList(const std::string& text, const std::string&
   std::string line;
   bool header = false;
   for (int number = 1; std::getline(stream, line); ++number) {
-    line = trimmed(line);
+    line = std::string(trimmed(line));
     if (line.empty() || line[0] == '#') continue;
     const std::size_t comma = line.rfind(',');
     const YamlField field{"slide", "slide", number,
@@ -40,7 +34,7 @@ std::vector<StopImage> parseStopList(const std::string& text, const std::string&
       header = true;
       continue;
     }
-    const std::string image = comma == std::string::npos ? "" : trimmed(line.substr(0, comma));
+    const std::string image(comma == std::string::npos ? "" : trimmed(line.substr(0, comma)));
     if (image.empty()) quantities.fail(field, "is not an image and a slide; write for example stop_05.png,5 mm");
     const double slide = quantities.quantity(field, "m", -kLargestSlide, kLargestSlide);
     stops.push_back({(std::filesystem::path(place).parent_path() / image).string(), slide, number});

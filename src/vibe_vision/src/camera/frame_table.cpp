@@ -2,24 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 
+#include "vibe_core/files/csv_row.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
 namespace {
 
 constexpr double kMaxSequence = 9e15;  // integers that a double holds
-
-std::vector<std::string> cells(const std::string& line) {
-  std::vector<std::string> all(1);
-  for (const char c : line) {
-    if (c == ',') all.emplace_back();
-    if (c != ',' && c != ' ' && c != '\t' && c != '\r' && c != '#') all.back() += c;
-  }
-  return all;
-}
 
 /// A line below the first one, which names the columns.
 struct Line {
@@ -31,9 +22,8 @@ struct Line {
     const auto column = std::find(names.begin(), names.end(), name);
     if (column == names.end()) return otherwise;
     const std::string& text = values[static_cast<std::size_t>(column - names.begin())];
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    if (text.empty() || *end != '\0' || !std::isfinite(value) || value < 0)
+    const double value = numberOf(text).value_or(-1);
+    if (!std::isfinite(value) || value < 0)
       throw Error(place + name + " is \"" + text + "\"; it must be a number of seconds, 0 or more.");
     if (name == "sequence" && (value != std::floor(value) || value >= kMaxSequence))
       throw Error(place + name + " is \"" + text + "\"; it must be a whole number.");
@@ -57,16 +47,17 @@ FrameTable FrameTable::load(const std::string& file, double exposure) {
   if (!stream) throw Error(file + ": cannot be read; check that it exists and its permissions.");
   std::string line;
   std::getline(stream, line);
-  const std::vector<std::string> names = cells(line);
+  line.erase(std::remove(line.begin(), line.end(), '#'), line.end());  // before the names, as many programs write
+  const std::vector<std::string> names = cellsOf(line);
   if (std::find(names.begin(), names.end(), "stamp") == names.end())
     throw Error(file +
                 ":1: no column is called stamp; the first line must name the columns, such as "
                 "\"sequence,stamp,exposure\".");
   FrameTable table{{}, file};
   for (int number = 2; std::getline(stream, line); ++number) {
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    if (trimmed(line).empty()) continue;
     const std::string place = file + ":" + std::to_string(number) + ": ";
-    const Row row = Line{names, place, cells(line)}.row(table.rows.size(), exposure);
+    const Row row = Line{names, place, cellsOf(line)}.row(table.rows.size(), exposure);
     if (!table.rows.empty() && row.stamp <= table.rows.back().stamp)
       throw Error(place + "stamp does not increase; sort the lines by time.");
     if (!table.rows.empty() && row.sequence <= table.rows.back().sequence)

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
+
+#include "vibe_core/files/number_text.hpp"
 
 namespace vibe::vision {
 
@@ -84,9 +85,7 @@ bool isReadable(PixelFormat format) {
 
 std::string nameOf(PixelFormat format) {
   if (const Format* known = find(format)) return known->name;
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "0x%08X", static_cast<unsigned>(format));
-  return text.data();
+  return formatted("0x%08X", static_cast<unsigned>(format));
 }
 
 std::string readableFormats() {

@@ -5,7 +5,6 @@
 #include <fcntl.h>
 #include <linux/videodev2.h>
 #include <sys/ioctl.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <opencv2/videoio.hpp>
@@ -20,12 +19,6 @@ namespace {
 
 constexpr double kPlausible = 10;  // between a kernel stamp and its arrival [s]
 constexpr double kTooLate = 1e-3;  // by which the two clocks may be read at different moments [s]
-
-double clockTime(clockid_t clock) {
-  timespec now{};
-  ::clock_gettime(clock, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 std::string lettersOf(int fourcc) {
   std::string text;
@@ -179,7 +172,7 @@ std::string v4l2Obstacle(const std::string& device) {
 }
 
 double unixFromMonotonic(double monotonic) {
-  return monotonic + clockTime(CLOCK_REALTIME) - clockTime(CLOCK_MONOTONIC);
+  return monotonic + hostTime() - steadyTime();
 }
 
 PixelFormat v4l2Format(int fourcc) {

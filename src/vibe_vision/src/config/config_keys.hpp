@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "vibe_core/scene/words.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
 namespace vibe::vision {
@@ -28,22 +27,15 @@ inline ConfigKey required(ConfigKey key) {
 /// Reads a map in the order of the file. @return its fields
 /// @throws Error "file:line: key: what is wrong; remedy", also for a key that is not in the table, or missing
 inline std::vector<YamlField> readMap(const YamlSource& source, const YamlField& field, const ConfigKeys& keys) {
-  std::vector<YamlField> fields = source.map(field);
-  for (const YamlField& entry : fields) {
-    std::vector<std::string> names;
-    for (const ConfigKey& key : keys) names.push_back(key.name);
-    if (std::find(names.begin(), names.end(), entry.key) == names.end())
-      source.fail(entry, "is not a known key; " + suggestKey(entry.key, names));
-  }
+  std::vector<std::string> known, required;
   for (const ConfigKey& key : keys) {
-    const auto is_it = [&key](const YamlField& entry) { return entry.key == key.name; };
-    if (key.required && std::none_of(fields.begin(), fields.end(), is_it))
-      source.fail(field, "lacks the key '" + key.name + "'; add it below");
+    known.push_back(key.name);
+    if (key.required) required.push_back(key.name);
   }
+  std::vector<YamlField> fields = source.map(field, known, required);
   for (const YamlField& entry : fields)
-    std::find_if(keys.begin(), keys.end(), [&entry](const ConfigKey& key) {
-      return key.name == entry.key;
-    })->read(source, entry);
+    keys[static_cast<std::size_t>(std::find(known.begin(), known.end(), entry.key) - known.begin())].read(source,
+                                                                                                          entry);
   return fields;
 }
 

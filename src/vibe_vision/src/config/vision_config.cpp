@@ -6,6 +6,7 @@
 #include "config/config_keys.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/program/error.hpp"
+#include "vibe_core/scene/words.hpp"
 
 namespace vibe::vision {
 

@@ -1,8 +1,9 @@
 #include "vibe_vision/record/annotation.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <opencv2/imgproc.hpp>
+
+#include "vibe_core/files/number_text.hpp"
 
 namespace vibe::vision {
 namespace {
@@ -61,12 +62,9 @@ void drawCross(const Eigen::Vector2d& pixel, const Eigen::Vector2d& direction, c
 
 std::string describe(const std::string& name, const Measurement& m) {
   if (!m.tracked()) return name + ": lost, " + toText(m.reason);
-  char text[120];
-  std::snprintf(text, sizeof text, ": %.3f mm", 1e3 * m.slide);
-  std::string line = name + text;
+  std::string line = name + formatted(": %.3f mm", 1e3 * m.slide);
   if (!std::isfinite(m.rotation)) return line;
-  std::snprintf(text, sizeof text, ", %.1f deg", m.rotation * 180 / M_PI);
-  return line + text;
+  return line + formatted(", %.1f deg", m.rotation * 180 / M_PI);
 }
 
 }  // namespace

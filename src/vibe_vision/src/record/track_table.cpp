@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cinttypes>
 #include <cmath>
-#include <cstdio>
 
+#include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::vision {
@@ -25,9 +25,7 @@ std::string field(const std::string& text) {
 /// Enough digits for 1e-9 m; empty for what is not known.
 std::string number(double value) {
   if (!std::isfinite(value)) return "";
-  char text[40];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
+  return formatted("%.10g", value);
 }
 
 std::string rowOf(const Measurement& m) {
@@ -56,8 +54,7 @@ TrackTable::TrackTable(const std::string& file, const VisionConfig& config)
 }
 
 void TrackTable::add(const Frame& frame, const Measurements& measurements) {
-  char stamp[40];
-  std::snprintf(stamp, sizeof stamp, "%.9f", frame.stamp);
+  const std::string stamp = formatted("%.9f", frame.stamp);
   for (std::size_t i = 0; i < measurements.size(); ++i) {
     out_ << frame.sequence << "," << stamp << "," << names_.at(i) << "," << rowOf(measurements[i]) << "\n";
   }
@@ -92,17 +89,12 @@ void TrackSummary::add(const Measurements& measurements, double seconds) {
 
 std::string TrackSummary::text() const {
   std::string text;
-  char line[200];
   for (const Instrument& instrument : instruments_) {
-    std::snprintf(line, sizeof line,
-                  "%s: tracked in %" PRIu64 " of %" PRIu64 " frames, %.2f %%; found anew %" PRIu64 " times\n",
-                  instrument.name.substr(0, 60).c_str(), instrument.tracked, frames(),
-                  percent(instrument.tracked, frames()), instrument.reacquired);
-    text += line;
+    text += formatted("%s: tracked in %" PRIu64 " of %" PRIu64 " frames, %.2f %%; found anew %" PRIu64 " times\n",
+                      instrument.name.substr(0, 60).c_str(), instrument.tracked, frames(),
+                      percent(instrument.tracked, frames()), instrument.reacquired);
     for (const auto& [reason, count] : instrument.lost) {
-      std::snprintf(line, sizeof line, "  lost in %" PRIu64 " frames, %.2f %%: %s\n", count, percent(count, frames()),
-                    toText(reason));
-      text += line;
+      text += formatted("  lost in %" PRIu64 " frames, %.2f %%: %s\n", count, percent(count, frames()), toText(reason));
     }
     for (const auto& [doubt, count] : instrument.doubtful)
       text += "  doubtful in " + std::to_string(count) + " frames: " + toText(doubt) + "\n";
@@ -110,9 +102,8 @@ std::string TrackSummary::text() const {
   if (seconds_.empty()) return text;
   std::vector<double> sorted = seconds_;
   std::sort(sorted.begin(), sorted.end());
-  std::snprintf(line, sizeof line, "time per frame, one thread: %.3f ms median, %.3f ms p99, %.3f ms max\n",
-                1e3 * sorted[sorted.size() / 2], 1e3 * sorted[sorted.size() * 99 / 100], 1e3 * sorted.back());
-  return text + line;
+  return text + formatted("time per frame, one thread: %.3f ms median, %.3f ms p99, %.3f ms max\n",
+                          1e3 * sorted[sorted.size() / 2], 1e3 * sorted[sorted.size() * 99 / 100], 1e3 * sorted.back());
 }
 
 }  // namespace vibe::vision

@@ -1,8 +1,7 @@
 #include "sheet/guide_steps.hpp"
 
-#include <cstdio>
-
 #include "calibrate/fitting.hpp"
+#include "vibe_core/files/number_text.hpp"
 
 namespace vibe::vision {
 namespace {
@@ -39,8 +38,7 @@ std::vector<GuideStep> guideSteps(const SheetOptions& options, const std::vector
   const std::string& rig = options.config_file;
   const std::string last = numbered(rig, instruments.size() + 1);
   const BoardSpec& board = options.board_spec;
-  char squares[64];
-  std::snprintf(squares, sizeof squares, " --board %dx%d --square %gmm", board.columns, board.rows, 1e3 * board.square);
+  const std::string squares = formatted(" --board %dx%d --square %gmm", board.columns, board.rows, 1e3 * board.square);
   return {
       {"Print and glue.",
        "Print all pages at 100 % on matt paper. A sleeve goes around its rod, its arrow to positive slide; a flat "

@@ -16,4 +16,7 @@ std::from_chars_result readReal(const char* begin, const char* end, double& valu
 /// none for double, one of the same digits in another form.
 std::string shortestText(double value);
 
+/// What std::printf would print, as a text of any length.
+[[gnu::format(printf, 1, 2)]] std::string formatted(const char* pattern, ...);
+
 }  // namespace vibe

@@ -78,7 +78,4 @@ PadMapping loadPadMapping(const std::string& file, const ToolLimits& limits);
 /// The same from text. @param place  name used in errors
 PadMapping parsePadMapping(const std::string& text, const std::string& place, const ToolLimits& limits);
 
-/// "m" or "rad".
-const char* jointUnit(int joint);
-
 }  // namespace vibe::hardware

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""Writes vibe/_core.pyi from the signatures and docstrings of the module that is built, or compares it (--check)."""
+"""Usage: make_stubs.py MODULE FILE
+Writes vibe/_core.pyi from the signatures and docstrings of a module that is built; the build does it."""
 
-import argparse
+import importlib.util
 import inspect
+import os
 import re
 import sys
 
-HEAD = '''# Made by scripts/make_stubs.py of vibe_python from the module; do not edit.
+HEAD = '''# Made by make_stubs.py of vibe_python from the module; do not edit.
 from typing import Any, Optional
 from numpy import ndarray
 '''
@@ -88,20 +90,14 @@ def stubs(module):
     return "\n".join(lines) + "\n"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("file", help="vibe/_core.pyi")
-    parser.add_argument("--check", action="store_true", help="compare only; status 1 if the file is not up to date")
-    options = parser.parse_args()
-    import vibe._core
-
-    made = stubs(vibe._core)
-    if options.check:
-        with open(options.file, encoding="utf-8") as file:
-            sys.exit(0 if file.read() == made else f"{options.file} is not that of the module; run make_stubs.py")
-    with open(options.file, "w", encoding="utf-8") as file:
-        file.write(made)
+def main(module, file):
+    spec = importlib.util.spec_from_file_location("vibe._core", module)  # without what vibe imports besides
+    core = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(core)
+    with open(file + ".part", "w", encoding="utf-8") as out:
+        out.write(stubs(core))
+    os.replace(file + ".part", file)
 
 
 if __name__ == "__main__":
-    main()
+    main(*sys.argv[1:])
