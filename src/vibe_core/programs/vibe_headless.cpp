@@ -13,7 +13,6 @@
 #include <string>
 #include <utility>
 
-#include "vibe_core/builder/scope_fit.hpp"
 #include "vibe_core/clocks/step_timer.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/files/number_text.hpp"
@@ -217,8 +216,7 @@ void run(const Options& o) {
   const std::optional<Protocol> protocol = loadProtocol(o);
   const std::shared_ptr<const Model> model = load(o);
   const std::unique_ptr<Trainee> trainee = protocol ? makeTrainee(o, *protocol, model) : nullptr;
-  for (const std::string& warning : {softnessWarning(*model), fitWarning(*model)})
-    if (!warning.empty()) std::fprintf(stderr, "%s\n", warning.c_str());
+  for (const std::string& warning : warningsAbout(*model)) std::fprintf(stderr, "%s\n", warning.c_str());
   const double duration = durationOf(o, script.get(), trainee.get());
   const std::unique_ptr<SessionCsv> csv = o.csv.empty() ? nullptr : std::make_unique<SessionCsv>(o.csv);
   const auto inputs = inputTable(o.inputs), contacts = contactTable(o.contacts);

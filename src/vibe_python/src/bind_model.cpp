@@ -51,6 +51,14 @@ ModelHandle build(const std::string& address, const std::string& overrides, cons
   return handle;
 }
 
+ModelHandle buildAndWarn(const std::string& address, const std::string& overrides, const std::string& mesh) {
+  constexpr int kCallerOfLoad = 2;
+  ModelHandle handle = build(address, overrides, mesh);
+  for (const std::string& warning : warningsAbout(*handle.model))
+    if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), kCallerOfLoad) != 0) throw py::error_already_set();
+  return handle;
+}
+
 py::array triangles(const ModelHandle& handle) {
   const auto& list = handle.model->organ.surface.triangles;
   return view(list.empty() ? nullptr : list.front().data(), {static_cast<py::ssize_t>(list.size()), 3}, handle.model);
@@ -157,7 +165,7 @@ void bindModel(py::module_& module) {
       .def("__repr__", [](const ModelHandle& m) {
         return "<vibe.Model '" + m.model->scene.name + "', " + std::to_string(m.model->particle_count) + " particles>";
       });
-  module.def("build_model", &build, py::arg("scene"), py::arg("overrides"), py::arg("mesh"),
+  module.def("build_model", &buildAndWarn, py::arg("scene"), py::arg("overrides"), py::arg("mesh"),
              "The model of a scene file. overrides: a JSON object on top of it, or empty; mesh: a surface file, or "
              "empty. vibe.load() is the friendlier way.");
 }

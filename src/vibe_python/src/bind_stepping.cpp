@@ -44,7 +44,7 @@ void repeat(const Step& step) {
 
 std::vector<Event> step(SimulationHandle& handle, const py::kwargs& keywords) {
   const Use use(handle);
-  const StepInput input = changedInput(use->simulation.input(), keywords, use.model().particle_count);
+  const StepInput input = changedInput(use->simulation.input(), keywords, use.model());
   use->events.clear();
   {
     const Unlocked others;
@@ -56,7 +56,7 @@ std::vector<Event> step(SimulationHandle& handle, const py::kwargs& keywords) {
 std::vector<Event> run(SimulationHandle& handle, std::int64_t steps, const py::kwargs& keywords) {
   if (steps < 0) throw Error("'steps' is negative; give how many steps are to be taken.");
   const Use use(handle);
-  const StepInput input = changedInput(use->simulation.input(), keywords, use.model().particle_count);
+  const StepInput input = changedInput(use->simulation.input(), keywords, use.model());
   use->events.clear();
   repeat([&] {
     if (steps-- <= 0) return false;

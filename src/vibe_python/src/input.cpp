@@ -5,6 +5,7 @@
 #include <string>
 
 #include "arrays.hpp"
+#include "vibe_core/constraints/breathing.hpp"
 #include "vibe_core/program/error.hpp"
 
 namespace vibe::python {
@@ -16,7 +17,7 @@ const char* const kInputHelp =
     "  apc_pedal, helix_grab, needle, t_tag, cinch, insufflate: buttons, True while pressed\n"
     "  joints (7,), buttons (6,): all of them, in the order of vibe.JOINTS and vibe.BUTTONS\n"
     "  pull=(particle, target (3,) [m]): the spring that pulls the tissue from outside; None: it lets go\n"
-    "  hold_breath: True while the breath is held\n";
+    "  hold_breath: True while the breath is held, in a scene that breathes\n";
 
 namespace {
 
@@ -60,6 +61,12 @@ void setPull(const py::handle& value, int particles, StepInput& input) {
   input.pull_target = vector3(pair[1], "pull[1]");
 }
 
+void setBreath(bool held, const Scene& scene, StepInput& input) {
+  const std::string refusal = held ? breathRefusal(scene) : "";
+  if (!refusal.empty()) throw Error(refusal);
+  input.breath = held ? Breath::Held : Breath::Free;
+}
+
 std::string allWords() {
   std::string words;
   for (const char* name : kJointNames) words += std::string(name) + ", ";
@@ -69,7 +76,7 @@ std::string allWords() {
 
 }  // namespace
 
-StepInput changedInput(StepInput input, const py::kwargs& keywords, int particles) {
+StepInput changedInput(StepInput input, const py::kwargs& keywords, const Model& model) {
   for (const auto& [key, value] : keywords) {
     const std::string word = py::cast<std::string>(key);
     const int joint = indexOf(kJointNames, word), button = indexOf(kButtonNames, word);
@@ -82,9 +89,9 @@ StepInput changedInput(StepInput input, const py::kwargs& keywords, int particle
     else if (word == "buttons")
       setButtons(value, input);
     else if (word == "pull")
-      setPull(value, particles, input);
+      setPull(value, model.particle_count, input);
     else if (word == "hold_breath")
-      input.breath = pressed(value, word) != 0 ? Breath::Held : Breath::Free;
+      setBreath(pressed(value, word) != 0, model.scene, input);
     else
       throw Error("There is no input '" + word + "'; use one of " + allWords() + ".");
   }

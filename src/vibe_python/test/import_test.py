@@ -23,6 +23,7 @@ from label_maps import DUODENUM, LIVER, OESOPHAGUS, SPLEEN, STOMACH
 from scipy import ndimage
 from scipy.spatial import cKDTree
 from vibe.patient import importing, mesh
+from vibe.patient.label_map import LabelMap
 
 SPACING = 3.0
 whole = functools.lru_cache(maxsize=None)(label_maps.label_map)
@@ -249,6 +250,36 @@ class ImportTest(unittest.TestCase):
         self.refused("stomachs hold 0.1 to 3 L", "spacing is lost")
         label_maps.save(self.path, data[::12, ::12, ::12], frame @ np.diag([12, 12, 12, 1]))
         self.refused("voxels wide")
+
+    def test_forms_that_differ_and_axes_that_are_slanted(self):
+        data, frame = organ()
+
+        def with_qform(moved=(0, 0, 0), turn=0.0):
+            image, other = nibabel.Nifti1Image(data, frame), frame.copy()
+            other[:3, :3] = label_maps.affine(1, (0, 0, turn))[:3, :3] @ frame[:3, :3]
+            other[:3, 3] += moved
+            image.header.set_xyzt_units("mm")
+            image.set_sform(frame, 1)
+            image.set_qform(other, 1)
+            nibabel.save(image, self.path)
+
+        far = SPACING * np.array([data.shape])
+        for moved, turn, differ in (((0, 0, 0), 0, False), ((0.4 * SPACING, 0, 0), 0, False), ((0, -1.5 * SPACING, 0), 0, True),
+                                    ((100, 50, -80), 0, True), ((0, 0, 0), 0.3 * SPACING / np.linalg.norm(far), False),
+                                    ((0, 0, 0), 3 * SPACING / np.linalg.norm(far[0, :2]), True)):
+            with_qform(moved, turn)
+            self.assertEqual([d[:40] for d in LabelMap(self.path).doubts], ["qform and sform of the header differ by "] * differ, (moved, turn))
+        with_qform((100, 50, -80))
+        self.taken("differ by up to 137 mm")
+        for slant in (0, 1, 20, -40):
+            slanted = frame @ np.array([[1, 0, 0, 0], [0, 1, np.tan(np.radians(slant)), 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+            image = nibabel.Nifti1Image(data, None)
+            image.header.set_xyzt_units("mm")
+            image.set_sform(slanted, 1)
+            image.header["pixdim"][1:4] = np.linalg.norm(slanted[:3, :3], axis=0)
+            nibabel.save(image, self.path)
+            self.assertEqual([d[:50] for d in LabelMap(self.path).doubts],
+                             [f"The axes of the voxels are {abs(slant)} degrees off a right "] * (abs(slant) > 2), slant)
 
     def test_a_header_that_contradicts_itself(self):
         data, frame = organ()

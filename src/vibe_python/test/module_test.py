@@ -13,6 +13,7 @@ import sys
 import tempfile
 import threading
 import unittest
+import warnings
 
 import numpy as np
 
@@ -274,6 +275,25 @@ class RefusalTest(Worlds):
         self.refused("holds one simulation twice", vibe.observe_all, [simulation, simulation])
         self.refused("'steps' is negative", simulation.run, -1)
         self.assertEqual(simulation.hash(), hashed)
+
+    def test_a_breath_is_held_where_there_is_one(self):
+        still, breathing = (vibe.Simulation(vibe.load(geometry={"particles": 100}, breathing=section)) for section in (None, {}))
+        before = still.hash()
+        self.refused("The scene 'stomach' does not breathe; load one with a section motion or breathing.", still.step, hold_breath=True)
+        self.assertEqual(still.hash(), before)
+        still.step(**still.input)  # control: not to hold it is right everywhere
+        breathing.step(hold_breath=True)
+        self.assertTrue(breathing.input["hold_breath"])
+
+    def test_a_gravity_that_does_not_act_is_a_warning(self):
+        left = {"geometry": {"particles": 100}, "gravity": {"acceleration": [0, 9.81, 0]}}
+        with self.assertWarnsRegex(UserWarning, "set foundation.carries_weight: false") as caught:
+            vibe.load(**left)
+        self.assertEqual(os.path.basename(caught.filename), os.path.basename(__file__))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            vibe.load(foundation={"carries_weight": False}, **left)
+            vibe.load()
 
     def test_scenes(self):
         self.refused("did you mean 'particles'", vibe.load, geometry={"particle": 300})

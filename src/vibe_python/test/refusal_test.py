@@ -82,7 +82,7 @@ class Sweep:
         self.calls = self.refused = 0
         os.chdir(folder)  # a wrong name of a file may be a right one
         os.environ.pop("DISPLAY", None)
-        self.model = vibe.load(geometry={"particles": 300}, render_surface=False)
+        self.model = vibe.load(geometry={"particles": 300}, breathing={}, render_surface=False)
         self.simulation = vibe.Simulation(self.model)
         self.simulation.step()
         self.anatomy = vibe.Anatomy(self.simulation)

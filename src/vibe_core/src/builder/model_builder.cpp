@@ -1,13 +1,16 @@
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "arithmetic/turn.hpp"
 #include "constraints/supports.hpp"
 #include "geometry/regions.hpp"
 #include "tissue/cluster_builder.hpp"
 #include "vibe_core/builder/model_builder.hpp"
+#include "vibe_core/builder/scope_fit.hpp"
 #include "vibe_core/builder/tissue_registry.hpp"
 #include "vibe_core/constraints/gas.hpp"
 #include "vibe_core/files/number_text.hpp"
@@ -147,6 +150,21 @@ std::string softnessWarning(const Model& model) {
       "The wall has only %.0f %% of its stiffness in places; raise tissue.substeps from %d to %.0f, or lower "
       "tissue.stiffness_damping.",
       100 * ratio, model.substeps, std::ceil(model.substeps / std::sqrt(ratio)));
+}
+
+std::string weightWarning(const Model& model) {
+  const Scene& scene = model.scene;
+  const bool stated = scene.gravity && scene.gravity->acceleration != GravityScene().acceleration;
+  if (!stated || !scene.foundation || !scene.foundation->carries_weight) return "";
+  return "The stated gravity.acceleration does not act on the wall, because the foundation carries the weight whatever "
+         "its direction; set foundation.carries_weight: false.";
+}
+
+std::vector<std::string> warningsAbout(const Model& model) {
+  std::vector<std::string> warnings;
+  for (std::string& warning : std::array{softnessWarning(model), fitWarning(model), weightWarning(model)})
+    if (!warning.empty()) warnings.push_back(std::move(warning));
+  return warnings;
 }
 
 State initialState(const Model& model, std::uint64_t seed) {

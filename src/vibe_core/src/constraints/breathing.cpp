@@ -37,6 +37,11 @@ Eigen::Vector3d breathingSpeed(const BreathingScene& breathing, double time) {
   return {0, 0, -0.5 * breathing.amplitude * at.slope * math::sin(at.angle)};
 }
 
+std::string breathRefusal(const Scene& scene) {
+  if (breathingOf(scene)) return "";
+  return "The scene '" + scene.name + "' does not breathe; load one with a section motion or breathing.";
+}
+
 OrganPhases organPhases(const Scene& scene, const State& state) {
   const auto phase = [](double turns) { return turns - std::floor(turns); };
   OrganPhases at;

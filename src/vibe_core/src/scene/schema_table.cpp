@@ -185,12 +185,15 @@ std::vector<SchemaRow> environmentRows() {
       {"gas.insufflator_on", [](Scene& s) -> bool& { return s.gas->insufflator_on; }, "", 0, 0,
        "insufflator is on at the start", kChoice},
       {"gravity.acceleration", [](Scene& s) -> Eigen::Vector3d& { return s.gravity->acceleration; }, "m/s^2", -100, 100,
-       "gravitational acceleration; x is anterior, so the default is a patient lying on the back",
+       "gravitational acceleration; x is anterior, so the default is a patient lying on the back; acts on the wall "
+       "where "
+       "`foundation.carries_weight` is false",
        "standard gravity, rounded"},
       {"foundation.stiffness", [](Scene& s) -> double& { return s.foundation->stiffness; }, "Pa/m", 0, 1e7,
        "stiffness of the neighbouring organs per area of the wall", kChoice},
       {"foundation.carries_weight", [](Scene& s) -> bool& { return s.foundation->carries_weight; }, "", 0, 0,
-       "the foundation balances the weight, so that the organ is at rest in its given shape", kChoice},
+       "the foundation balances the weight, whatever its direction, so that the organ is at rest in its given shape",
+       kChoice},
       {"breathing.rate", [](Scene& s) -> double& { return s.breathing->rate; }, "1/s", 0.01, 2, "breaths",
        "16 per minute, the middle of the 12 to 20 of adults at rest"},
       {"breathing.amplitude", [](Scene& s) -> double& { return s.breathing->amplitude; }, "m", 0, 0.05,

@@ -144,6 +144,7 @@ def load(scene=DEFAULT_SCENE, *, mesh=None, **sections):
               load(geometry={"particles": 1000}, gas={"regulated_pressure": "8 mmHg"}, seed=2); None takes a section away:
               load(gravity=None)
 
-    Takes 0.2 to 1 s, tens of seconds for a mesh; Ctrl+C ends it. Raises Error for an unknown key or a value outside of its range.
+    Takes 0.2 to 1 s, tens of seconds for a mesh; Ctrl+C ends it. Raises Error for an unknown key or a value outside of its range;
+    a UserWarning says what may not be meant, such as a gravity that does not act on the wall.
     """
     return _build_model(_file("scene", scene), _overrides(sections), "" if mesh is None else _file("mesh", mesh))

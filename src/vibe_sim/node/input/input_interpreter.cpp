@@ -76,6 +76,15 @@ std::string secondsText(std::int64_t ns) {
   return std::to_string(ns / 1'000'000'000) + " s";
 }
 
+/// Without a sender, nobody could be named.
+std::string overtakenSentence(const OvertakenSample& overtaken) {
+  const InputSample& sample = overtaken.sample;
+  if (sample.sender == nullptr) return "";
+  return "A message on " + sample.sender->topic + " from " + sample.sender->node + " is ignored: its stamp is " +
+         formatted("%.3g s", 1e-9 * static_cast<double>(overtaken.newest - sample.stamp)) +
+         " before that of one of the same node that is used already; send messages in the order of their stamps.";
+}
+
 /// @return a sentence if there was a pull
 std::string letGo(StepInput& input) {
   if (input.pull_particle < 0) return "";
@@ -126,24 +135,35 @@ std::vector<std::string> InputInterpreter::interpret(const DueInput& due, const 
   const auto say = [&sentences](std::string sentence) {
     if (!sentence.empty()) sentences.push_back(std::move(sentence));
   };
-  const Buttons before = input.buttons;
-  if (owed_) press(Buttons(*owed_), before, input);
+  for (const std::optional<OvertakenSample>& each : due.overtaken)
+    if (each) say(overtakenSentence(*each));
   for (const InputSample& sample : due.samples)
     if (sample.channel == InputChannel::Buttons)
-      press(sample.buttons, before, input);
+      press(sample.buttons, input.buttons);
     else
       say(applySample(sample, due, model, start, input));
+  changeButtons(input.buttons);
   applyMoves(due.stamp, input.joints);
   if (twist_ && model.tool) say(applyTwist(due, model, start, input.joints));
   if (due.isSilent(InputChannel::Pull, kPullTimeout)) say(letGo(input));
   return sentences;
 }
 
-void InputInterpreter::press(const Buttons& buttons, const Buttons& before, StepInput& input) {
-  for (std::size_t b = 0; b < buttons.size(); ++b)
-    if (buttons[b] != before[b]) input.buttons[b] = buttons[b];
-  owed_.reset();
-  if (buttons != input.buttons) owed_ = buttons;
+// Presses within a step become one, so that no button lags behind: of three changes, a pressed button still owes all.
+void InputInterpreter::press(const Buttons& buttons, const Buttons& now) {
+  for (std::size_t b = 0; b < buttons.size(); ++b) {
+    const bool last = (now[b] != 0) != (owed_[b] % 2 != 0);
+    const int most = now[b] != 0 ? 3 : 2;
+    if ((buttons[b] != 0) != last) owed_[b] = owed_[b] < most ? owed_[b] + 1 : most - 1;
+  }
+}
+
+void InputInterpreter::changeButtons(Buttons& buttons) {
+  for (std::size_t b = 0; b < buttons.size(); ++b) {
+    if (owed_[b] == 0) continue;
+    buttons[b] = buttons[b] != 0 ? 0 : 1;
+    --owed_[b];
+  }
 }
 
 std::string InputInterpreter::applySample(const InputSample& sample, const DueInput& due, const Model& model,

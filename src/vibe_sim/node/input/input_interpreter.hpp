@@ -63,7 +63,8 @@ class InputInterpreter {
   /// A move ends at its goal, when another sample for its joints is applied, or when the clock is set back; a velocity
   /// of the tip ends in the last two ways, and of itself: it fades in the last third of its life, which begins at the
   /// stamp of its sample.
-  /// A button changes once in a step: one that is pressed and let go within a step is pressed for a step.
+  /// A button changes once in a step: one that is pressed and let go within a step is pressed for a step, this one or
+  /// the next.
   /// @param hand  where the hand is, from where a move begins; empty: where `input` says
   /// @return one sentence per sample that the model cannot use, and one if a pull or a velocity has fallen silent
   std::vector<std::string> interpret(const DueInput& due, const Model& model, StepInput& input,
@@ -72,7 +73,7 @@ class InputInterpreter {
   /// Whether a move of the scope or of the suturing device is under way.
   bool moves(InputChannel channel) const { return moves_[static_cast<std::size_t>(channel)].has_value(); }
   /// Ends all moves where they are, because another state has taken over.
-  void endMoves() { moves_ = {}, twist_.reset(), drivers_ = {}, owed_.reset(); }
+  void endMoves() { moves_ = {}, twist_.reset(), drivers_ = {}, owed_ = {}; }
 
  private:
   using Buttons = std::array<std::uint8_t, kButtonCount>;
@@ -83,13 +84,14 @@ class InputInterpreter {
 
   std::int64_t velocity_life_;
   std::array<std::optional<JointMove>, kInputChannelCount> moves_;
-  std::array<JointDrivers, 2> drivers_;  // of the scope and of the suturing device
-  std::optional<Buttons> owed_;          // what buttons came to within a step in which they had changed already
-  std::optional<Twist> twist_;           // empty: scope_tip has no velocity of its own
+  std::array<JointDrivers, 2> drivers_;   // of the scope and of the suturing device
+  std::array<int, kButtonCount> owed_{};  // changes of a button that are to come, one a step
+  std::optional<Twist> twist_;            // empty: scope_tip has no velocity of its own
 
   std::string applySample(const InputSample& sample, const DueInput& due, const Model& model, const JointArray& hand,
                           StepInput& input);
-  void press(const Buttons& buttons, const Buttons& before, StepInput& input);
+  void press(const Buttons& buttons, const Buttons& now);
+  void changeButtons(Buttons& buttons);
   std::string beginMove(const InputSample& sample, std::int64_t stamp, const Model& model, const JointArray& hand);
   std::string beginTwist(const InputSample& sample, const DueInput& due, const Model& model);
   std::string applyTwist(const DueInput& due, const Model& model, const JointArray& hand, JointArray& joints);

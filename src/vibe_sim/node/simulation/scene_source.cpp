@@ -4,7 +4,6 @@
 
 #include <ros/console.h>
 
-#include "vibe_core/builder/scope_fit.hpp"
 #include "vibe_core/files/files.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulator.hpp"
@@ -28,8 +27,7 @@ SceneModel loadModel(const std::string& scene_address, const std::string& mesh_a
   const std::string guesses = mesh_address.empty() ? "" : useMesh(scene, resolveAddress(mesh_address));
   if (!guesses.empty()) ROS_WARN_STREAM(guesses);
   SceneModel made = build(scene, "");
-  for (const std::string& warning : {softnessWarning(*made.model), fitWarning(*made.model)})
-    if (!warning.empty()) ROS_WARN_STREAM(warning);
+  for (const std::string& warning : warningsAbout(*made.model)) ROS_WARN_STREAM(warning);
   return made;
 }
 

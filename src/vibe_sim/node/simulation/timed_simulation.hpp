@@ -33,6 +33,9 @@ class TimeLine {
 
   std::int64_t stamp(std::int64_t state_step) const { return stampOf(origin_, clockStep(state_step), period_); }
   std::int64_t clockStep(std::int64_t state_step) const { return state_step + shift_; }
+  /// Stamp of step 0 of the clock, which need not be that of the state [ns]. Stays while the period does and no
+  /// time is given up, so that who has read it finds every later stamp to the nanosecond; and step 0 of a loaded state
+  /// may lie before time 0.
   std::int64_t origin() const { return origin_; }
   double period() const { return period_; }
 

@@ -2,6 +2,7 @@
 
 #include "simulation/scene_source.hpp"
 #include "simulator/simulation_thread.hpp"
+#include "vibe_core/constraints/breathing.hpp"
 #include "vibe_core/files/number_text.hpp"
 #include "vibe_core/program/error.hpp"
 #include "vibe_core/simulation/simulator.hpp"
@@ -105,9 +106,8 @@ Reply SimulationThread::takeSteps(std::uint32_t n) {
 // A part of the input in force, so that applied_input has it and a replay repeats it.
 Reply SimulationThread::holdBreath(bool held) {
   return call([this, held]() -> Reply {
-    const Scene& scene = simulation_.model().scene;
-    if (!breathingOf(scene))
-      return {false, "The scene '" + scene.name + "' does not breathe; load one with a section motion or breathing."};
+    const std::string refusal = breathRefusal(simulation_.model().scene);
+    if (!refusal.empty()) return {false, refusal};
     StepInput input = simulation_.input();
     input.breath = held ? Breath::Held : Breath::Free;
     simulation_.setInput(input);

@@ -74,13 +74,16 @@ TEST_F(InputQueueTest, lastValueStaysInForce) {
   EXPECT_EQ(input.buttons[HelixGrab], 1);
 }
 
-TEST_F(InputQueueTest, stampZeroAndThePastCountAsNowInTheOrderOfArrival) {
+TEST_F(InputQueueTest, stampZeroAndThePastCountAsNow) {
   apply(500);
-  queue.push(scopeAt(0.1, 400));
-  queue.push(scopeAt(0.2, 0));
-  queue.push(scopeAt(0.3, 300));
+  queue.push(scopeAt(0.1, 300));
+  queue.push(scopeAt(0.2, 400));
   apply(501);
-  EXPECT_EQ(input.joints[Insertion], 0.3);
+  EXPECT_EQ(input.joints[Insertion], 0.2);
+  queue.push(scopeAt(0.3, 400));
+  queue.push(scopeAt(0.4, 0));
+  apply(502);
+  EXPECT_EQ(input.joints[Insertion], 0.4) << "without a stamp it is as new as can be";
 }
 
 TEST_F(InputQueueTest, samplesOutOfOrderAreAppliedInTheOrderOfStamps) {

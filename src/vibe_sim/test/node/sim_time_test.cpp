@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
+#include <cmath>
+#include <random>
 
 namespace vibe::sim::sim_time_test {
 namespace {
@@ -49,6 +50,30 @@ TEST(TimeLine, anotherPeriodStartsWhereTheOldOneEnds) {
   EXPECT_EQ(time.origin(), 2'000'000'000);
   EXPECT_EQ(time.stamp(10), 2'000'000'000);
   EXPECT_EQ(time.stamp(11), 2'020'000'000);
+}
+
+TEST(TimeLine, whoKnowsTheOriginFindsEveryStampAndStepAcrossReplacedStates) {
+  std::mt19937 random(1);
+  int elsewhere = 0;
+  for (const double period : {1.0 / 60, 1.0 / 90, 0.02}) {
+    TimeLine time(kEpoch, period);
+    const std::int64_t origin = time.origin();
+    std::int64_t step = 0;
+    for (int k = 0; k < 1000; ++k) {
+      const std::int64_t before = step + random() % 100;
+      step = random() % 2 == 0 ? 0 : random() % 100000;
+      const std::int64_t last = time.stamp(before);
+      time.continueWith(before, step, period);
+      const std::int64_t stamp = time.stamp(step), clock = stepAt(origin, stamp, period);
+      ASSERT_EQ(time.origin(), origin);
+      ASSERT_EQ(stamp, stampOf(origin, clock, period));
+      ASSERT_EQ(clock, stepAt(origin, last, period) + 1);
+      const std::int64_t later = time.stamp(step + 77);
+      ASSERT_EQ(step + std::llround(1e-9 * static_cast<double>(later - stamp) / period), step + 77);
+      elsewhere += clock != step;
+    }
+  }
+  EXPECT_GT(elsewhere, 2900) << "the state's steps have other numbers than the clock's";
 }
 
 TEST(TimeLine, shiftMovesEveryStamp) {

@@ -40,6 +40,7 @@ class VelocityLifeTest : public testing::Test {
   struct Run {
     std::int64_t last_effective = 0;  // latest time from which a message counts [ns]
     std::int64_t last_motion = 0;     // begin of the last step that moved a joint [ns]
+    std::int64_t newest = 0;          // stamp of a message [ns]
     std::int64_t step = 0;            // [ns]
     std::vector<std::string> sentences;
   };
@@ -74,6 +75,8 @@ class VelocityLifeTest : public testing::Test {
     sample.tip_twist << 0, 0, 1e-3, 0.01, 0, 0;
     if (!faultOf(sample.stamp, now, InputWindow::ofWallClock()).empty()) return;
     ASSERT_TRUE(queue.push(sample));
+    if (sample.stamp != 0 && sample.stamp < result.newest) return;  // overtaken by another
+    result.newest = std::max(result.newest, sample.stamp);
     result.last_effective = std::max({result.last_effective, now, sample.stamp});
   }
 };

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/model/model.hpp"
@@ -34,6 +35,13 @@ void finishModel(const std::string& tool_urdf, Model& model, const Progress& pro
 
 /// One sentence if the substeps are too long for the requested stiffness, otherwise empty.
 std::string softnessWarning(const Model& model);
+
+/// One sentence if the scene states a gravity that does not act on the wall, because the foundation carries the weight
+/// whatever its direction, otherwise empty. The default gravity needs none: the organ has its given shape under it.
+std::string weightWarning(const Model& model);
+
+/// What may not be meant in a scene: the sentences of softnessWarning(), fitWarning() and weightWarning().
+std::vector<std::string> warningsAbout(const Model& model);
 
 /// The state at time 0: rest shape, scope at the lower end of its range, gas at its initial pressure.
 State initialState(const Model& model, std::uint64_t seed);

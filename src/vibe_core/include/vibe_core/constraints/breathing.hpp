@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 
 #include "vibe_core/scene/scene.hpp"
 #include "vibe_core/state/state.hpp"
@@ -15,6 +16,9 @@ Eigen::Vector3d breathingShift(const BreathingScene& breathing, double time);
 
 /// Its rate of change [m/s].
 Eigen::Vector3d breathingSpeed(const BreathingScene& breathing, double time);
+
+/// Why no breath of a scene can be held, as a sentence; empty: it breathes.
+std::string breathRefusal(const Scene& scene);
 
 /// The time of a state without that in which the breath was held [s].
 inline double breathingTime(const State& state) {

@@ -133,9 +133,9 @@ class Environment(_Episodes, api.Env):
     view       of these pictures: 'endoscope', or 'outside': organ, scope and goal from before the patient
 
     reset(seed) draws stomach, start and goal; the same seed gives the same episode, to the bit. reset(options=...) chooses
-    instead: {'organ': (shape, scale) or a scene file, 'start': 0 to 3, 'goal': (along, around [rad]), 'phase': 0 to 7,
-    'varied': {name: value}}, which a curriculum can use. Steps after an
-    episode has ended raise vibe.Error. snapshot(), restore(), copy.deepcopy() and pickle take a begun episode with them.
+    instead: {'organ': (shape, scale) or a scene file, 'start': 0 to 3, 'goal': (along, around), 'phase': 0 to 7,
+    'varied': {name: value}}, which a curriculum can use; along is a share of the axis from 0 to 1, around an angle [rad].
+    Steps after an episode has ended raise vibe.Error. snapshot(), restore(), copy.deepcopy() and pickle take a begun episode with them.
     """
 
     metadata = {"render_modes": ["rgb_array", "human"]}

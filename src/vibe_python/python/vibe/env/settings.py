@@ -119,7 +119,7 @@ def range_of(name, pair, least, most):
 
 
 #: what reset(options=...) may choose instead of drawing it
-CHOICES = {"organ": "a pair (shape, scale), or a scene file", "varied": "a dictionary of values of what 'vary' names", "start": f"a whole number below {_organs.STARTS}", "goal": "(along, around [rad])",
+CHOICES = {"organ": "a pair (shape, scale), or a scene file", "varied": "a dictionary of values of what 'vary' names", "start": f"a whole number below {_organs.STARTS}", "goal": "(share of the axis from 0 to 1, angle around it [rad])",
            "phase": f"a whole number below {_organs.PHASES}, of a stomach that breathes or moves"}
 
 

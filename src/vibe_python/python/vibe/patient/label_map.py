@@ -3,6 +3,7 @@ wrong is a sentence in `doubts`."""
 
 import gzip
 import importlib
+import itertools
 import os
 import zlib
 
@@ -13,6 +14,7 @@ from .. import Error
 #: from RAS, the axes of NIfTI, to ours: x to the front, y to the left, z to the head
 TO_WORLD = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 METRES = {"meter": 1.0, "mm": 1e-3, "micron": 1e-6, "unknown": 1e-3}  # NIfTI programs write millimetres when they write no unit
+_SLANT = 2.0  # of two axes [degrees]; rounded headers are a thousandth of that
 _MANY_VALUES = 500  # more than the labels of any atlas of the whole body
 _ANISOTROPIC = 3.0  # ratio of spacings
 _THICK = 5.5e-3  # slices [m]; those of most abdominal CT are at most 5 mm
@@ -47,22 +49,26 @@ class LabelMap:
             affine = np.asarray(image.affine, float)
         if not np.isfinite(affine).all() or abs(np.linalg.det(affine[:3, :3])) < 1e-12:
             raise Error(f"{self.file}: its affine has no inverse, so voxels have no size; take the map as the segmentation wrote it.")
-        self._compare_forms(header, affine)
         self.unit = header.get_xyzt_units()[0]
         metres = METRES[self.unit]
+        self._compare_forms(header, affine, image.shape[:3])
+        self._check_angles(affine[:3, :3])
         return metres * TO_WORLD @ affine[:3, :3], metres * TO_WORLD @ affine[:3, 3]
 
-    def _compare_forms(self, header, affine):
+    def _compare_forms(self, header, affine, shape):
         spacing, stated = np.linalg.norm(affine[:3, :3], axis=0), np.abs(header["pixdim"][1:4].astype(float))
         sform, qform = int(header["sform_code"]), int(header["qform_code"])
         if sform and not np.allclose(spacing, stated, rtol=0.02):
             raise Error(f"{self.file}: its header contradicts itself, voxels of {_times(stated)} by pixdim and of {_times(spacing)} by the "
                         "sform; take the map with the header of the image that was segmented.")
         if sform and qform:
-            turned = header.get_qform()[:3, :3]
-            if not np.allclose(turned / spacing, affine[:3, :3] / spacing, atol=0.05):
-                self.doubts.append("qform and sform of the header differ in their axes; the sform was taken. If left and right are "
-                                   "exchanged, take the map with the header of the image that was segmented.")
+            corners = np.array(list(itertools.product((0, 1), repeat=3))) * (np.array(shape) - 1)
+            difference = header.get_qform() - affine
+            apart = np.linalg.norm(corners @ difference[:3, :3].T + difference[:3, 3], axis=1).max()
+            if apart > spacing.max():
+                self.doubts.append(f"qform and sform of the header differ by up to {1e3 * METRES[self.unit] * apart:.3g} mm in this image; the sform was "
+                                   "taken. If left and right are exchanged, or the organ is elsewhere, take the map with the header of the image that was "
+                                   "segmented.")
         if not sform and not qform:
             self.axes_remedy = "the header has neither qform nor sform, which would say so: take the map with that of the image that was segmented"
             self.doubts.append("The header has neither qform nor sform, so the axes of the patient are not known; columns were taken from left to "
@@ -70,6 +76,14 @@ class LabelMap:
         if np.array_equal(spacing, [1, 1, 1]) and (not (sform or qform) or not affine[:3, 3].any()):
             self.doubts.append("Voxels of exactly 1 x 1 x 1 with the origin in a corner are what a program writes that does not know "
                                "them: the spacing may be lost, and proportions do not show it. Compare it with the image that was segmented.")
+
+    def _check_angles(self, axes):
+        """Distances between voxels are computed for axes at right angles."""
+        sides = axes / np.linalg.norm(axes, axis=0)
+        slant = np.degrees(np.arcsin(min(1, np.abs(sides.T @ sides - np.eye(3)).max())))
+        if slant > _SLANT:
+            self.doubts.append(f"The axes of the voxels are {slant:.0f} degrees off a right angle, as those of a CT with a tilted gantry: between slices "
+                               "the surface may be wrong. Resample the image to axes at right angles before it is segmented.")
 
     def check_slices(self):
         """After the size is known to be plausible: spacing that is too coarse."""
