@@ -46,7 +46,7 @@ class EpisodesTest(InFolder):
     def write(self, steps=120, goals=True, reset=None, kinds=(), late=0.0, respawn=10**6):
         """Joint k has the position time + k where it is measured, and minus that where it is commanded. Everything is received
         up to `late` seconds after its stamp."""
-        self.late, self.dice = late, random.Random(5)
+        self.late, self.dice, self.last = late, random.Random(5), {}
         events = [(SLIP, ProcedureEvent.SLIP), *kinds]
         with rosbag.Bag(self.path, "w") as self.bag:
             for step in range(steps + 1):
@@ -69,21 +69,22 @@ class EpisodesTest(InFolder):
                 self.put(topic, picture(number, encoding), 1 + number / rate)
         return self.path
 
-    def put(self, topic, message, seconds):
+    def put(self, topic, message, seconds, received=None):
         message.header.stamp = genpy.Time.from_sec(seconds)
-        self.bag.write("/" + topic, message, genpy.Time.from_sec(seconds + self.dice.uniform(0, self.late)))
+        self.last[topic] = max(self.last.get(topic, 0), (received or seconds) + self.dice.uniform(0, self.late))  # one after the other
+        self.bag.write("/" + topic, message, genpy.Time.from_sec(self.last[topic]))
 
-    def put_results(self, seconds):
+    def put_results(self, seconds, received=None):
         values = [seconds + k for k in range(7)]
-        self.put("scope/measured_js", JointState(name=JOINTS[:4], position=values[:4], velocity=[1.0] * 4), seconds)
-        self.put("suturing_device/measured_js", JointState(name=JOINTS[4:], position=values[4:], velocity=[2.0] * 3), seconds)
+        self.put("scope/measured_js", JointState(name=JOINTS[:4], position=values[:4], velocity=[1.0] * 4), seconds, received)
+        self.put("suturing_device/measured_js", JointState(name=JOINTS[4:], position=values[4:], velocity=[2.0] * 3), seconds, received)
         pose, wrench = PoseStamped(), WrenchStamped()
         pose.pose.position.x, wrench.wrench.torque.z = seconds, 3 * seconds
-        self.put("scope/measured_cp", pose, seconds)
-        self.put("scope/measured_cf", wrench, seconds)
+        self.put("scope/measured_cp", pose, seconds, received)
+        self.put("scope/measured_cf", wrench, seconds, received)
         contacts = [ToolContact(force=Vector3(0, 1.0, seconds), normal_force=2.0)] * 2
-        self.put("scope/contacts", ToolContacts(contacts=contacts if seconds < 2 else []), seconds)
-        self.put("step_result", StepResult(pressure=100 * seconds), seconds)
+        self.put("scope/contacts", ToolContacts(contacts=contacts if seconds < 2 else []), seconds, received)
+        self.put("step_result", StepResult(pressure=100 * seconds), seconds, received)
 
     def put_goals(self, seconds):
         ended, goals = 0, []
@@ -151,6 +152,21 @@ class EpisodesTest(InFolder):
     def test_a_simulator_that_was_started_anew_is_another_episode(self):
         self.write(goals=False, respawn=60)
         self.assertEqual([len(episode.times) for episode, _, _ in self.episodes()], [30, 31])
+
+    def test_where_time_is_set_back_no_row_has_results_of_another_time(self):
+        for length, lost in itertools.product((60, 300), (0, 6)):  # steps until then; whose results a recorder has lost after it
+            self.write(steps=0, goals=False)
+            with rosbag.Bag(self.path, "w") as self.bag:
+                for step in range(2 * length):
+                    run, seconds, received = 1 + step // length, 1 + step % length / RATE, 1 + step / RATE
+                    if not 0 <= step - length < lost:
+                        self.put_results(seconds, received)
+                    message = StepInput(step=step % length, run=run, joints=[-seconds] * 7)
+                    self.put("applied_input", message, seconds, received + 0.01)
+            found = [episode.columns() for episode, _, _ in self.episodes(60)]
+            self.assertEqual([len(columns["action"]) for columns in found], [length, length - lost])
+            for columns in found:
+                numpy.testing.assert_allclose(columns["observation.pose"][:, 0], -columns["action"][:, 0], atol=1e-6)
 
     def test_two_simulators_are_refused(self):
         self.write()

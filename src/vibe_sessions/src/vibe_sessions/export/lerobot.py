@@ -90,7 +90,7 @@ class Reader:
     def episodes(self):
         """(episode, success)"""
         messages = self._source.messages(self._ranks)
-        for message in in_order_of_stamps(messages, lambda each: self._ranks[each.number][0], self._run_of):
+        for message in in_order_of_stamps(messages, lambda each: self._ranks[each.number][0]):
             name = self._ranks[message.number][1]
             if name == "trainee/progress":
                 yield from self._goals(message.fields.goals)
@@ -101,10 +101,6 @@ class Reader:
             elif name in STATES:
                 self._latest[name] = message
         yield from self._end(self._is_reached_later())
-
-    def _run_of(self, message):
-        """A simulator that was started anew, a reset, another state or scene makes another one."""
-        return (message.fields.session, message.fields.run) if self._ranks[message.number][1] == "applied_input" else None
 
     def _is_reached_later(self):
         """Whether the goal that the end of the range cuts is reached after it."""
@@ -125,8 +121,8 @@ class Reader:
             self._due = 0
 
     def _step(self, message):
-        run = self._run_of(message)
-        if self._run not in (None, run):
+        run = message.fields.session, message.fields.run
+        if self._run not in (None, run):  # a simulator that was started anew, a reset, another state or scene
             yield from self._end()
             self._due = 0
         self._run = run

@@ -25,17 +25,18 @@ def fits(topic, patterns):
     return any(fnmatch.fnmatchcase("/" + topic.lstrip("/"), "*/" + pattern.lstrip("/")) for pattern in patterns)
 
 
-def in_order_of_stamps(messages, rank, run):
+def in_order_of_stamps(messages, rank):
     """What belongs to one time together, although it was received up to LATEST seconds apart: a simulator stamps the input of
     a step with its begin and sends it after it, and a session that is filled has repeated topics beside others that
-    have the times of the recorder. At equal stamps the lower rank(message) comes first. Where run(message) is another one
-    than before (None: the message does not say), or time was set back, what came before is given first."""
-    waiting, newest, last = [], 0, None
+    have the times of the recorder. At equal stamps the lower rank(message) comes first. Where the stamps of a topic go back,
+    time was set back, and what came before is given first."""
+    waiting, newest, last = [], 0, {}
     for count, message in enumerate(messages):
-        before, last = last, run(message) or last
-        if before not in (None, last) or message.time < newest - 1e9 * LATEST:
+        topic = message.connection.topic
+        if message.time < last.get(topic, 0):
             yield from (each[-1] for each in sorted(waiting))
-            waiting, newest = [], message.time
+            waiting, newest, last = [], 0, {}
+        last[topic] = message.time
         heapq.heappush(waiting, (message.time, rank(message), count, message))
         newest = max(newest, message.time)
         while waiting[0][0] < newest - 1e9 * LATEST:
