@@ -1,9 +1,9 @@
 #include "vibe_hardware/crtk/tool_trail.hpp"
 
-#include "vibe_core/input/joint_unit.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "vibe_core/input/joint_unit.hpp"
 
 namespace vibe::hardware {
 

@@ -1,10 +1,10 @@
 #include "input/joint_drivers.hpp"
 
-#include "vibe_core/input/joint_unit.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "vibe_core/input/joint_unit.hpp"
 
 namespace vibe::sim {
 namespace {

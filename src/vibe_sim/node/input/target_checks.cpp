@@ -1,9 +1,9 @@
 #include "input/target_checks.hpp"
 
+#include <vector>
+
 #include "vibe_core/files/number_text.hpp"
 #include "vibe_core/input/joint_unit.hpp"
-
-#include <vector>
 
 namespace vibe::sim {
 namespace {
