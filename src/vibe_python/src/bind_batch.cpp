@@ -6,6 +6,7 @@
 #include <exception>
 #include <functional>
 #include <set>
+#include <string>
 #include <thread>
 
 #include "arrays.hpp"
@@ -40,6 +41,8 @@ void inThreads(int count, int threads, const std::function<void(int)>& body) {
 
 /// The right to use all of them.
 std::vector<std::unique_ptr<Use>> useAll(const Handles& handles) {
+  for (std::size_t k = 0; k < handles.size(); ++k)
+    if (!handles[k]) throw Error("'simulations[" + std::to_string(k) + "]' is None; give simulations.");
   if (std::set<std::shared_ptr<SimulationHandle>>(handles.begin(), handles.end()).size() < handles.size())
     throw Error("'simulations' holds one simulation twice; give each once.");
   std::vector<std::unique_ptr<Use>> uses;

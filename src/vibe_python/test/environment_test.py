@@ -395,6 +395,30 @@ class EnvironmentTest(unittest.TestCase):
         self.assertEqual(environment.task.place[0], (0.5, 0))
         self.assertEqual(environment.task.tolerance, 0.05)
 
+    def test_values_of_the_scene_are_added_to_those_of_the_task(self):
+        environment = Environment("StopBleeding", scene={"bleeding": {"mild_probability": 0.0, "brisk_rate": 1e-7}}, **SMALL)
+        self.assertEqual(environment.task.variation.scene["bleeding"], {**environment.task.sections["bleeding"], "brisk_rate": 1e-7})
+
+    def test_what_a_caller_does_to_his_settings_later_is_no_setting(self):
+        scene, values = {"tissue": {"density": 1000}}, [900.0]
+        environment = Environment("Reach", scene=scene, vary={"foundation.stiffness": ("choice", values)}, **SMALL)
+        kept = repr((environment._settings, environment.task.variation.scene, environment.task.variation.vary))
+        scene["tissue"]["density"], values[0] = 3000, 7.0
+        self.assertEqual(repr((environment._settings, environment.task.variation.scene, environment.task.variation.vary)), kept)
+
+    def test_equal_settings_are_equal_however_they_are_written(self):
+        written = [{"particles": 300, "organs": (("sthenic", 0.92),)}, {"organs": [["sthenic", 0.92]], "particles": np.int64(300), "action": "joints"}]
+        environments = [Environment("Reach", **settings) for settings in written]
+        seen = environments[0].reset(seed=1)[0]
+        self.assertTrue(equal(environments[1].restore(environments[0].snapshot())[0], seen))
+
+    def test_no_joint_leaves_the_box_of_observations(self):
+        environment = Environment("Mark", **SMALL)
+        environment.reset(seed=1)
+        limits = np.array([limits[:2] for limits in environment.simulation.model.joint_limits.values()])
+        self.assertEqual(limits.shape, (len(vibe.JOINTS), 2))
+        self.assertLess(np.abs(limits).max(), environment.observation_space["joints"].high.min())
+
     def test_goals_in_the_form_of_hindsight(self):
         environment, plain = GoalEnvironment(**SMALL), Environment(**SMALL)
         environment.reset(seed=3), plain.reset(seed=3)
@@ -460,6 +484,8 @@ class EnvironmentTest(unittest.TestCase):
     def test_refusals(self):
         environment, other = Environment("Reach", **SMALL), Environment("Reach", breathing="slight", **SMALL)
         other.reset(seed=1)
+        late = Environment("Reach", vary={name: ("uniform", 0, 0.1) for name in ("action.delay", "action.noise")}, **SMALL)
+        together, density = VectorEnvironment("Reach", 2, autoreset="disabled", **SMALL), {"tissue.density": ("uniform", 900, 1100)}
         still = np.zeros(4)
         for sentence, call in (("call reset", lambda: environment.step(still)),
                                ("no task 'Fly'", lambda: Environment("Fly")),
@@ -492,6 +518,13 @@ class EnvironmentTest(unittest.TestCase):
                                ("'scene' is 'a.yaml'", lambda: Environment("Reach", scene="a.yaml")),
                                ("has no tolerance", lambda: Environment("Inspect", tolerance=1e-3)),
                                ("'tolerance' is 1", lambda: Environment("Reach", tolerance=1)),
+                               ("'scene' takes 'tissue' away", lambda: Environment("Reach", scene={"tissue": None}, vary=density)),
+                               ("'tolerance' is int", lambda: Environment("Reach", tolerance=10**400)),
+                               ("'along' is", lambda: Environment("Reach", along=(False, True))),
+                               ("reaches none of 100 goals", Environment("Reach", along=(0.97, 1), around=(2.8, 3.1), **SMALL).reset),
+                               ("that has never begun", lambda: together.reset(options={"reset_mask": [True, False]})),
+                               *((f"'{name}' of 'varied' is", lambda name=name, value=value: late.reset(options={"varied": {name: value}}))
+                                 for name in ("action.delay", "action.noise") for value in (-0.1, np.nan, np.inf, 1e9, "a", None)),
                                ("which does not vary", lambda: environment.reset(options={"varied": {"a.b": 1}})),
                                ("'varied' is 3", lambda: environment.reset(options={"varied": 3})),
                                ("'rate' of the task", lambda: Environment(type("Mine", (Reach,), {"rate": 0}))),

@@ -196,6 +196,15 @@ class Sweep:
                                ("picture", lambda them: vibe.picture(them[0]))):
             self.call(f"{name} when closed", function, [simulation])
 
+    def lists(self):
+        for wrong in (None, 7, "simulation", self.model):
+            for place, rows in (("first", [wrong, self.simulation]), ("last", [self.simulation, wrong]), ("only", [wrong])):
+                count = len(rows)
+                for name, function, further in (("observe_all", vibe.observe_all, ()),
+                                                ("wall_points", vibe.wall_points, (np.zeros((count, 1)), np.ones((count, 1, 3)))),
+                                                ("step_all", vibe.step_all, (np.zeros((count, 7)), np.zeros((count, 6)), 1, 1))):
+                    self.call(f"{name} of a list, {place} {shown(wrong):.40}", function, rows, *further)
+
     def scenes(self):
         small = {"geometry": {"particles": 100}, "render_surface": False}
         for value in self.wrong:
@@ -283,7 +292,7 @@ class SweepTest(unittest.TestCase):
         return [line for line in lines if line.startswith("! ")], list(map(int, lines[-1].split()))
 
     def test_whatever_is_handed_over_is_taken_as_declared_or_answered_with_a_sentence(self):
-        faults, (calls, refused) = self.watched("functions", "closed", "scenes", "inputs", "environments", "settings", "policies")
+        faults, (calls, refused) = self.watched("functions", "closed", "lists", "scenes", "inputs", "environments", "settings", "policies")
         self.assertEqual(faults, [])
         self.assertGreater(calls, 5000)
         self.assertGreater(refused, 0.9 * calls)  # control: the sweep hands over what does not fit

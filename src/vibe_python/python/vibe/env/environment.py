@@ -51,13 +51,14 @@ class _Episodes:
         kind = task_of(task)
         kind.check_settings(settings)
         self.task, self.render_mode, self._view = kind(**further, **settings), render_mode, view
+        self._made_of, self._settings = task, copy.deepcopy(settings)  # what a caller does to his dictionaries later is no setting
         self.metadata = {**self.metadata, "render_fps": kind.rate}
 
     def snapshot(self) -> dict[str, Any]:
         """Everything that decides the future: episodes, clocks, goals, what was seen of the wall, random generators. It can be
         pickled, and restored any number of times; the futures are equal to the bit."""
         kind = type(self.task)
-        return {"task": f"{kind.__module__}.{kind.__qualname__}", "settings": repr(self._settings), "episodes": self.task.state(),
+        return {"task": f"{kind.__module__}.{kind.__qualname__}", "settings": self.task.shown_settings(self._settings), "episodes": self.task.state(),
                 **copy.deepcopy({name: getattr(self, name) for name in ("_random", "_ended")})}
 
     def restore(self, snapshot: dict[str, Any]) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
@@ -66,7 +67,7 @@ class _Episodes:
         kind = type(self.task)
         if not isinstance(snapshot, dict) or "episodes" not in snapshot:
             raise vibe.Error(f"The snapshot is {vibe._shown(snapshot)}; give one of snapshot() of an environment.")
-        same = {"task": f"{kind.__module__}.{kind.__qualname__}", "settings": repr(self._settings)}
+        same = {"task": f"{kind.__module__}.{kind.__qualname__}", "settings": self.task.shown_settings(self._settings)}
         for name, here in same.items():
             if snapshot[name] != here:
                 raise vibe.Error(f"The snapshot is of an environment with the {name} {snapshot[name]}, and this one has {here}; "
@@ -144,7 +145,6 @@ class Environment(_Episodes, api.Env):
     def __init__(self, task: Union[str, type[Task]] = "Reach", *, render_mode: Optional[str] = None, view: str = "endoscope",
                  **settings: Unpack[Settings]) -> None:
         self._prepare(task, settings, render_mode, view)
-        self._made_of, self._settings = task, settings
         self.observation_space, self.action_space = self.task.observation_space, self.task.action_space
         self._random = None
         self._ended = True
@@ -228,7 +228,7 @@ class VectorEnvironment(_Episodes, api.VectorEnv):
             raise vibe.Error(f"'autoreset' is {vibe._shown(autoreset)}; use 'next_step', 'same_step' or 'disabled'.")
         count = count if num_envs is None else num_envs
         self._prepare(task, settings, render_mode, view, count=count, threads=len(os.sched_getaffinity(0)) if threads is None else threads)
-        self._made_of, self._settings, self._threads = task, settings, threads
+        self._threads = threads
         self.num_envs, self.autoreset = count, autoreset
         self.single_observation_space, self.single_action_space = self.task.observation_space, self.task.action_space
         self.observation_space = api.batched(self.single_observation_space, count)
@@ -255,6 +255,8 @@ class VectorEnvironment(_Episodes, api.VectorEnv):
         mask = np.asarray((options or {}).get("reset_mask", True))
         if mask.dtype != bool or mask.shape not in ((), (self.num_envs,)) or not mask.any():
             raise vibe.Error(f"'reset_mask' is {vibe._shown(mask)}; give {self.num_envs} times True or False, at least one of them True.")
+        if any(random is None and not now for random, now in zip(self._random, np.broadcast_to(mask, self.num_envs))):
+            raise vibe.Error("'reset_mask' leaves out an episode that has never begun; reset all of them first.")
         super().reset(seed=int(seed) if isinstance(seed, (int, np.integer)) else None)
         for slot in np.flatnonzero(np.broadcast_to(mask, self.num_envs)):
             if seeds[slot] is not None or self._random[slot] is None:

@@ -124,11 +124,21 @@ class Task:
         return max(1, round(cls.seconds * cls.rate))
 
     @classmethod
+    def _defaults(cls):
+        """{keyword: its default} of all constructors of the class."""
+        return {name: parameter.default for base in reversed(cls.__mro__) if "__init__" in vars(base) and base is not object
+                for name, parameter in inspect.signature(base.__init__).parameters.items()
+                if parameter.kind is parameter.KEYWORD_ONLY and name != "threads"}
+
+    @classmethod
+    def shown_settings(cls, settings):
+        """All settings as a text that is the same for equal ones, however they were written."""
+        return _shown_alike({**cls._defaults(), **settings})
+
+    @classmethod
     def check_settings(cls, settings):
         """Raises vibe.Error for a keyword that no constructor of the class takes."""
-        known = {name for base in cls.__mro__ if "__init__" in vars(base) and base is not object
-                 for name, parameter in inspect.signature(base.__init__).parameters.items()
-                 if parameter.kind is parameter.KEYWORD_ONLY} - {"threads"}
+        known = cls._defaults()
         for name in settings:
             if name not in known:
                 near = difflib.get_close_matches(name, known, 1)
@@ -215,17 +225,25 @@ class Task:
 
     def _draw_goal(self, organ, joints, seed):
         random = np.random.default_rng(seed)
+        one_place = self.along[0] == self.along[1] and self.around[0] == self.around[1]  # which is chosen, not drawn
         for _ in range(100):
             place = random.uniform(*self.along), random.uniform(*self.around)
             triangle, weight, position = organ.target(*place)
-            if self.reachable(organ.model, position, organ.anatomy.outward(triangle, weight), joints):
-                break
-        return place, triangle, weight
+            if one_place or self.reachable(organ.model, position, organ.anatomy.outward(triangle, weight), joints):
+                return place, triangle, weight
+        raise vibe.Error(f"The scope reaches none of 100 goals with 'along' {self.along} and 'around' {self.around} in {organ.name}; "
+                         "give wider ranges, or choose the goal by reset(options={'goal': (along, around)}).")
 
     def reachable(self, model, position, outward, joints):
-        """Whether the scope can bring its tip there, as far as its joints go."""
-        found = model.inverse_kinematics(position, outward, joints)
-        return np.linalg.norm(model.forward_kinematics(found)[:3, 3] - position) < 1e-3
+        """Whether the scope can bring its tip there, as far as its joints go, from any side: four joints reach no place in
+        just any direction, so that the one asked for follows the one found."""
+        for _ in range(10):
+            joints = model.inverse_kinematics(position, outward, joints)
+            pose = model.forward_kinematics(joints)
+            if np.linalg.norm(pose[:3, 3] - position) < 1e-3:
+                return True
+            outward = pose[:3, 0]
+        return False
 
     def begun(self, slot):
         """For subclasses: what begins with an episode."""
@@ -374,6 +392,14 @@ class Task:
     def _check_open(self):
         if self.closed:
             raise vibe.Error("The environment is closed; make another one.")
+
+
+def _shown_alike(value):
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{name!r}: {_shown_alike(value[name])}" for name in sorted(value, key=str)) + "}"
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return "(" + ", ".join(map(_shown_alike, value)) + ")"
+    return repr(value.item() if isinstance(value, np.generic) else value)
 
 
 def _register(task):

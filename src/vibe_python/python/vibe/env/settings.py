@@ -10,7 +10,7 @@ import vibe
 from . import organs as _organs
 
 #: greatest numbers of observations, far beyond what occurs: [m], [rad]; [N], [N m]; of depths [m]
-FAR, STRONG, DEEP = 10.0, 1000.0, 10.0
+FAR, STRONG, DEEP = 100.0, 1000.0, 10.0
 #: pictures that an observation may hold: channels, type, least and greatest value
 PICTURES = {"depth": ((), np.float32, 0, DEEP), "label": ((), np.uint8, 0, 7), "normal": ((3,), np.float32, -1, 1),
             "colour": ((3,), np.uint8, 0, 255)}
@@ -73,7 +73,11 @@ def places(name, value):
 
 
 def is_number(value):
-    return isinstance(value, (int, float, np.integer, np.floating)) and np.isfinite(float(value))
+    """Whether it is one that a float holds; True and False are none."""
+    try:
+        return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool) and bool(np.isfinite(float(value)))
+    except OverflowError:
+        return False
 
 
 def organs_of(organs):
