@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 """Environments: the same bits alone and side by side, resets as Gymnasium defines them, experts, and what is refused."""
+import copy
 import importlib.util
 import inspect
 import os
+import pickle
+import re
 import shutil
 import subprocess
 import sys
@@ -93,7 +96,7 @@ import h5py
 from vibe.env import Expert, demonstrations
 with tempfile.TemporaryDirectory() as folder:
     environment, file = gymnasium.make("vibe/Reach-v0", action="tip", breathing="slight", **small), os.path.join(folder, "reach.hdf5")
-    demonstrations.record(environment, Expert(environment), file, 1)
+    demonstrations.record(environment, Expert(environment), file, 1, seed=1)
     with h5py.File(file) as found:
         args, demo = json.loads(found["data"].attrs["env_args"]), found["data/demo_0"]
         again = gymnasium.make(args["env_name"], **args["env_kwargs"])
@@ -152,6 +155,27 @@ def equal(a, b):
 
 def row(parts, slot):
     return {name: value[slot] for name, value in parts.items()}
+
+
+class Restless(Reach):
+    """Counts its steps in single precision, draws in them, and may be broken off."""
+
+    further = {"steps": ((1,), "taken")}
+    breaks = False
+
+    def begun(self, slot):
+        super().begun(slot)
+        self.steps = getattr(self, "steps", np.zeros((self.count, 1), np.float32))
+        self.steps[slot] = 0
+
+    def judge(self, before, after):
+        if self.breaks:
+            raise KeyboardInterrupt
+        self.steps += 1
+        return np.array([random.uniform() for random in self.random]), np.zeros(self.count, bool)
+
+    def observe_further(self, seen):
+        return {"steps": self.steps}
 
 
 class EnvironmentTest(unittest.TestCase):
@@ -399,6 +423,77 @@ class EnvironmentTest(unittest.TestCase):
         environment = Environment("StopBleeding", scene={"bleeding": {"mild_probability": 0.0, "brisk_rate": 1e-7}}, **SMALL)
         self.assertEqual(environment.task.variation.scene["bleeding"], {**environment.task.sections["bleeding"], "brisk_rate": 1e-7})
 
+    def test_each_slot_moves_with_the_speeds_of_its_own_scope(self):
+        urdf = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../vibe_description/urdf/scope.urdf")
+        with tempfile.TemporaryDirectory() as folder:
+            with open(urdf, encoding="utf-8") as file:
+                slow = re.sub(r'(<joint name="insertion".*?velocity=)"[^"]*"', r'\1"0.05"', file.read(), flags=re.S)
+            with open(os.path.join(folder, "slow.urdf"), "w", encoding="utf-8") as file:
+                file.write(slow)
+            vary = {"scope.urdf": ("choice", [urdf, os.path.join(folder, "slow.urdf")])}
+            together, alone = VectorEnvironment("Bite", 4, vary=vary, **SMALL), Environment("Bite", vary=vary, **SMALL)
+            together.reset(seed=1)
+            actions = np.zeros((4, *together.single_action_space.shape))
+            actions[:, 0] = -1
+            seen = [together.step(actions)[0] for _ in range(3)][-1]
+            self.assertEqual(len(set(map(str, together.task.variation.values))), 2)  # control: both were drawn
+            for slot in range(4):
+                alone.reset(seed=1 + slot)
+                self.assertTrue(equal([alone.step(actions[slot])[0] for _ in range(3)][-1], row(seen, slot)), slot)
+
+    def test_a_step_that_is_broken_off_ends_the_episodes(self):
+        for environment, shape in ((Environment(Restless, **SMALL), (4,)), (VectorEnvironment(Restless, 2, **SMALL), (2, 4))):
+            environment.reset(seed=1)
+            environment.step(np.zeros(shape))
+            snapshot, environment.task.breaks = environment.snapshot(), True
+            with self.assertRaises(KeyboardInterrupt):
+                environment.step(np.zeros(shape))
+            environment.task.breaks = False
+            with self.assertRaisesRegex(vibe.Error, "broken off"):
+                environment.step(np.zeros(shape))
+            environment.restore(snapshot)
+            environment.step(np.zeros(shape))
+
+    def test_observations_stay_as_they_were(self):
+        environment = Environment(Restless, **SMALL)
+        first = environment.reset(seed=1)[0]
+        second = environment.step(np.zeros(4))[0]
+        self.assertEqual((first["steps"][0], second["steps"][0]), (0, 1))
+        second["steps"][0] = 77
+        self.assertEqual(environment.step(np.zeros(4))[0]["steps"][0], 2)
+
+    def test_a_task_may_draw_in_its_steps(self):
+        environment = Environment(Restless, **SMALL)
+        environment.reset(seed=1)
+        environment.step(np.zeros(4))
+        futures, snapshot = [], environment.snapshot()
+        for one in (environment, copy.deepcopy(environment), environment):
+            one.restore(snapshot)
+            rewards = [one.step(np.zeros(4))[1] for _ in range(3)]
+            one.reset()
+            futures.append([*rewards, *one.task.place[0], one.step(np.zeros(4))[1]])
+        self.assertEqual(futures, futures[:1] * 3)
+
+    def test_snapshots_of_other_numbers_are_refused_and_nothing_changes(self):
+        one, two, three = Environment("Reach", **SMALL), VectorEnvironment("Reach", 2, **SMALL), VectorEnvironment("Reach", 3, **SMALL)
+        for environment in (one, two, three):
+            environment.reset(seed=1)
+        for here, there in ((one, two), (two, one), (two, three), (three, two)):
+            kept = here.snapshot()["episodes"]["taken"]
+            with self.assertRaisesRegex(vibe.Error, "The snapshot is of an environment with the (kind|number)"):
+                here.restore(there.snapshot())
+            np.testing.assert_array_equal(here.snapshot()["episodes"]["taken"], kept)
+            here.step(np.zeros(here.action_space.shape))
+
+    def test_copies_draw_the_same_actions(self):
+        environment = Environment("Reach", **SMALL)
+        environment.reset(seed=1)
+        environment.action_space.seed(3)
+        others = copy.deepcopy(environment), pickle.loads(pickle.dumps(environment))
+        for action in [environment.action_space.sample()]:
+            for other in others:
+                np.testing.assert_array_equal(other.action_space.sample(), action)
+
     def test_what_a_caller_does_to_his_settings_later_is_no_setting(self):
         scene, values = {"tissue": {"density": 1000}}, [900.0]
         environment = Environment("Reach", scene=scene, vary={"foundation.stiffness": ("choice", values)}, **SMALL)
@@ -445,7 +540,7 @@ class EnvironmentTest(unittest.TestCase):
         for mode in ("joints", "tip"):
             environment = Environment("Reach", action=mode, **SMALL)
             expert = Expert(environment)
-            self.assertEqual([demonstrations.episode(environment, expert, seed)[1] for seed in range(3)], [True] * 3)
+            self.assertEqual([demonstrations.episode(environment, expert, seed)[1] for seed in range(1, 4)], [True] * 3)
             still = type("Still", (), {"reset": lambda s: None, "action": lambda s, o: 0 * environment.action_space.high})
             self.assertFalse(demonstrations.episode(environment, still(), 0)[1])  # control
 
@@ -470,9 +565,9 @@ class EnvironmentTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "reach.hdf5")
             for episodes in (1, 2):  # it goes on
-                self.assertEqual(demonstrations.record(environment, Expert(environment), file, episodes), (episodes, episodes))
+                self.assertEqual(demonstrations.record(environment, Expert(environment), file, episodes, seed=1), (episodes, episodes))
             with self.assertRaisesRegex(vibe.Error, "of other settings"):
-                demonstrations.record(environment, Expert(environment), file, 3, seed=1)
+                demonstrations.record(environment, Expert(environment), file, 3, seed=2)
             with h5py.File(file) as found:
                 demo = found["data/demo_1"]
                 steps = demo.attrs["num_samples"]
@@ -518,6 +613,7 @@ class EnvironmentTest(unittest.TestCase):
                                ("'scene' is 'a.yaml'", lambda: Environment("Reach", scene="a.yaml")),
                                ("has no tolerance", lambda: Environment("Inspect", tolerance=1e-3)),
                                ("'tolerance' is 1", lambda: Environment("Reach", tolerance=1)),
+                               ("'-140000.0' is out of range", lambda: Environment("Reach", vary={"tissue.young_modulus": ("normal", 1e5, 8e4)})),
                                ("'scene' takes 'tissue' away", lambda: Environment("Reach", scene={"tissue": None}, vary=density)),
                                ("'tolerance' is int", lambda: Environment("Reach", tolerance=10**400)),
                                ("'along' is", lambda: Environment("Reach", along=(False, True))),

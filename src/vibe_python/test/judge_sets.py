@@ -15,7 +15,7 @@ def write(folder):
     environment = Environment("Reach", particles=300, organs=[("sthenic", 1.0)], camera=CAMERA, pictures=["colour", "depth"])
     for format, name in (("robomimic", "reach.hdf5"), ("lerobot", "v3.0"), ("minari", "sets/vibe/reach-v0")):
         os.environ["MINARI_DATASETS_PATH"] = os.path.join(folder, "sets")
-        assert demonstrations.record(environment, Expert(environment), os.path.join(folder, name), DEMOS, format=format) == (DEMOS, DEMOS)
+        assert demonstrations.record(environment, Expert(environment), os.path.join(folder, name), DEMOS, seed=1, format=format) == (DEMOS, DEMOS)
     features = {name: {"dtype": "float32", "shape": [4], "names": None} for name in ("observation.state", "action")}
     features["observation.images.endoscope"] = {"dtype": "video", "shape": [480, 640, 3], "names": ["height", "width", "channels"]}
     with lerobot.Writer(os.path.join(folder, "v2.1"), "v2.1", 20, features) as writer:

@@ -29,11 +29,12 @@ def _generator(seed):
 with_settings = functools.partial(named, of=Task.__init__)
 
 
-def _made(cls, task, settings, state):
-    """An environment from what it was made of and what it is in the midst of, for pickle."""
+def _made(cls, task, settings, state, spaces):
+    """An environment from what it was made of and what it is in the midst of, for pickle; spaces draw samples."""
     environment = cls(task, **settings)
     if state is not None:
         environment.restore(state)
+    vars(environment).update(copy.deepcopy(spaces))
     return environment
 
 
@@ -42,6 +43,8 @@ class _Episodes:
 
     metadata = {"render_modes": ["rgb_array"]}
     _window = None  # of render_mode 'human'
+    _torn = False  # a step was broken off
+    _kind = "Environment"
 
     def _prepare(self, task, settings, render_mode, view, **further):
         modes = self.metadata["render_modes"]
@@ -58,23 +61,42 @@ class _Episodes:
         """Everything that decides the future: episodes, clocks, goals, what was seen of the wall, random generators. It can be
         pickled, and restored any number of times; the futures are equal to the bit."""
         kind = type(self.task)
-        return {"task": f"{kind.__module__}.{kind.__qualname__}", "settings": self.task.shown_settings(self._settings), "episodes": self.task.state(),
-                **copy.deepcopy({name: getattr(self, name) for name in ("_random", "_ended")})}
+        return {**self._same(), "episodes": self.task.state(), **copy.deepcopy({name: getattr(self, name) for name in ("_random", "_ended")})}
+
+    def _same(self):
+        """What environments have in common that take snapshots of each other."""
+        kind = type(self.task)
+        return {"kind": self._kind, "task": f"{kind.__module__}.{kind.__qualname__}", "settings": self.task.shown_settings(self._settings),
+                "number of episodes": self.task.count}
 
     def restore(self, snapshot: dict[str, Any]) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
         """Back to a snapshot() of an environment of the same task and settings. Returns the observation and info, as reset()
         does, without events."""
-        kind = type(self.task)
         if not isinstance(snapshot, dict) or "episodes" not in snapshot:
             raise vibe.Error(f"The snapshot is {vibe._shown(snapshot)}; give one of snapshot() of an environment.")
-        same = {"task": f"{kind.__module__}.{kind.__qualname__}", "settings": self.task.shown_settings(self._settings)}
-        for name, here in same.items():
-            if snapshot[name] != here:
-                raise vibe.Error(f"The snapshot is of an environment with the {name} {snapshot[name]}, and this one has {here}; "
+        for name, here in self._same().items():
+            if snapshot.get(name) != here:
+                raise vibe.Error(f"The snapshot is of an environment with the {name} {snapshot.get(name)}, and this one has {here}; "
                                  "make one like that.")
         self.task.set_state(snapshot["episodes"])
         self._random, self._ended = copy.deepcopy((snapshot["_random"], snapshot["_ended"]))
+        for slot, random in enumerate(self._random if isinstance(self._random, list) else [self._random]):
+            self.task.random[slot] = random if random is not None else self.task.random[slot]  # one generator, as reset() has it
+        self._torn = False
         return self._seen()
+
+    def _advance(self, actions):
+        """What the task says of an action. One that is broken off, by Ctrl+C or an error of the task, ends the episodes, whose
+        clocks and actions do not agree any more."""
+        if self._torn:
+            raise vibe.Error("The last step was broken off in its midst; call reset(), or restore() a snapshot.")
+        self._torn = True
+        found = self.task.advance(actions)
+        self._torn = False
+        return found
+
+    def _spaces(self):
+        return {name: value for name, value in vars(self).items() if name.endswith("_space")}
 
     def __deepcopy__(self, _):
         made = _made(*self.__reduce__()[1])
@@ -153,7 +175,7 @@ class Environment(_Episodes, api.Env):
 
     def __reduce__(self):
         settings = {**self._settings, "render_mode": None if self._window else self.render_mode, "view": self._view}
-        return _made, (type(self), self._made_of, settings, self.snapshot() if self._has_begun() else None)
+        return _made, (type(self), self._made_of, settings, self.snapshot() if self._has_begun() else None, self._spaces())
 
     def __repr__(self):
         return f"<vibe.env.Environment of {self.task.name or type(self.task).__name__}, {self.task.particles} particles>"
@@ -174,7 +196,7 @@ class Environment(_Episodes, api.Env):
         super().reset(seed=None if seed is None else int(seed))
         self._ended = True  # until there is another episode
         self.task.begin(0, self._random, choices)
-        self._ended = False
+        self._ended = self._torn = False
         return self._show()
 
     def _show(self):
@@ -198,7 +220,7 @@ class Environment(_Episodes, api.Env):
             raise vibe.Error("The environment is closed; make another one.")
         if self._ended:
             raise vibe.Error("The episode has ended, or none has begun; call reset().")
-        reward, success, truncated = self.task.advance(numbers(action, self.action_space.shape)[None])
+        reward, success, truncated = self._advance(numbers(action, self.action_space.shape)[None])
         self._ended = bool(success[0] or truncated[0])
         seen, info = self._show()
         return seen, float(reward[0]), bool(success[0]), bool(truncated[0]), {**info, "is_success": bool(success[0])}
@@ -219,6 +241,8 @@ class VectorEnvironment(_Episodes, api.VectorEnv):
                'same_step': it is reset at once, and its last observation is in info['final_obs'];
                'disabled': reset(options={'reset_mask': ...}) resets it
     """
+
+    _kind = "VectorEnvironment"
 
     @with_settings
     def __init__(self, task: Union[str, type[Task]] = "Reach", count: int = 8, *, num_envs: Optional[int] = None, threads: Optional[int] = None,
@@ -241,7 +265,7 @@ class VectorEnvironment(_Episodes, api.VectorEnv):
     def __reduce__(self):
         settings = {**self._settings, "count": self.num_envs, "threads": self._threads, "autoreset": self.autoreset,
                     "render_mode": self.render_mode, "view": self._view}
-        return _made, (type(self), self._made_of, settings, self.snapshot() if self._has_begun() else None)
+        return _made, (type(self), self._made_of, settings, self.snapshot() if self._has_begun() else None, self._spaces())
 
     def reset(self, *, seed: Optional[Union[int, Sequence[Optional[int]]]] = None, options: Optional[dict[str, Any]] = None) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
         """seed: one number, from which slot k gets seed + k; a list of one per slot; None. options: as those of Environment,
@@ -262,6 +286,7 @@ class VectorEnvironment(_Episodes, api.VectorEnv):
             if seeds[slot] is not None or self._random[slot] is None:
                 self._random[slot] = _generator(seeds[slot])
             self._begin(slot, choices)
+        self._torn = self._torn and not mask.all()
         return self._seen()
 
     def _begin(self, slot, choices=None):
@@ -289,7 +314,7 @@ class VectorEnvironment(_Episodes, api.VectorEnv):
             raise vibe.Error("An episode has ended, or none has begun; call reset() first.")
         actions = numbers(actions, (self.num_envs,) + self.single_action_space.shape)
         actions[ended] = 0
-        reward, success, truncated = self.task.advance(actions)
+        reward, success, truncated = self._advance(actions)
         for slot in np.flatnonzero(ended):  # their step did not count
             self._begin(slot)
             reward[slot], success[slot], truncated[slot] = 0, False, False

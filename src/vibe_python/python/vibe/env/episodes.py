@@ -74,7 +74,8 @@ class Task:
         self.length = self.steps_of_episode() if max_episode_steps is None else whole("max_episode_steps", max_episode_steps, 1, 10**9)
         self.variation = Variation(count, scene, vary, {"breathing": breathing, "motion": motion}, self.sections)
         for sections in self.variation.scenes():  # what no scene has is refused before any episode
-            _organs.load(self.organs[0], 100, self.step_period, sections)
+            for organ in {self.organs[0], *(organ for organ in self.organs if isinstance(organ, str))}:
+                _organs.load(organ, 100, self.step_period, sections)
         self.simulation = [None] * count
         self.organ = [None] * count
         self.random = [np.random.default_rng(k) for k in range(count)]
@@ -283,7 +284,7 @@ class Task:
         if self.variation.vary:
             actions = self.variation.arrived(actions, self.rate, 3 if self.mode == "tip" else len(self.joints))
         joints = before["joints"].copy()
-        joints[:, : len(self.joints)] += self._speed(actions) * (self.speeds / self.rate)
+        joints[:, : len(self.joints)] += self._speed(actions) * np.array([self.speeds_of(slot) for slot in range(self.count)]) / self.rate
         buttons = np.zeros((self.count, len(vibe.BUTTONS)))
         if self.buttons:
             buttons[:] = actions[:, len(self.joints):] > 0
@@ -313,13 +314,17 @@ class Task:
     def _steps(self):
         return max(1, round(1 / (self.rate * self.organ[0].model.step_period)))
 
+    def speeds_of(self, slot):
+        """The joint speeds of a slot at action 1."""
+        return self.speeds
+
     def _speed(self, actions):
         """Joint speeds as shares of the greatest, from shares of them or from the tip's velocity in its own axes."""
         if self.mode == "joints":
             return actions[:, : len(self.joints)]
         shares = np.zeros((self.count, len(self.joints)))
         for slot, simulation in enumerate(self.simulation):
-            shares[slot] = tip_motion(simulation.jacobian, simulation.tip_pose, TIP_SPEED * actions[slot], self.speeds)
+            shares[slot] = tip_motion(simulation.jacobian, simulation.tip_pose, TIP_SPEED * actions[slot], self.speeds_of(slot))
         return shares
 
     def judge(self, before, after):
@@ -348,7 +353,7 @@ class Task:
         parts = {name: seen[name] for name in ("joints", "tip", "direction", "wrench", "goal", "wall")}
         parts["to_goal"] = np.einsum("nij,ni->nj", seen["turn"], seen["goal"] - seen["tip"])
         parts.update(self._further(seen))
-        parts = {name: np.asarray(value, np.float32) for name, value in parts.items()}
+        parts = {name: np.array(value, np.float32) for name, value in parts.items()}  # copies: a task goes on with its own
         if self.camera:
             wanted = {"normals": "normal" in self.pictures, "colour": "colour" in self.pictures, "tool": self.tool}
             seen = [simulation.camera(*self.camera, **wanted)

@@ -92,7 +92,10 @@ class _Procedure(Task):
 
     @property
     def speeds(self):
-        return self.organ[0].joint_speeds
+        return self.speeds_of(0)
+
+    def speeds_of(self, slot):
+        return self.organ[slot].joint_speeds  # of its scope
 
     def observe_further(self, seen):
         rows = []
@@ -148,12 +151,20 @@ class Bite(_Procedure):
         return self.approach(before, after) + holds - np.maximum(elsewhere - success, 0), success
 
 
+def _cinched_sets(threads):
+    """The middles of the sets of seven bites that are cinched and recognised as U."""
+    return [np.mean(thread["bites"], axis=0) for thread in threads
+            if thread["stage"] == "cinched" and thread["technique"] == "u" and len(thread["bites"]) >= 7]
+
+
 class SutureSet(_Procedure):
-    """A suture set of seven bites around a place, with T-tag and cinch, that is cinched and recognised as U."""
+    """A suture set of seven bites with its middle within 20 mm of a place, with T-tag and cinch, that is cinched and recognised
+    as U."""
 
     name = "SutureSet"
     reward = f"{APPROACH}; 1 for every bite"
     seconds = 240.0
+    tolerance = 20e-3
     around = (-0.3, 0.3)
     protocol = ("goals:\n  - suture_set: {{pattern: u, bites: 7, along: {along}, around: {around} rad, "
                 "length: 15 mm, width: 60 mm}}\n")
@@ -162,7 +173,8 @@ class SutureSet(_Procedure):
         bites = np.array([sum(event.kind == "bite" for event in events) for events in self.events])
         success = np.array([any(event.kind == "cinched" for event in events) for events in self.events])
         for slot in np.flatnonzero(success):
-            success[slot] = any(t["stage"] == "cinched" and t["technique"] == "u" for t in self.simulation[slot].threads())
+            middles = _cinched_sets(self.simulation[slot].threads())
+            success[slot] = any(np.linalg.norm(middle - after["goal"][slot]) <= self.tolerance for middle in middles)
         return self.approach(before, after) + bites, success
 
 
@@ -178,11 +190,12 @@ class Sleeve(_Procedure):
 
     def judge(self, before, after):
         bites, cinched = (np.array([sum(event.kind == kind for event in events) for events in self.events]) for kind in ("bite", "cinched"))
-        success = np.zeros(self.count, bool)
+        made, success = np.zeros(self.count), np.zeros(self.count, bool)
         for slot in np.flatnonzero(cinched):
-            done = [t["technique"] for t in self.simulation[slot].threads() if t["stage"] == "cinched"]
-            success[slot] = done.count("u") >= self.sets
-        return bites + 10.0 * cinched, success
+            threads = self.simulation[slot].threads()
+            made[slot] = len(_cinched_sets(threads[-cinched[slot]:]))
+            success[slot] = len(_cinched_sets(threads)) >= self.sets
+        return bites + 10.0 * made, success
 
 
 class Retract(_Procedure):

@@ -10,6 +10,7 @@ from .settings import is_number
 
 OF_ACTIONS = ("action.delay", "action.noise")  # of actions [s]; standard deviation of the noise on their shares
 MOST_OF_ACTIONS = 10.0  # of both: no action arrives in an episode of 10 s, none is heard in such noise
+TAILS = 3.0  # standard deviations at which a normal distribution ends, so that its ends can be tried
 #: keys of the scene for which environments have settings of their own
 _SETTINGS = {"geometry.particles": "particles", "geometry.shape": "organs", "geometry.scale": "organs", "step_period": "step_period"}
 
@@ -40,8 +41,7 @@ class Variation:
 
     def scenes(self):
         """Sections to try before any episode: with the ends of each distribution, its mean, all of its choices."""
-        tried = [{name: value} for name, given in self.vary.items() if name not in OF_ACTIONS
-                 for value in {"uniform": given[1:], "normal": given[1:2], "choice": given[-1]}[given[0]]]
+        tried = [{name: value} for name, given in self.vary.items() if name not in OF_ACTIONS for value in _ends(given)]
         return [self._scene(values) for values in tried or [{}] * bool(self.scene)]
 
     def begin(self, slot, random, chosen):
@@ -113,7 +113,14 @@ def _distributions(vary):
     return {name: tuple(given) for name, given in vary.items()}
 
 
+def _ends(given):
+    """What a distribution gives at most and at least; all of its choices."""
+    kind, *of = given
+    return of[0] if kind == "choice" else of if kind == "uniform" else [of[0] - TAILS * of[1], of[0] + TAILS * of[1]]
+
+
 def _drawn(given, random):
-    if given[0] == "choice":
-        return given[1][random.integers(len(given[1]))]
-    return float(getattr(random, given[0])(*given[1:]))
+    kind, *of = given
+    if kind == "choice":
+        return of[0][random.integers(len(of[0]))]
+    return float(random.uniform(*of) if kind == "uniform" else of[0] + of[1] * np.clip(random.standard_normal(), -TAILS, TAILS))
