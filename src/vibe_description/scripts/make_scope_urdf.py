@@ -32,6 +32,8 @@ NEEDLE_OPEN = (0.0148, -0.0025, 0.0134)  # [D] the needle's point in scope_tip, 
 HINGE = (0.0014, -0.00445, 0.0053)  # of the arm
 ARM_LENGTH = 0.0108                 # from the hinge to the pin of the hook
 HOOK_LENGTH = 0.0054                # from that pin to the needle's point
+ARM_RADIUS, HOOK_RADIUS = 0.00055, 0.0005  # of their collision shapes, round bars about the meshes
+HOOK_BEND = (0.0031, 0.0, 0.0004)   # where these shapes of the hook meet, in its frame
 NEEDLE_IN_EXCHANGE = (0.0012, 0.4189)  # how deep, and how far turned to lie along the bore [rad]
 NEEDLE_GONE = 0.018                 # as deep: within the rigid end of the endoscope
 PROBE_IN, PROBE_REACH = -0.005, 0.015  # of its end before the face; beyond, the rear end of the drawn piece would show
@@ -160,6 +162,15 @@ def capsule_x(start, end, radius):
     """Round bar from start to end along x, as the three primitives that URDF has for it."""
     bar = Cylinder(radius, end - start, ((start + end) / 2, 0, 0))
     return [bar, Sphere(radius, (start, 0, 0)), Sphere(radius, (end, 0, 0))]
+
+
+def capsule_between(start, end, radius):
+    """The same between any two points."""
+    along = [b - a for a, b in zip(start, end)]
+    length = math.hypot(*along)
+    turn = (-math.asin(along[1] / length), math.atan2(along[0], along[2]), 0)
+    bar = Cylinder(radius, length, tuple((a + b) / 2 for a, b in zip(start, end)), turn)
+    return [bar, Sphere(radius, start), Sphere(radius, end)]
 
 
 class Body:
@@ -352,17 +363,21 @@ def add_needle(urdf):
 
 
 def add_drawn_arm(urdf):
-    """Arm and hook in place of the body of the link needle, which has no mesh: only drawn, no weight of their own."""
+    """Arm and hook in place of the body of the link needle, which has no mesh: no weight of their own. They have
+    collision shapes for simulations to which they are bodies."""
     carrier = Body.ball(STEEL, 0.001)
-    urdf.drawn_joint("needle_arm_hinge", "device_cap", "needle_arm", HINGE)
-    urdf.link("needle_arm", carrier, "needle_arm", note="only drawn, as all that follows; origin at the hinge of the arm")
     pin = (PIN_OPEN[0] - HINGE[0], 0, PIN_OPEN[1] - HINGE[2])
+    urdf.drawn_joint("needle_arm_hinge", "device_cap", "needle_arm", HINGE)
+    urdf.link("needle_arm", carrier, "needle_arm", capsule_between((0, 0, 0), pin, ARM_RADIUS),
+              note="only drawn, as all that follows, unless the scene makes arm and hook bodies; origin at the hinge")
     urdf.joint("needle_arm_pin_mount", "fixed", "needle_arm", "needle_arm_pin", pin)
     urdf.link("needle_arm_pin")
     urdf.drawn_joint("needle_hook_turn", "needle", "needle_hook")
-    urdf.link("needle_hook", carrier, "needle_hook", note="holds the needle; origin at the needle's point")
-    urdf.joint("needle_hook_pin_mount", "fixed", "needle_hook", "needle_hook_pin",
-               (PIN_OPEN[0] - NEEDLE_OPEN[0], HINGE[1] - NEEDLE_OPEN[1], PIN_OPEN[1] - NEEDLE_OPEN[2]))
+    pin = (PIN_OPEN[0] - NEEDLE_OPEN[0], HINGE[1] - NEEDLE_OPEN[1], PIN_OPEN[1] - NEEDLE_OPEN[2])
+    urdf.link("needle_hook", carrier, "needle_hook",
+              capsule_between((0, 0, 0), HOOK_BEND, HOOK_RADIUS) + capsule_between(HOOK_BEND, pin, HOOK_RADIUS),
+              note="holds the needle; origin at the needle's point")
+    urdf.joint("needle_hook_pin_mount", "fixed", "needle_hook", "needle_hook_pin", pin)
     urdf.link("needle_hook_pin", note="where needle_arm_pin is")
 
 

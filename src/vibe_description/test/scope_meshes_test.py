@@ -65,12 +65,15 @@ def along_edges(corners, spacing):
     return numpy.unique(numpy.round(numpy.concatenate(parts), 6), axis=0)
 
 
+ARM = ("needle_arm", "needle_hook")  # bodies where a scene asks for it
+
+
 class Capsule:
     """A cylinder whose ends carry spheres, as the simulator reads them."""
 
-    def __init__(self, link, pose):
+    def __init__(self, link, pose, number=0):
         shapes = [(c.find("geometry")[0], origin_of(c.find("origin"))) for c in link.findall("collision")]
-        rod, place = next((shape, at) for shape, at in shapes if shape.tag == "cylinder")
+        rod, place = [(shape, at) for shape, at in shapes if shape.tag == "cylinder"][number]
         self.radius, self.length = float(rod.get("radius")), float(rod.get("length"))
         centre, axis = moved(place[:3, 3], pose), pose[:3, :3] @ place[:3, 2]
         self.ends = numpy.array([centre - self.length / 2 * axis, centre + self.length / 2 * axis])
@@ -102,7 +105,8 @@ class ScopeMeshesTest(unittest.TestCase):
         cls.links = {link.get("name"): link for link in cls.scope.root.findall("link")}
         cls.straight = cls.scope.poses({}, numpy.eye(4))
         cls.meshes = {name: mesh(name) for name in mesh_names()}
-        cls.capsules = {n: Capsule(link, cls.straight[n]) for n, link in cls.links.items() if link.findall("collision")}
+        solid = [name for name, link in cls.links.items() if link.findall("collision") and name not in ARM]
+        cls.capsules = {name: Capsule(cls.links[name], cls.straight[name]) for name in solid}
 
     def drawn(self, link, poses=None):
         """Corners of a link's triangles where it is [m]."""
@@ -139,7 +143,7 @@ class ScopeMeshesTest(unittest.TestCase):
         drawn = urdf[urdf.index("<!-- drawn ") :]
         for tag in ("<collision>", "<inertial>", "<joint", "<limit"):
             self.assertEqual(physics_of(urdf).count(tag), urdf.count(tag) - drawn.count(tag))
-        self.assertEqual(drawn.count("<collision>"), 0)
+        self.assertEqual(drawn.count("<cylinder "), 3, "of arm and hook, which no simulation reads unless its scene asks for it")
         self.assertNotIn("meshes/", physics_of(urdf))
         changed = urdf.replace('<axis xyz="-0.6 0 -0.8"/>', '<axis xyz="-0.8 0 -0.6"/>', 1)
         self.assertNotEqual(physics_of(changed), physics_of(urdf), "the joint of the needle")
@@ -296,6 +300,15 @@ class ScopeMeshesTest(unittest.TestCase):
             self.assertLess(self.largest_gap(link), allowed, link)
         # control: a part that is half a millimetre beside its place
         self.assertGreater(self.largest_gap("segment_4", (0, 0.5 * MM, 0)), OUTSIDE)
+
+    def test_arm_and_hook_are_near_their_collision_shapes(self):
+        for link, rods, most in (("needle_arm", 1, 0.3 * MM), ("needle_hook", 2, 1.6 * MM)):
+            capsules = [Capsule(self.links[link], self.straight[link], k) for k in range(rods)]
+            points = self.drawn(link).reshape(-1, 3)
+            self.assertLess(numpy.min([c.distance(points) for c in capsules], axis=0).max(), most, link)
+            # control: with its first bar alone, or half a millimetre beside its place
+            aside = points + (0, 0.5 * MM, 0) if rods == 1 else points
+            self.assertGreater(capsules[0].distance(aside).max(), most, link)
 
     def test_what_has_no_collision_shape_is_small(self):
         cap = self.drawn("device_cap").reshape(-1, 3)

@@ -58,7 +58,8 @@ Eigen::Isometry3d poseFromAnatomy(const Organ& organ) {
 
 void addTool(const std::string& tool_urdf, Model& model) {
   const ScopeScene& scope = *model.scene.scope;
-  model.tool = std::make_shared<const ToolModel>(ToolModel::fromUrdf(tool_urdf, scope.urdf));
+  const NeedleArm arm = scope.needle_arm && model.scene.tissue.model == "shell" ? NeedleArm::Body : NeedleArm::Drawn;
+  model.tool = std::make_shared<const ToolModel>(ToolModel::fromUrdf(tool_urdf, scope.urdf, arm));
   if (scope.compliance) model.scope_springs.emplace(*model.tool, *scope.compliance);
   model.tip_link = model.tool->linkIndex("scope_tip");
   model.helix_link = model.tool->linkIndex("helix");

@@ -60,6 +60,8 @@ std::pair<int, double> widestLink(const ToolModel& tool) {
   tool.forwardKinematics({}, poses);
   std::pair<int, double> widest{0, 0};
   for (const ToolShape& shape : tool.shapes()) {
+    const auto& arm = tool.needleLinkage();
+    if (arm && (shape.link == arm->arm || shape.link == arm->hook)) continue;  // an arm that is thin gives room
     const double reach = reachFromAxis(shape, poses[static_cast<std::size_t>(shape.link)] * shape.origin);
     if (reach > widest.second) widest = {shape.link, reach};
   }

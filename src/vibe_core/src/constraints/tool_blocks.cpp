@@ -77,8 +77,8 @@ class ToolContactBlock : public ConstraintBlock {
 
   void findContacts(const StepContext& context, BodyLoads& loads) {
     const ToolPoses& poses = *context.tool;
-    const std::vector<SurfaceContact>& found =
-        contacts_.find(poses.start, poses.end, path_, stepPolicy().touch_margin, excluded_, context.when);
+    const std::vector<SurfaceContact>& found = contacts_.find(poses.start, poses.end, path_, stepPolicy().touch_margin,
+                                                              excluded_, context.when, poses.needle_leads);
     const std::vector<SurfaceContact>& counting =
         loads.held_still ? memory_.recall(found, poses, context.state, keptWay(context), excluded_) : found;
     for (const SurfaceContact& contact : counting) addContact(context, contact, loads);
@@ -119,8 +119,16 @@ class ToolContactBlock : public ConstraintBlock {
     constraint.friction = model.scene.scope->friction;
     constraint.anchor = anchor;
     constraint.yield = toolYield(context, link, anchor);
+    constraint.driven = drivenBy(context, link, anchor);
     local_point_.push_back(local);
     origin_.push_back({contact.shape, contact.clearance});
+  }
+
+  // By the drive of a needle arm that is a body.
+  static Eigen::Vector3d drivenBy(const StepContext& context, int link, const Eigen::Vector3d& point) {
+    const auto& arm = context.model.tool->needleLinkage();
+    if (!arm || (link != arm->arm && link != arm->hook)) return Eigen::Vector3d::Zero();
+    return pointJacobian(*context.model.tool, context.tool->end, link, point).col(NeedleDriver);
   }
 
   // Equation (10): the inner half of the wall, between tool and mid-surface, is compressed where it cannot yield

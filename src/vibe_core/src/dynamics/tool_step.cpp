@@ -87,10 +87,22 @@ bool ToolStep::isStopped() {
     if (point.weight >= whole) scratch_.held.push_back(point.particle);
   const ToolMotion wanted = yielded_ ? *yielded_ : *motion_;
   ToolMotion motion = wanted;
-  if (!scratch_.guard->stop(scratch_.tool, motion, pathOfStep(scratch_, state_), scratch_.held)) return false;
+  const bool overloaded = isOverloaded();
+  if (overloaded) motion.moveEnd(NeedleDriver, motion.inputs(0)[NeedleDriver]);
+  if (!scratch_.guard->stop(scratch_.tool, motion, pathOfStep(scratch_, state_), scratch_.held) && !overloaded)
+    return false;
   limited_ = motion;
   reportStopped(wanted);
   return true;
+}
+
+// Whether the drive of the needle arm would have to push harder than it can.
+bool ToolStep::isOverloaded() const {
+  const double move = motion_->inputs(1)[NeedleDriver] - motion_->inputs(0)[NeedleDriver];
+  if (move == 0 || !model_.tool->needleLinkage()) return false;
+  double effort = 0;
+  for (const ContactConstraint& contact : scratch_.loads.contacts) effort += contact.force.dot(contact.driven);
+  return effort * (move > 0 ? 1 : -1) > model_.tool->limits()[NeedleDriver].effort;
 }
 
 // The solve had the tool where it does not come to, and the wall out of its way there; where the tool stops, the same
@@ -141,6 +153,7 @@ void ToolStep::recoverAround() {
   // the tool stands where it came to while the wall goes on
   const ToolMotion stands(*model_.tool, model_.tool_base, state_.joints, state_.joints, motion.displacement(1));
   ToolPoses there;
+  there.needle_leads = scratch_.tool.needle_leads;
   stands.linkPoses(0, there.start);
   for (int attempt = 0; attempt < stepPolicy().recovery_attempts; ++attempt) {
     const std::vector<int>& met = scratch_.guard->meets(there, stands, pathOfStep(scratch_, state_), scratch_.held);

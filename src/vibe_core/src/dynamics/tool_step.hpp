@@ -50,6 +50,7 @@ class ToolStep {
 
  private:
   ToolDisplacement expectedDisplacement() const;
+  bool isOverloaded() const;
   void reportStopped(const ToolMotion& wanted);
   void reportForces();
   void reportLoad();

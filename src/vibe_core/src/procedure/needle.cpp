@@ -133,7 +133,6 @@ DeepestPoint deepestPoint(const SurfaceView& wall, const Eigen::Vector3d& begin,
 
 namespace {
 
-constexpr double kFreeSwing = 0.3;  // share of the chord before the needle's point passes the cap
 constexpr double kMaxDepth = 0.01;  // half of the width of the curved needle, which reaches no deeper [m]
 
 double thicknessAround(const Model& model, const Bite& bite) {

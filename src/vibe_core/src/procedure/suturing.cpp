@@ -12,8 +12,7 @@ namespace vibe {
 
 namespace {
 
-// Of the range of the joint. Hysteresis: a tremor must not open and close the arm; design choice.
-constexpr double kClosed = 0.95;
+// Of the range of the joint. Hysteresis with kClosedShare: a tremor must not open and close the arm; design choice.
 constexpr double kOpen = 0.10;
 constexpr double kMinNewSegment = 1e-3;  // so that two bites at one place have thread between them; design choice [m]
 
@@ -121,7 +120,7 @@ RejectReason reasonAgainstExchange(const ProcedureState& procedure) {
 void updateArm(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, State& state, EventLog log) {
   const JointLimits& limits = model.tool->limits()[NeedleDriver];
   const double closed = (state.joints[NeedleDriver] - limits.lower) / (limits.upper - limits.lower);
-  if (!state.procedure.arm_closed && closed >= kClosed) closeArm(model, link_poses, state, log);
+  if (!state.procedure.arm_closed && closed >= kClosedShare) closeArm(model, link_poses, state, log);
   if (state.procedure.arm_closed && closed <= kOpen) openArm(state, log);
 }
 

@@ -263,6 +263,10 @@ std::vector<SchemaRow> toolRows() {
        "URDF of endoscope and suturing device: a `package://` path, or a path relative to the scene file", kChoice},
       {"scope.friction", [](Scene& s) -> double& { return s.scope->friction; }, "1", 0, 2,
        "Coulomb friction coefficient between tool and mucosa", kChoice},
+      {"scope.needle_arm", [](Scene& s) -> bool& { return s.scope->needle_arm; }, "", 0, 0,
+       "arm and hook of the needle touch the wall and open it against a force; else they are only drawn. Of model "
+       "shell",
+       kChoice},
       {"scope.base.position", [](Scene& s) -> Eigen::Vector3d& { return s.scope->base_position; }, "m", -10, 10,
        "origin of `scope_base` in `world`", "none", std::nullopt, "none", true},
       {"scope.base.rpy", [](Scene& s) -> std::array<double, 3>& { return s.scope->base_rpy; }, "rad", -kTurn, kTurn,

@@ -182,6 +182,7 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
     motion.emplace(*model.tool, model.tool_base, state.joints, end, state.tool_displacement);
     std::swap(poses.start, poses.end);  // it starts where the last step ended
     motion->linkPoses(0, poses.start);
+    poses.needle_leads = state.procedure.needle_loaded && state.procedure.needle_on_arm;
     updateGrip(model, poses.start, input.buttons[HelixGrab] != 0, state, log);
     commandProcedure(model, poses.start, input, state, log);
     state.joints = end;

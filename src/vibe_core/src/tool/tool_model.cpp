@@ -57,7 +57,7 @@ double ShaftBend::angleRate(int station, int direction) const {
   return share(station).mean_rate * displacement_[dof] + share(station).change_rate * displacement_[dof + 1];
 }
 
-ToolModel ToolModel::fromUrdf(const std::string& urdf_xml, const std::string& place) {
+ToolModel ToolModel::fromUrdf(const std::string& urdf_xml, const std::string& place, NeedleArm arm) {
   const UrdfDocument document(urdf_xml, place);
   ToolBuilder parts(document, place);
   ToolModel model;
@@ -68,7 +68,25 @@ ToolModel ToolModel::fromUrdf(const std::string& urdf_xml, const std::string& pl
   model.limits_ = parts.limits;
   model.shaft_stations_ = std::move(parts.shaft_stations);
   model.shaft_end_ = parts.shaft_end;
+  model.setArm(arm);
   return model;
+}
+
+void ToolModel::setArm(NeedleArm arm) {
+  const auto linkOf = [this](const char* joint) {
+    const ToolJoint* const found = findJoint(*this, joint);
+    return found == nullptr ? -1 : found->child_link;
+  };
+  const NeedleLinkage linkage{linkOf("needle_arm_hinge"),     linkOf("needle_hook_turn"),
+                              linkOf("needle_arm_pin_mount"), linkOf("needle_hook_pin_mount"),
+                              limits_[NeedleDriver].lower,    limits_[NeedleDriver].upper};
+  if (!vibe::needleLinkage(*this, linkage.lower)) return;
+  if (arm == NeedleArm::Body) {
+    linkage_ = linkage;
+    return;
+  }
+  const auto drawn = [&](const ToolShape& shape) { return shape.link == linkage.arm || shape.link == linkage.hook; };
+  shapes_.erase(std::remove_if(shapes_.begin(), shapes_.end(), drawn), shapes_.end());
 }
 
 int ToolModel::linkIndex(const std::string& name) const {
@@ -92,6 +110,7 @@ void ToolModel::forwardKinematics(const std::array<double, kJointCount>& inputs,
   const bool bent = std::any_of(displacement.begin() + kShaftDof, displacement.end(), [](double d) { return d != 0; });
   const ShaftBend bend(shaft_stations_, bent ? freeLength(inputs[Insertion] + displacement[Insertion]) : 0,
                        displacement);
+  const std::optional<LinkageTurns> turns = linkage_ ? vibe::needleLinkage(*this, inputs[NeedleDriver]) : std::nullopt;
   link_poses.resize(link_names_.size());
   link_poses[0].setIdentity();
   for (const ToolJoint& joint : joints_) {
@@ -103,7 +122,9 @@ void ToolModel::forwardKinematics(const std::array<double, kJointCount>& inputs,
       continue;
     }
     const double yielded = joint.input < kScopeJointCount ? displacement[joint.input] : 0;
-    const double position = joint.multiplier * (inputs[joint.input] + yielded) + joint.offset;
+    double position = joint.multiplier * (inputs[joint.input] + yielded) + joint.offset;
+    if (turns && joint.child_link == linkage_->arm) position = turns->arm;
+    if (turns && joint.child_link == linkage_->hook) position = turns->hook;
     if (joint.type == ToolJoint::Type::Prismatic)
       pose.translate(position * joint.axis);
     else

@@ -58,6 +58,25 @@ Eigen::Vector3d jointMotion(const ToolJoint& joint, const Eigen::Isometry3d& pos
   return axis;
 }
 
+// How fast arm and hook turn with needle_driver [rad/m]: the pin moves with both, so that the parts of its motion along
+// either bar are those of that bar's other end.
+// @param way  of the needle's point per metre of the driver
+double turnRate(const NeedleLinkage& linkage, const ToolJoint& joint, const std::vector<Eigen::Isometry3d>& poses,
+                const Eigen::Vector3d& way) {
+  const Eigen::Vector3d axis = poses[linkage.arm].linear() * Eigen::Vector3d(joint.axis);
+  const Eigen::Vector3d pin = poses[linkage.arm_pin].translation();
+  const Eigen::Vector3d arm = pin - poses[linkage.arm].translation(), hook = pin - poses[linkage.hook].translation();
+  const double across = axis.cross(arm).dot(hook);  // 0 where the bars are in one line
+  return (joint.child_link == linkage.arm ? way.dot(hook) : way.dot(arm)) / across;
+}
+
+double rateOf(const ToolModel& tool, const ToolJoint& joint, const std::vector<Eigen::Isometry3d>& poses) {
+  const auto& linkage = tool.needleLinkage();
+  if (!linkage || (joint.child_link != linkage->arm && joint.child_link != linkage->hook)) return joint.multiplier;
+  const ToolJoint& needle = tool.joints()[static_cast<std::size_t>(tool.joints()[linkage->hook - 1].parent_link) - 1];
+  return turnRate(*linkage, joint, poses, needle.multiplier * (poses[needle.child_link].linear() * needle.axis));
+}
+
 }  // namespace
 
 Eigen::Matrix<double, 3, kJointCount> pointJacobian(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses,
@@ -65,7 +84,8 @@ Eigen::Matrix<double, 3, kJointCount> pointJacobian(const ToolModel& tool, const
   Eigen::Matrix<double, 3, kJointCount> jacobian = Eigen::Matrix<double, 3, kJointCount>::Zero();
   while (link > 0) {
     const ToolJoint& joint = tool.joints()[link - 1];  // the joint that carries the link
-    if (joint.input >= 0) jacobian.col(joint.input) += joint.multiplier * jointMotion(joint, poses[link], point);
+    if (joint.input >= 0)
+      jacobian.col(joint.input) += rateOf(tool, joint, poses) * jointMotion(joint, poses[link], point);
     link = joint.parent_link;
   }
   return jacobian;

@@ -48,6 +48,7 @@ SurfaceContacts::SurfaceContacts(const ToolModel& tool, const SurfaceMesh& surfa
       tool_(tool),
       on_tip_(shapesOnTip(tool)),
       near_triangles_(surface, passable),
+      passage_(tool, thickness),
       triangles_(near_triangles_.triangles()),
       neighbour_(neighbours(triangles_)) {
   for (const double t : thickness) {
@@ -72,11 +73,13 @@ double SurfaceContacts::halfThickness(const std::array<int, 3>& node, const Eige
 const std::vector<SurfaceContact>& SurfaceContacts::find(const std::vector<Eigen::Isometry3d>& start,
                                                          const std::vector<Eigen::Isometry3d>& end,
                                                          const SurfacePath& path, double margin,
-                                                         const std::vector<char>& excluded, double when) {
+                                                         const std::vector<char>& excluded, double when,
+                                                         bool needle_leads) {
   contacts_.clear(), kept_.clear();
   when_ = when;
   tool_.place(start, end);
   near_triangles_.find(tool_, path, max_half_thickness_ + margin, near_);
+  passage_.open(start, needle_leads, tool_, path, triangles_, near_);
   for (std::size_t first = 0, last = 0; first < near_.size(); first = last) {
     const int shape = near_[first].shape;
     while (last < near_.size() && near_[last].shape == shape) ++last;
@@ -205,7 +208,7 @@ void SurfaceContacts::add(const SurfacePoint& point, int shape, double fraction,
 void SurfaceContacts::addOutside(SurfaceContact& contact, const Eigen::Vector3d& wall, const Eigen::Vector3d& core) {
   double deepest = 0;
   for (int s = 0; s < tool_.count(); ++s) {
-    if (s == contact.shape || !tool_.box(s).contains(contact.tool_point)) continue;
+    if (s == contact.shape || passage_.isAway(s) || !tool_.box(s).contains(contact.tool_point)) continue;
     if (isLeftTo(s, contact.shape, wall, core)) return;
     deepest = std::max(deepest, tool_.radius(s) - tool_.gap(s, 1, contact.tool_point).distance);
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tool_contact/near_triangles.hpp"
+#include "tool_contact/needle_passage.hpp"
 #include "tool_contact/tool_approach.hpp"
 #include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/solver/body_loads.hpp"
@@ -66,10 +67,12 @@ class SurfaceContacts {
   /// @param excluded  per vertex: 1: it takes no part; a triangle of only such vertices neither; kHeld: the helix holds
   ///                  it, and draws triangles there into the device on the tip of the scope
   /// @param when    part of the step after which its forces act
+  /// @param needle_leads  the needle is on the arm, see NeedlePassage
   /// @returns ordered by nodes, then depth; valid until the next call
   const std::vector<SurfaceContact>& find(const std::vector<Eigen::Isometry3d>& start,
                                           const std::vector<Eigen::Isometry3d>& end, const SurfacePath& path,
-                                          double margin, const std::vector<char>& excluded, double when = 1);
+                                          double margin, const std::vector<char>& excluded, double when = 1,
+                                          bool needle_leads = false);
 
   /// The triangles that the tool cannot pass.
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
@@ -109,6 +112,7 @@ class SurfaceContacts {
   SweptTool tool_;
   std::vector<char> on_tip_;  // per shape
   NearTriangles near_triangles_;
+  NeedlePassage passage_;
   const std::vector<std::array<int, 3>>& triangles_;
   std::vector<std::array<int, 3>> neighbour_;  // of each triangle across the edge after its k-th vertex, -1: none
   std::vector<double> half_thickness_;         // per vertex

@@ -14,7 +14,12 @@ constexpr double kHardlyNearer = 1 - 1e-6;
 
 ToolGuard::ToolGuard(const ToolModel& tool, const SurfaceMesh& surface, const std::vector<double>& thickness,
                      const std::vector<char>& passable)
-    : policy_(stepPolicy()), thickness_(thickness), on_tip_(shapesOnTip(tool)), tool_(tool), near_(surface, passable) {}
+    : policy_(stepPolicy()),
+      thickness_(thickness),
+      on_tip_(shapesOnTip(tool)),
+      tool_(tool),
+      near_(surface, passable),
+      passage_(tool, thickness) {}
 
 double ToolGuard::separate(ToolPoses& poses, ToolMotion& motion, const SurfacePath& path,
                            const std::vector<int>& held) {
@@ -82,6 +87,7 @@ void ToolGuard::findPairs(ToolPoses& poses, const ToolMotion& motion, const Surf
   motion.linkPoses(1, poses.end);
   tool_.place(poses.start, poses.end);
   near_.find(tool_, path, policy_.guard_kept * *std::max_element(thickness_.begin(), thickness_.end()), pairs_);
+  passage_.open(poses.start, poses.needle_leads, tool_, path, near_.triangles(), pairs_);
 }
 
 bool ToolGuard::isFree(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path) {

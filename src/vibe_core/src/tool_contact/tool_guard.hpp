@@ -4,6 +4,7 @@
 
 #include "tool/tool_motion.hpp"
 #include "tool_contact/near_triangles.hpp"
+#include "tool_contact/needle_passage.hpp"
 #include "tool_contact/tool_approach.hpp"
 #include "vibe_core/solver/step_policy.hpp"
 #include "vibe_core/tool/tool_model.hpp"
@@ -67,6 +68,7 @@ class ToolGuard {
   std::vector<int> met_;
   SweptTool tool_;
   NearTriangles near_;
+  NeedlePassage passage_;
   std::vector<NearTriangles::Pair> pairs_;
 };
 

@@ -135,6 +135,7 @@ struct ScopeScene {
   Eigen::Vector3d base_position{0, 0, 0};          ///< otherwise this position, in world [m]
   std::array<double, 3> base_rpy{0, 0, 0};         ///< and this orientation [rad]
   double friction = 0.1;                           ///< Coulomb coefficient tool on mucosa
+  bool needle_arm = false;                         ///< the needle arm is a body for the wall; else it is only drawn
   std::optional<ScopeComplianceScene> compliance;  ///< empty: a rigid scope
 };
 

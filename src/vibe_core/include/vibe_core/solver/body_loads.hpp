@@ -119,6 +119,8 @@ struct ContactConstraint {
   Eigen::Matrix<double, 3, kYieldDofs> yield =
       Eigen::Matrix<double, 3, kYieldDofs>::Zero();  ///< how far the anchor moves per coordinate in which the tool
                                                      ///< yields [m/rad], [m/m]
+  Eigen::Vector3d driven = Eigen::Vector3d::Zero();  ///< how far the anchor moves per metre of needle_driver, if it
+                                                     ///< is on a needle arm that is a body [m/m]
   /// Of the tool on the surface, mean over the step; in: where the solve begins. What begins with a force keeps its row
   /// and its friction where there are too many contacts [N]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();

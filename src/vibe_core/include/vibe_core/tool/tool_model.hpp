@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -93,6 +94,24 @@ struct JointLimits {
   double effort = 0;    ///< the hand lets slip above this [N], [N m]
 };
 
+/// Share of the range of needle_driver before the needle's point passes the cap, and from which the arm counts as
+/// closed. Design choices.
+constexpr double kFreeSwing = 0.3, kClosedShare = 0.95;
+
+/// What arm and hook of the needle are to a simulation.
+enum class NeedleArm {
+  Drawn,  ///< a picture: without collision shapes, and turned as the URDF's mimic elements say
+  Body    ///< with the URDF's collision shapes, and turned so that the pin between them stays at both
+};
+
+/// How arm and hook turn while needle_driver moves: two bars that are joined by a pin, the arm about its hinge, the
+/// hook about the needle's point.
+struct NeedleLinkage {
+  int arm = -1, hook = -1;          ///< numbers of the links needle_arm and needle_hook
+  int arm_pin = -1, hook_pin = -1;  ///< of the links at both sides of the pin
+  double lower = 0, upper = 0;      ///< range of needle_driver: open, closed [m]
+};
+
 /// Endoscope with suturing device: kinematic tree and collision shapes from one URDF. Constant after loading. Parents
 /// have lower link numbers than their children; link 0 is the root ("scope_base").
 class ToolModel {
@@ -101,11 +120,12 @@ class ToolModel {
   /// @param place     name used in error messages, e.g. the file name
   /// Joints named shaft_up_down_1, shaft_left_right_1, ... are moved by no input: they bend under load, and are 0 with
   /// a tool that is rigid. A URDF without them has a straight shaft.
+  /// @param arm       what the needle arm is, in a URDF that has needle_arm_hinge and needle_hook_turn
   /// @throws Error for text that is not a valid URDF, a joint type other than fixed, revolute or prismatic, a moving
   ///         joint that neither is one of kJointNames, nor mimics one, nor is one of the shaft, a missing joint of
   ///         kJointNames, missing limits, a mesh collision shape, or a missing link helix, needle, scope_tip or
   ///         scope_camera_optical.
-  static ToolModel fromUrdf(const std::string& urdf_xml, const std::string& place);
+  static ToolModel fromUrdf(const std::string& urdf_xml, const std::string& place, NeedleArm arm = NeedleArm::Drawn);
 
   int linkCount() const { return static_cast<int>(link_names_.size()); }  ///< number of links, the root included
   /// In the URDF. @param link  0 to linkCount() - 1, not checked
@@ -117,6 +137,9 @@ class ToolModel {
   const std::vector<LinkMesh>& meshes() const { return meshes_; }   ///< of all links, in the order of their links
   /// Of the seven inputs, in the order of Joint.
   const std::array<JointLimits, kJointCount>& limits() const { return limits_; }
+
+  /// Of a needle arm that is a body; empty: there is none, or it is only drawn.
+  const std::optional<NeedleLinkage>& needleLinkage() const { return linkage_; }
 
   /// Pose of every link in the frame of the root link, in link order.
   /// @param inputs  positions of the seven inputs [m], [rad]. They are not clamped.
@@ -143,7 +166,10 @@ class ToolModel {
                                                     const std::array<double, kJointCount>& start) const;
 
  private:
+  void setArm(NeedleArm arm);
+
   std::vector<std::string> link_names_;
+  std::optional<NeedleLinkage> linkage_;
   std::vector<ToolJoint> joints_;  // ordered parent first; joint k has child_link k + 1
   std::vector<ToolShape> shapes_;
   std::vector<LinkMesh> meshes_;
@@ -165,8 +191,9 @@ struct LinkPoses {
 
 /// Of one step.
 struct ToolPoses {
-  LinkPoses start, end;  ///< at the start and at the end of the step
-  LinkPoses middle;      ///< half way, before the solve; empty: a tool that does not yield
+  LinkPoses start, end;       ///< at the start and at the end of the step
+  bool needle_leads = false;  ///< the needle is on the arm: its point pierces what is in its way
+  LinkPoses middle;           ///< half way, before the solve; empty: a tool that does not yield
 };
 
 }  // namespace vibe
