@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <vibe_msgs/SolverStatistics.h>
+
 #include "protocol/byte_writer.hpp"
 #include "protocol/session_health.hpp"
 #include "protocol/shape_message.hpp"
@@ -64,9 +66,10 @@ SessionStream::SessionStream(const ros::NodeHandle& handle, WebServer& server)
     std::transform(wrench.begin(), wrench.end(), content_.wrench.begin(),
                    [](double v) { return static_cast<float>(v); });
   }));
-  add(handle_.subscribe<vibe_msgs::ProcedureState>("procedure/state", kQueue, [this](const auto& message) {
-    state_ = message;
-    if (message->paused) heard_ = ros::SteadyTime::now();
+  add(handle_.subscribe<vibe_msgs::ProcedureState>("procedure/state", kQueue, [this](const auto& m) { state_ = m; }));
+  // once a second, also during a pause
+  add(handle_.subscribe<vibe_msgs::SolverStatistics>("solver_statistics", kQueue, [this](const auto&) {
+    if (state_ && state_->paused) heard_ = ros::SteadyTime::now();
   }));
   add(handle_.subscribe<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kQueue,
                                                  [this](const auto& m) { skill_ = m; }));
