@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Command lines: what is refused and in which words, defaults, and that a check leaves nothing behind."""
 
+import argparse
 import concurrent.futures
 import contextlib
 import importlib
 import io
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -14,7 +16,7 @@ from unittest import mock
 
 import yaml
 
-from vibe_bringup import dataset, graph, places, run, session
+from vibe_bringup import dataset, drivers, graph, places, run, session, vision
 
 PROGRAMS = os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "programs")
 NAMES = sorted(os.listdir(PROGRAMS))
@@ -167,13 +169,90 @@ class Run(OptionsTest):
             ("--port needs a number from 1 to 65535, not '0'", "--web --port 0"),
             ("not '65536'", "--web --port 65536"),
             ("--behind goes with --web or --drive web", "--behind https://lab.example/"),
+            ("--behind needs an address such as https://lab.example/vibe/, not 'lab.example'", "--web --behind lab.example"),
+            ("not 'https://lab.example/#top'", "--web --behind https://lab.example/#top"),
+            ("--camera needs gige:,", "--drive emulator --instruments camera --camera eye --vision-config file.yaml"),
+            ("not 'v4l2:'", "--drive emulator --instruments camera --camera v4l2: --vision-config file.yaml"),
         ):
             self.refuses(sentence, "run", *words.split())
         for driver in ("device", "emulator", "gamepad", "keyboard", "web"):
             self.refuses("'{}' drives in wall time".format(driver), "run", "--drive", driver, "--fast")
             sentence = "--script goes with --drive trainee, not with --drive " + driver
             self.refuses(sentence, "run", "--drive", driver, "--script", "first")
+        self.refuses("--behind needs an address", "run", "--web", "--behind", "")
         self.accepts("run", "--drive", "device", "--config", "file.yaml")
+        for address in ("https://lab.example", "HTTP://localhost:80/a/b"):
+            self.assertEqual(self.accepts("run", "--web", "--behind", address).behind, address)
+        words = ("--drive", "emulator", "--instruments", "camera")
+        self.accepts("run", *words, "--camera", "fake")
+        self.accepts("run", *words, "--camera", "gige:", "--vision-config", "file.yaml")
+
+    def started(self, *words):
+        """Names of the nodes of a session that is only pretended to start."""
+        arguments = self.accepts("run", *words)
+        arguments.output, arguments.headless = tempfile.mkdtemp(), True
+        self.addCleanup(shutil.rmtree, arguments.output)
+        with contextlib.ExitStack() as patches, contextlib.redirect_stdout(io.StringIO()):
+            for name in ("start_master", "set_parameter"):
+                patches.enter_context(mock.patch.object(graph.Graph, name))
+            for each in (drivers.Emulator, "wait_for_devices"), (vision, "serves"):
+                patches.enter_context(mock.patch.object(*each))
+            patches.enter_context(mock.patch.object(places, "program", lambda _, name: name))
+            start = patches.enter_context(mock.patch.object(graph.Graph, "start"))
+            made = session.Session(arguments)
+            self.addCleanup(made.driver.clean_up)
+            made.start()
+        return arguments, {call.args[0] for call in start.call_args_list}
+
+    def test_a_session_ends_no_node_of_the_users_master(self):
+        others = {"vibe_emulator", "vibe_fake_camera"}  # which are no nodes
+        emulator = ("--drive", "emulator", "--instruments", "camera", "--camera", "fake")
+        for words in (("--web",), ("--drive", "gamepad"), ("--drive", "device"), ("--drive", "web"), emulator):
+            arguments, started = self.started("--master", *words)
+            names = set(session.node_names(arguments))
+            self.assertEqual(started - others, names - {"vibe_trainee"} | started & {"vibe_trainee"})
+            for name in (*names, "rosout", "my_node"):
+                self.check_refusal(arguments, name, name in names)
+
+    def check_refusal(self, arguments, there, refused):
+        """With a node of this name at the master: refused before there is a folder, or the session begins."""
+        folder, complained = os.path.join(self.folder, "new"), io.StringIO()
+        asked = argparse.Namespace(**{**vars(arguments), "output": folder})
+        with contextlib.ExitStack() as patches:
+            patches.enter_context(mock.patch.object(graph.Graph, "has_node", lambda _, name: name in ("/rosout", "/" + there)))
+            patches.enter_context(contextlib.redirect_stderr(complained))
+            begin = patches.enter_context(mock.patch.object(session, "Session"))
+            patches.enter_context(mock.patch.object(session, "carry_out", return_value=0))
+            self.assertEqual(session.perform(asked), int(refused), there)
+        self.assertEqual((begin.called, os.path.exists(folder)), (not refused, False))
+        self.assertEqual("/{} runs already".format(there) in complained.getvalue(), refused)
+
+    def watched(self, drive, **statuses):
+        """Of a session whose page, or rviz, has ended with this status, and whose simulator ends a moment later."""
+        log = os.path.join(self.folder, "viewer.log")
+        shown = {name: None for name in ("rviz", "page")}
+        for name, status in statuses.items():
+            shown[name] = mock.Mock(log=log, last_words=lambda: "words", status=lambda status=status: status)
+            shown[name].name = name
+        graph_ = mock.Mock(dead=lambda: shown["page"] if drive.needs_page else None)
+        sim = mock.Mock(status=mock.Mock(side_effect=[None, None, None, 0, 0]))
+        made = mock.Mock(spec=session.Session, sim=sim, graph=graph_, deaths={}, driver=drive, summary=self.file, **shown)
+        for name in ("note_death", "is_closed"):
+            setattr(made, name, getattr(session.Session, name).__get__(made))
+        drive.is_done = lambda: False
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            session.Session.watch(made)
+        return made.deaths, said.getvalue()
+
+    def test_a_session_goes_on_without_what_only_shows_it(self):
+        trainee, page, keyboard = (drivers.DRIVERS[name](None) for name in ("trainee", "web", "keyboard"))
+        for shown in ({"page": -6}, {"rviz": -9}):
+            deaths, said = self.watched(trainee, **shown)
+            self.assertEqual((list(deaths), said.count("the session goes on without it")), (list(shown), 1))
+        for drive, shown in ((page, {"page": -6}), (keyboard, {"rviz": -9}), (trainee, {"page": 1})):  # 1: no port
+            with self.assertRaisesRegex(graph.GraphError, "died with status"):
+                self.watched(drive, **shown)
+        self.assertEqual(self.watched(trainee, page=None, rviz=None), ({}, ""))
 
     def test_a_page_that_was_not_built_is_said_before_anything_starts(self):
         complained = io.StringIO()

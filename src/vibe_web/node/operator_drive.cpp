@@ -3,9 +3,9 @@
 #include <chrono>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include <vibe_msgs/ReplayCommand.h>
-#include <vibe_msgs/ReplayStatus.h>
 #include <nlohmann/json.hpp>
 
 #include "protocol/byte_writer.hpp"
@@ -29,15 +29,12 @@ bool isButton(int key) {
   return binding != nullptr && binding->kind == operating::KeyBinding::Kind::Button;
 }
 
-using Heard = boost::function<void(const vibe_msgs::ReplayStatus::ConstPtr&)>;
-
 }  // namespace
 
 OperatorDrive::OperatorDrive(ros::NodeHandle& handle)
     : seat_(isButton),
       drive_("web_node"),
       replay_(handle.advertise<vibe_msgs::ReplayCommand>("replay/command", 10)),
-      player_(handle.subscribe("replay/status", 1, Heard([](const vibe_msgs::ReplayStatus::ConstPtr&) {}))),
       viewer_(handle),
       last_(steadyNow()) {}
 
@@ -51,7 +48,7 @@ void OperatorDrive::leave(ClientId client) {
   left_.push_back(client);
 }
 
-void OperatorDrive::tick(WebServer& server) {
+void OperatorDrive::tick(WebServer& server, bool recording) {
   std::vector<std::pair<ClientId, Command>> received;
   std::vector<ClientId> left;
   {
@@ -69,7 +66,8 @@ void OperatorDrive::tick(WebServer& server) {
   last_ = now;
   if (now - ticked_ < kButtonPeriod) return;
   ticked_ = now;
-  if (started_ && seat_.holder() == 0) drive_.stop(), started_ = false;
+  const bool drives = seat_.holder() != 0 && !recording;
+  if (drives != std::exchange(started_, drives)) drives ? drive_.start("") : drive_.stop();
   drive_.tick();
   publish(server);
 }
@@ -109,8 +107,6 @@ void OperatorDrive::takeSeat(ClientId client, WebServer& server) {
     return;
   }
   if (!had) ++seats_;
-  // a recording cannot be driven; a recorder, too, listens to replay/command
-  if (!started_ && player_.getNumPublishers() == 0) drive_.start(""), started_ = true;
   server.send(client, Kind::Grant, textMessage(Kind::Grant, dumped({{"seat", seats_}, {"grant", seat_.grant()}})));
 }
 

@@ -24,7 +24,8 @@ class OperatorDrive {
   void leave(ClientId client);
 
   /// A hundred times a second, in the thread of the node.
-  void tick(WebServer& server);
+  /// @param recording  is shown, and has nothing to drive
+  void tick(WebServer& server, bool recording);
   /// Releases everything and waits until the simulator has heard of it.
   void goodbye();
 
@@ -43,7 +44,6 @@ class OperatorDrive {
   OperatorSeat seat_;
   operating::ManualDrive drive_;
   ros::Publisher replay_;
-  ros::Subscriber player_;  // for whether there is one
   ViewerTopics viewer_;
   std::set<int> down_;  // keys that drive_ knows of
   bool started_ = false;

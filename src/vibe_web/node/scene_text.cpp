@@ -1,5 +1,6 @@
 #include "scene_text.hpp"
 
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
@@ -76,7 +77,9 @@ json capsuleText(const std::string& file) {
 
 void addMesh(const std::string& address, json& visual, RobotText& robot) {
   const std::string file = ros_utils::fileOf(address);
-  const bool known = file.size() > 4 && file.substr(file.size() - 4) == ".obj" && std::ifstream(file).good();
+  std::error_code error;
+  const bool known =
+      file.size() > 4 && file.substr(file.size() - 4) == ".obj" && std::filesystem::is_regular_file(file, error);
   if (!known) {
     robot.problems.push_back("The mesh '" + address +
                              "' of the robot description is missing on the page, which reads " +

@@ -1,8 +1,8 @@
 #include "session_stream.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
+
+#include <vibe_msgs/SolverStatistics.h>
 
 #include "protocol/byte_writer.hpp"
 #include "protocol/session_health.hpp"
@@ -31,18 +31,6 @@ constexpr int kFoldTicks = 4;                     // the stretch of the wall, on
 constexpr std::size_t kShapeBytesPerTick = 5000;  // of thread, and as much of blood: 50 kB/s each
 const char* const kBase = "scope_base";
 
-PageFile pageFile(const std::string& type, std::string content) {
-  PageFile file;
-  file.type = type;
-  file.content = std::make_shared<const std::string>(std::move(content));
-  return file;
-}
-
-std::string contentOf(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
 }  // namespace
 
 struct SessionStream::Organ {
@@ -63,7 +51,8 @@ SessionStream::SessionStream(const ros::NodeHandle& handle, WebServer& server)
     : handle_(handle), server_(server), scene_(constantText()) {
   findRobot();
   const graphics::MucosaPattern pattern = graphics::makeMucosaPattern();
-  server_.provide("/pattern", pageFile("application/octet-stream", {pattern.voxels.begin(), pattern.voxels.end()}));
+  auto voxels = std::make_shared<const std::string>(pattern.voxels.begin(), pattern.voxels.end());
+  server_.provide("/pattern", {"application/octet-stream", std::move(voxels), false});
   const auto add = [this](ros::Subscriber subscriber) { subscribers_.push_back(std::move(subscriber)); };
   add(handle_.subscribe("tissue/topology", kQueue, &SessionStream::takeTopology, this));
   particles_ = handle_.subscribe("tissue/particles", kQueue, &SessionStream::takeParticles, this,
@@ -78,16 +67,17 @@ SessionStream::SessionStream(const ros::NodeHandle& handle, WebServer& server)
                    [](double v) { return static_cast<float>(v); });
   }));
   add(handle_.subscribe<vibe_msgs::ProcedureState>("procedure/state", kQueue, [this](const auto& m) { state_ = m; }));
+  // once a second, also during a pause
+  add(handle_.subscribe<vibe_msgs::SolverStatistics>("solver_statistics", kQueue, [this](const auto&) {
+    if (state_ && state_->paused) heard_ = ros::SteadyTime::now();
+  }));
   add(handle_.subscribe<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kQueue,
                                                  [this](const auto& m) { skill_ = m; }));
   add(handle_.subscribe<vibe_msgs::ProcedureEvent>("procedure/events", kEventQueue, [this](const auto& message) {
     events_.add(*message);
     events_changed_ = true;
   }));
-  add(handle_.subscribe<vibe_msgs::ReplayStatus>("replay/status", kQueue, [this](const auto& message) {
-    replay_ = message;
-    server_.publish(Kind::Replay, textMessage(Kind::Replay, replayText(*message)));
-  }));
+  replays_ = handle_.subscribe("replay/status", kQueue, &SessionStream::takeReplay, this);
 }
 
 /// The parameter may be set later than this node starts.
@@ -97,7 +87,7 @@ void SessionStream::findRobot() {
     handle_.getParam("robot_description", description);
     const RobotText robot = readRobot(description);
     scene_["robot"] = robot.json;
-    for (const auto& [path, file] : robot.meshes) server_.provide(path, pageFile("text/plain", contentOf(file)));
+    for (const auto& [path, file] : robot.meshes) server_.provide(path, {"text/plain", contentOf(file), false});
     for (const std::string& problem : robot.problems) ROS_WARN("%s", problem.c_str());
     publishScene();
   } catch (const std::exception& error) {
@@ -122,8 +112,28 @@ void SessionStream::takeTopology(const vibe_msgs::TissueTopology& message) {
   server_.publish(Kind::Topology, encodeTopology(organ_->mesh, organ_->map));
 }
 
-void SessionStream::takeParticles(const sensor_msgs::PointCloud2::ConstPtr& message) {
-  unseen_ = message;
+void SessionStream::takeReplay(const ros::MessageEvent<const vibe_msgs::ReplayStatus>& event) {
+  replay_ = event.getMessage();
+  player_ = event.getPublisherName();
+  replay_heard_ = ros::SteadyTime::now();
+  if (!replay_->playing) heard_ = replay_heard_;
+  server_.publish(Kind::Replay, textMessage(Kind::Replay, replayText(*replay_)));
+}
+
+/// A recording is over when its player has ended, or says nothing while another node sends states: one that was killed
+/// stays registered, and one that hangs or computes may speak again.
+void SessionStream::watchRecording() {
+  const bool silent = (ros::SteadyTime::now() - replay_heard_).toSec() > kStale;
+  if (!replay_ || (replays_.getNumPublishers() > 0 && (!silent || source_ == player_))) return;
+  replay_ = nullptr;
+  events_ = {};  // they are those of the recording
+  events_changed_ = true;
+  server_.publish(Kind::Replay, textMessage(Kind::Replay, "null"));
+}
+
+void SessionStream::takeParticles(const ros::MessageEvent<const sensor_msgs::PointCloud2>& event) {
+  unseen_ = event.getMessage();
+  source_ = event.getPublisherName();
   heard_ = ros::SteadyTime::now();
   publishFrame();
 }
@@ -168,6 +178,7 @@ void SessionStream::takeSutures(const vibe_msgs::SutureArray::ConstPtr& message)
 void SessionStream::tick() {
   ++ticks_;
   if (ticks_ % kRobotTicks == 0 && !scene_.contains("robot")) findRobot();
+  watchRecording();
   watchHealth();
   publishFrame();
   if (events_changed_) server_.publish(Kind::Events, textMessage(Kind::Events, events_.text()));
@@ -187,7 +198,6 @@ void SessionStream::watchHealth() {
   health.published = particles_.getNumPublishers() > 0;
   if (!health.published || heard_.isZero()) heard_ = ros::SteadyTime::now();
   health.silence = (ros::SteadyTime::now() - heard_).toSec();
-  health.rests = replay_ && !replay_->playing;
   health.paused = !replay_ && state_ && state_->paused;
   health.robot = scene_.contains("robot");
   health.base = scene_.contains("base") || !organ_;  // which is sent with the organ

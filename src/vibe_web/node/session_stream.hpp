@@ -31,14 +31,18 @@ class SessionStream {
 
   /// Ten times a second: what changes slowly.
   void tick();
+  /// Whether what is shown is a recording, which cannot be driven.
+  bool showsRecording() const { return replay_ != nullptr; }
 
  private:
   void takeTopology(const vibe_msgs::TissueTopology& message);
-  void takeParticles(const sensor_msgs::PointCloud2::ConstPtr& message);
+  void takeParticles(const ros::MessageEvent<const sensor_msgs::PointCloud2>& event);
   void takeJoints(const sensor_msgs::JointState& message);
   void takeTransforms(const tf2_msgs::TFMessage& message);
   void takeSutures(const vibe_msgs::SutureArray::ConstPtr& message);
   void findRobot();
+  void takeReplay(const ros::MessageEvent<const vibe_msgs::ReplayStatus>& event);
+  void watchRecording();
   void watchHealth();
   void publishScene();
   void publishFrame();
@@ -55,7 +59,7 @@ class SessionStream {
   std::unique_ptr<Organ> organ_;
   graphics::TissueFrame frame_;
   FrameContent content_;
-  ros::Subscriber particles_;
+  ros::Subscriber particles_, replays_;
   std::vector<ros::Subscriber> subscribers_;   // of all other topics
   sensor_msgs::PointCloud2::ConstPtr unseen_;  // particles that no page has got
   vibe_msgs::ProcedureState::ConstPtr state_;
@@ -68,7 +72,9 @@ class SessionStream {
   bool has_frame_ = false, events_changed_ = true, sutures_changed_ = false;
   std::size_t thread_points_ = 0;  // of the threads as last sent
   int ticks_ = 0, threads_due_ = 0, blood_due_ = 0;
-  ros::SteadyTime heard_;  // the last state
+  ros::SteadyTime heard_;         // the last state, or word that it stays
+  ros::SteadyTime replay_heard_;  // the last word of a player
+  std::string player_, source_;   // names of the nodes that say replay_, and that sent the last state
 };
 
 }  // namespace vibe::web

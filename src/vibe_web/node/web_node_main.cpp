@@ -51,7 +51,7 @@ void run(const web::NodeOptions& options, const web::Opening& opening) {
   invite(options, opening, server.port());
   int ticks = 0;
   const ros::WallTimer timer = handle.createWallTimer(ros::WallDuration(kTick), [&](const ros::WallTimerEvent&) {
-    drive.tick(server);
+    drive.tick(server, stream.showsRecording());
     if (++ticks % 10 == 0) stream.tick();
   });
   while (ros::ok() && vibe::ros_utils::stopSignal() == 0)

@@ -17,7 +17,8 @@ class Driver:
 
     simulated_time = False
     rviz_config = places.RVIZ_CONFIG
-    needs_rviz = False
+    needs_rviz = needs_page = False
+    nodes = ()  # names of those that drive, but for the trainee
     first_words = ""
 
     def __init__(self, arguments):
@@ -67,6 +68,7 @@ class Trainee(Driver):
 class Device(Driver):
     """The haptic device and the input device through /dev/hidraw. What the node says is for the person who drives."""
 
+    nodes = ("hardware_node",)
     first_words = (
         "Driving with the devices. First hold the scope at its homing position and press the homing button; then press\n"
         "insufflate, wait for the pressure, and insert the scope. More: docs/hardware.md"
@@ -117,6 +119,7 @@ class Emulator(Device):
 class Gamepad(Driver):
     """A gamepad. The node says by itself what it looks for and what to press first."""
 
+    nodes = ("gamepad_node",)
     first_words = "Driving with a gamepad; its controls: " + TUTORIAL
 
     def set_parameters(self, put):
@@ -143,6 +146,7 @@ class Keyboard(Driver):
 class Web(Driver):
     """Whoever takes control in a page, which the session serves."""
 
+    needs_page = True
     first_words = "Driving from a browser: open the address, and press 'Take control'. More: docs/web.md"
 
 

@@ -163,14 +163,16 @@ class Graph:
         words = "To attach from another terminal: export ROS_MASTER_URI=" + self.env["ROS_MASTER_URI"]
         return words + (" ROS_HOSTNAME=localhost" if self.own_master else "")
 
-    def use_master(self):
-        """The user's, which must answer and have no session yet."""
+    def use_master(self, names=()):
+        """The user's, which must answer, and have no nodes of these names: a master ends a node when another one of its
+        name comes."""
         if not self.has_node("/rosout"):
             uri = self.env["ROS_MASTER_URI"]
             raise GraphError("no ROS master answers at {}; start roscore, or leave --master out".format(uri))
-        for name in ("/sim_node", "/vibe_trainee"):
-            if self.has_node(name):
-                raise GraphError("{} runs already at {}; stop it first".format(name, self.env["ROS_MASTER_URI"]))
+        known = " and ".join("/" + name for name in names if self.has_node("/" + name))
+        if known:
+            words = "{} runs already at {}, and the session would end it; stop it first (rosnode kill; rosnode cleanup if it was killed)"
+            raise GraphError(words.format(known, self.env["ROS_MASTER_URI"]))
 
     def start_master(self, seconds=30.0):
         if not self.own_master:
@@ -204,10 +206,10 @@ class Graph:
             command = ["env", "QT_QPA_PLATFORM=xcb", *command]
         return self.start("rviz", command, essential=False)
 
-    def start_page(self, port):
+    def start_page(self, port, essential):
         """The page of the session. Its port alone is open to the network if web_node wants it to be."""
         command = ["env", "VIBE_OPEN_PORT={}".format(port), places.program("vibe_web", "web_node")]
-        return self.start("web_node", command, visible=True)
+        return self.start("web_node", command, visible=True, essential=essential)
 
     def start_robot(self):
         """The endoscope, and the transforms of its links."""

@@ -69,6 +69,11 @@ def instruments(text):
     return text
 
 
+# as web_node reads it
+page_address = cli.matching(r"(?i:https?)://[^/?#@\s]+?(:\d+)?(/[^?#\s]*)?", "an address such as https://lab.example/vibe/")
+camera = cli.matching(r"fake|gige:.*|(v4l2|video|images):.+", "gige:, gige:ADDRESS, v4l2:DEVICE, video:FILE, images:PATTERN or fake")
+
+
 def port(text):
     if not text.isdecimal() or not 0 < int(text) < 65536:
         raise argparse.ArgumentTypeError("needs a number from 1 to 65535, not '{}'".format(text))
@@ -96,8 +101,8 @@ def parser():
         "(default: until the trainee has done all of its goals; otherwise no end)")  # fmt: skip
     add("--headless", action="store_true", help="without rviz")
     add("--web", action="store_true", help="show the session in a browser, too, until Ctrl-C; --drive web includes it")
-    add("--master", action="store_true", help="use the ROS master of ROS_MASTER_URI, which must be running; parameters "
-        "are put back at the end")  # fmt: skip
+    add("--master", action="store_true", help="use the ROS master of ROS_MASTER_URI, which must be running and have no "
+        "nodes of the session's names; parameters are put back at the end")  # fmt: skip
     add("--record-all", action="store_true", help="record every message of every topic (7 MB per second) instead of "
         "what a replay needs")  # fmt: skip
     add("--output", metavar="DIR", help="folder for the recording, the summary and the logs (default: "
@@ -113,7 +118,7 @@ def add_options_of_drivers(made):
     add("--lan", action="store_true", default=None, help="for phones, tablets and other machines of the network: with "
         "TLS and a token, and with the address as a QR code")  # fmt: skip
     add("--port", metavar="N", type=port, help="of the page (default: 8890)")
-    add("--behind", metavar="URL", help="where others open the page, served by a reverse proxy; docs/web.md")
+    add("--behind", metavar="URL", type=page_address, help="where others open the page, served by a reverse proxy; docs/web.md")
     add = made.add_argument_group("With --drive trainee").add_argument
     add("--script", metavar="WHAT", type=trainee, help="what the trainee does: a protocol of goals or a script of "
         "motions, as a file or by name:\n"
@@ -128,7 +133,7 @@ def add_options_of_drivers(made):
         "folder config of vibe_hardware)")  # fmt: skip
     add("--instruments", metavar="camera", type=instruments, help="a camera tracks helix and needle driver; without "
         "it, buttons move them")  # fmt: skip
-    add("--camera", metavar="CAMERA", help="gige:, gige:ADDRESS, v4l2:DEVICE, video:FILE, images:PATTERN; or fake, a "
+    add("--camera", metavar="CAMERA", type=camera, help="gige:, gige:ADDRESS, v4l2:DEVICE, video:FILE, images:PATTERN; or fake, a "
         "simulated GigE camera whose instruments move by themselves (default: gige:, the first one found)")  # fmt: skip
     add("--vision-config", metavar="FILE", type=cli.file, help="its calibration, of vibe_calibrate; not with --camera "
         "fake, which has its own")  # fmt: skip

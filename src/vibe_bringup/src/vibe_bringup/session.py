@@ -58,7 +58,7 @@ class Session:
         self.vision = Vision(arguments) if arguments.camera else None
         self.sim = self.recorder = self.rviz = self.page = None
         self.finished, self.forced = False, []  # programs that had to be killed
-        self.rviz_death = ""
+        self.deaths = {}  # of what only shows the session: name -> sentence
 
     def describe(self):
         """What people say of the session, for its report, where they can change it afterwards."""
@@ -88,7 +88,7 @@ class Session:
             config = places.find(self.driver.rviz_config)
             self.rviz = graph.start_rviz(config)
         if self.arguments.web:
-            self.page = graph.start_page(self.arguments.port or PORT)
+            self.page = graph.start_page(self.arguments.port or PORT, essential=self.driver.needs_page)
 
     def set_parameters(self):
         arguments, put = self.arguments, self.graph.set_parameter
@@ -134,20 +134,25 @@ class Session:
             raise GraphError("sim_node ended without writing {}".format(self.summary))
 
     def is_closed(self):
-        """Whether the person who drives has closed rviz. Raises GraphError when it died and somebody drives with it."""
-        if self.rviz is None or self.rviz.status() is None:
-            return False
-        if self.rviz.status() != 0 and not self.rviz_death:
-            death = "rviz died with status {}; the last it said (all of it: {}):\n{}".format(
-                self.rviz.status(), self.rviz.log, self.rviz.last_words()
-            )
-            if self.driver.needs_rviz:
-                raise GraphError(death)
-            self.rviz_death = death
-            with open(self.rviz.log, "a", encoding="utf-8") as log:  # not whole: a log
-                print("rviz died with status {}".format(self.rviz.status()), file=log)  # for scripts/doctor
-            print("rviz died; the session goes on without it.", flush=True)
-        return self.rviz.status() == 0 and not self.driver.simulated_time and self.page is None
+        """Whether the person who drives has closed rviz."""
+        self.note_death(self.rviz, self.driver.needs_rviz)
+        # a page that ends by itself could not begin: its port is taken, or its certificate cannot be used
+        self.note_death(self.page, self.page is not None and (self.page.status() or 0) > 0)
+        closed = self.rviz is not None and self.rviz.status() == 0
+        return closed and not self.driver.simulated_time and self.page is None
+
+    def note_death(self, viewer, needed):
+        """Of what shows the session, which goes on without it. Raises GraphError when it is needed."""
+        if viewer is None or not viewer.status() or viewer.name in self.deaths:
+            return
+        death = "{} died with status {}".format(viewer.name, viewer.status())
+        words = "{}; the last it said (all of it: {}):\n{}".format(death, viewer.log, viewer.last_words())
+        if needed:
+            raise GraphError(words)
+        self.deaths[viewer.name] = words
+        with open(viewer.log, "a", encoding="utf-8") as log:  # not whole: a log
+            print(death, file=log)  # for scripts/doctor
+        print("{} died; the session goes on without it.".format(viewer.name), flush=True)
 
     def finish(self):
         """Ends what computes and records, the simulator before the recorder so that its last words are kept, and says
@@ -183,7 +188,7 @@ class Session:
         self.finish()
         self.forced += self.graph.stop_all()
         self.driver.clean_up()
-        troubles = [self.rviz_death] if self.rviz_death else []
+        troubles = list(self.deaths.values())
         if self.forced:
             troubles.append("{} did not stop when asked and was killed; see {}".format(", ".join(self.forced), self.logs))
         if self.recorder is not None and (not os.path.exists(self.bag) or glob.glob(self.bag + "*.active")):
@@ -233,11 +238,21 @@ def carry_out(name, parts, stop, may_be_interrupted=False):
     return 1 if failures else 0
 
 
+def node_names(arguments):
+    """Of the nodes that a session starts, and of a trainee, which would drive in it; rviz has a new name each time."""
+    always = ("robot_state_publisher", "sim_node", "vibe_record", "vibe_trainee")
+    camera = ("vision_node",) if arguments.camera else ()
+    page = ("web_node",) if arguments.web else ()
+    return (*always, *DRIVERS[arguments.drive].nodes, *camera, *page)
+
+
 def perform(arguments):
     """A whole session; returns the exit status."""
     try:
+        if arguments.master:
+            Graph("", own_master=False).use_master(node_names(arguments))  # before there is a folder
         session = Session(arguments)
-    except OSError as error:
+    except (OSError, GraphError) as error:
         print("run: {}".format(error), file=sys.stderr)
         return 1
 

@@ -38,7 +38,9 @@ export class Drive {
   constructor(private stream: Stream) {
     stream.on(Kind.Grant, (bytes) => this.begin(readText<GrantText>(bytes)));
     stream.on(Kind.Operator, (bytes) => {
+      const drove = this.driving;
       this.operator = readText<OperatorText>(bytes);
+      if (drove && !this.driving) this.leave(); // the server gave the place away, for this page was silent for long
       this.onChange();
     });
     addEventListener('keydown', (event) => this.handleKey(event));
@@ -78,9 +80,13 @@ export class Drive {
   }
 
   lost() {
-    this.letGo();
-    this.grant = null;
+    this.leave();
     this.operator = null;
+  }
+
+  private leave() {
+    this.grant = null;
+    this.letGo();
   }
 
   letGo() {

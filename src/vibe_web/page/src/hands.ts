@@ -21,7 +21,7 @@ export interface Press {
 const kNamed: Record<string, number> = {
   ArrowLeft: 0x01000012, ArrowUp: 0x01000013, ArrowRight: 0x01000014, ArrowDown: 0x01000015, Shift: 0x01000020,
 };
-export const qtKey = (key: string) => kNamed[key] ?? (key.length === 1 ? key.toUpperCase().charCodeAt(0) : 0);
+export const qtKey = (key: string) => kNamed[key] ?? (/^[ -~]$/.test(key) ? key.toUpperCase().charCodeAt(0) : 0); // of 'ß' it would be S
 
 const isAtRest = ({ keys, axes }: Hand) => keys.size === 0 && axes.every((share) => share === 0);
 
@@ -119,9 +119,10 @@ export class Hands {
     return this.open ? { keys: [...keys], axes: axes.map((share) => Math.min(1, Math.max(-1, share))) } : { keys: [], axes: emptyHand().axes };
   }
 
-  // Other alphabets, and digits with Shift, have other names on the same keys.
+  // Other alphabets, and digits with Shift, have other names on the same keys. On other Latin keyboards the name counts alone:
+  // by its place, the comma of Dvorak would be a second W.
   private numberOf(key: string, code: string): number {
-    const number = qtKey(key);
-    return this.known.has(number) ? number : qtKey(/^(Key|Digit)(.)$/.exec(code)?.[2] ?? '');
+    const number = qtKey(key), place = number ? /^Digit(.)$/ : /^(?:Key|Digit)(.)$/;
+    return this.known.has(number) ? number : qtKey(place.exec(code)?.[1] ?? '');
   }
 }

@@ -148,4 +148,4 @@ const arrange = new ResizeObserver(() => {
 });
 for (const part of [canvas, element('move')]) arrange.observe(part);
 
-Object.assign(window, { vibe: { stage, stream, drive, stats, headset: () => headset } });
+Object.assign(window, { vibe: { stage, stream, drive, stats, headset: () => headset, replay: () => panel.timeline.replay } });

@@ -12,7 +12,7 @@ const kSaid = 8000; // how long an answer to the person stands [ms]
 const kWell: HealthText = { text: '', alarm: false };
 
 export class Panel {
-  private timeline: Timeline;
+  readonly timeline: Timeline;
   private health = kWell;
   private link = 'Connecting...';
   private said = { text: '', until: 0, seat: 0 };
@@ -112,9 +112,9 @@ export class Panel {
 
   /** Time is that of the line. */
   private showReplay() {
-    const shown = element('state').querySelector('dd');
-    if (shown) shown.textContent = minutes(this.timeline.replay!.time);
-    element('keys').closest('section')!.hidden = true;
+    const { replay } = this.timeline, shown = element('state').querySelector('dd');
+    if (shown && replay) shown.textContent = minutes(replay.time);
+    element('keys').closest('section')!.hidden = !!replay;
     this.showDriving();
   }
 

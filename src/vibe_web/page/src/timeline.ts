@@ -5,7 +5,8 @@ import { Kind, readText, type ReplayText } from './messages';
 import { element, made, minutes } from './texts';
 import type { Stream } from './stream';
 
-const kArrow = 1; // of an arrow key on the line [s]
+const kArrow = 1; // of an arrow key on the line; while it plays, an event that is less ago is where it comes from [s]
+const kSame = 0.02; // a recording stands at the step next to where it was sent [s]
 
 export class Timeline {
   replay: ReplayText | null = null; // null: there is no recording
@@ -15,10 +16,15 @@ export class Timeline {
   private marks = '';
 
   constructor(private stream: Stream, private drive: Drive, private say: (text: string) => void, private onChange: () => void) {
-    stream.on(Kind.Replay, (bytes) => this.show(readText(bytes)));
+    stream.on(Kind.Replay, (bytes) => {
+      this.replay = readText(bytes);
+      element('timeline').hidden = !this.replay;
+      if (this.replay) this.show(this.replay);
+      this.onChange();
+    });
     element('play').onclick = () => this.send(!this.replay?.playing);
-    element('earlier').onclick = () => this.goTo(this.replay?.marks.filter(({ time }) => time < this.replay!.time - kArrow).pop()?.time ?? 0);
-    element('later').onclick = () => this.goTo(this.replay?.marks.find(({ time }) => time > this.replay!.time + 0.01)?.time);
+    element('earlier').onclick = () => this.goTo(this.replay?.marks.filter(({ time }) => time < this.replay!.time - (this.replay!.playing ? kArrow : kSame)).pop()?.time ?? 0);
+    element('later').onclick = () => this.goTo(this.replay?.marks.find(({ time }) => time > this.replay!.time + kSame)?.time);
     this.rate.onchange = () => this.send(this.replay?.playing ?? false);
     this.seek.oninput = () => (this.seeking = true);
     this.seek.onchange = () => this.goTo(this.seek.valueAsNumber);
@@ -31,8 +37,6 @@ export class Timeline {
   }
 
   private show(replay: ReplayText) {
-    this.replay = replay;
-    element('timeline').hidden = false;
     element('play').textContent = replay.playing ? 'Pause' : 'Play';
     this.seek.max = String(replay.duration);
     if (!this.seeking) this.seek.value = String(replay.time);
@@ -41,7 +45,6 @@ export class Timeline {
     this.rate.value = String(replay.rate); // none, if another program has chosen one that is not in the list
     element('clock').textContent = `${minutes(replay.time)} / ${minutes(replay.duration)}`;
     this.showMarks(replay);
-    this.onChange();
   }
 
   private showMarks({ marks, duration }: ReplayText) {
@@ -62,11 +65,11 @@ export class Timeline {
 
   private send(play: boolean, time?: number) {
     if (!this.drive.driving) return this.say('Take control to move in the recording.');
-    const bytes = new ArrayBuffer(16), view = new DataView(bytes);
+    const bytes = new ArrayBuffer(24), view = new DataView(bytes);
     view.setUint8(0, 5);
     view.setUint8(1, (play ? 1 : 0) | (time === undefined ? 0 : 2));
-    view.setFloat32(4, Number(this.rate.value) || this.replay?.rate || 1, true);
-    view.setFloat64(8, time ?? 0, true);
+    view.setFloat64(8, Number(this.rate.value) || this.replay?.rate || 1, true);
+    view.setFloat64(16, time ?? 0, true);
     this.stream.send(bytes);
   }
 }

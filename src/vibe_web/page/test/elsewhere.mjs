@@ -1,9 +1,9 @@
 // The page with a recording, at a server with --lan, or where nothing is shown. Arguments: 'recording', 'lan' or 'nothing', PORT,
-// CHROMIUM, FOLDER or TOKEN.
+// CHROMIUM, FOLDER or TOKEN, and of a recording the process of its player.
 
 import { check, expect, launch, until, violations } from './checks.mjs';
 
-const [what, port, chromium, more] = process.argv.slice(2);
+const [what, port, chromium, more, player] = process.argv.slice(2);
 const browser = await launch(chromium, ...(what === 'lan' ? ['--ignore-certificate-errors'] : []));
 const page = await browser.newPage();
 await page.setViewport({ width: 800, height: 600 });
@@ -43,7 +43,11 @@ async function tryRecording() {
     await until(async () => (await time()) > 0.5, 'playing');
     await page.click('#play');
     await until(async () => (await shown('play')) === 'Play', 'a pause');
-    expect((await page.$eval('#rate', ({ value }) => value)) === '4', 'the player keeps the speed');
+    for (const speed of ['4', '0.1']) {
+      await page.select('#rate', speed);
+      await until(() => page.evaluate((wanted) => window.vibe.replay()?.rate === Number(wanted), speed), `the speed ${speed}`);
+      expect((await page.$eval('#rate', ({ value }) => value)) === speed, 'the player keeps the speed');
+    }
     await until(async () => (await shown('clock')).startsWith(await page.$eval('#state dd', ({ textContent }) => textContent)), 'two times that agree');
   });
   await check('events are on the line, and the arrows go to them', async () => {
@@ -58,6 +62,22 @@ async function tryRecording() {
   await check('accessibility of the line (axe)', async () => {
     const found = await violations(page);
     expect(found.length === 0, found.join('\n'));
+  });
+  await check('a player that rests and hangs is told, and one that has ended leaves no line', async () => {
+    const trouble = (sentence) => until(async () => (await shown('trouble')).startsWith(sentence), `'${sentence}'`);
+    const line = () => page.$eval('#timeline', ({ hidden }) => !hidden);
+    expect((await shown('trouble')) === '' && (await line()), 'not at rest');
+    process.kill(Number(player), 'SIGSTOP');
+    try {
+      await trouble('No states');
+      expect(await line(), 'one that hangs may go on');
+    } finally {
+      process.kill(Number(player), 'SIGCONT');
+    }
+    await until(async () => (await shown('trouble')) === '', 'word of the player');
+    process.kill(Number(player), 'SIGINT');
+    await trouble('Nothing publishes');
+    expect(!(await line()), 'the line of a recording that is closed');
   });
 }
 

@@ -232,6 +232,24 @@ await check('each rule that is missing is found', async () => {
   return Object.fromEntries(found);
 });
 
+await check('a key drives by its name, and by its place where that is of another alphabet', async () => {
+  const kLetters = new Set([...'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 '].map((key) => key.charCodeAt(0)));
+  const numberOf = (key, code) => {
+    const hands = Object.assign(new Hands(), { known: kLetters });
+    hands.setOpen(true);
+    hands.keyDown({ code, key, repeat: false, modified: false });
+    return String.fromCharCode(...hands.held().keys);
+  };
+  for (const [key, code, drives] of [['w', 'KeyW', 'W'], ['ц', 'KeyW', 'W'], ['ı', 'KeyI', 'I'], ['#', 'Digit3', '3'], ['&', 'Digit1', '1'], ['z', 'KeyW', 'Z'], [',', 'KeyW', ''], ['@', 'KeyQ', ''], ['ß', 'Minus', ''], ['ä', 'Quote', '']])
+    expect(numberOf(key, code) === drives, `'${key}' at ${code} drives '${numberOf(key, code)}', not '${drives}'`);
+  const others = Array.from({ length: 0xd800 - 0x80 }, (_, k) => String.fromCharCode(0x80 + k));
+  const wrong = others.filter((key) => numberOf(key, 'Minus'));
+  expect(wrong.length === 0, `${wrong} at a place without a letter`);
+  const upper = others.filter((key) => kLetters.has(key.toUpperCase().charCodeAt(0))); // what this test is about
+  expect(upper.includes('ß') && upper.includes('ſ'), `only ${upper}`);
+  return { upper: upper.length };
+});
+
 await check('of what is wrong the most important is said', async () => {
   const well = { silence: 0, health: { text: '', alarm: false }, trouble: '', driving: true, delay: 200, drawing: 100, strangePad: '' };
   const kSaid = [ // from the last to the first

@@ -49,12 +49,12 @@ bool readDrive(const std::uint8_t* bytes, std::size_t size, Command& command) {
 }
 
 bool readReplay(const std::uint8_t* bytes, std::size_t size, Command& command) {
-  if (size != 16 || bytes[1] > 3) return false;
+  if (size != 24 || bytes[1] > 3) return false;
   command.play = (bytes[1] & 1) != 0;
   command.seek = (bytes[1] & 2) != 0;
-  command.speed = static_cast<double>(at<float>(bytes, 4));
-  command.time = at<double>(bytes, 8);
-  return command.speed >= kSlowest - 1e-6 && command.speed <= kFastest && command.time >= 0 && command.time <= kLongest;
+  command.speed = at<double>(bytes, 8);
+  command.time = at<double>(bytes, 16);
+  return command.speed >= kSlowest && command.speed <= kFastest && command.time >= 0 && command.time <= kLongest;
 }
 
 bool isPose(const ViewerState::Pose& pose) {

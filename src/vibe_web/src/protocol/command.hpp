@@ -52,7 +52,7 @@ struct Command {
 ///   2 Take      u8 2
 ///   3 GiveBack  u8 3
 ///   4 Drive     u8 4, u8 keys, u16 0, u32 grant, u32 number, i16 axis[7] in 1/32767, u16 0, u32 key[keys]
-///   5 Replay    u8 5, u8 play (1) and seek (2), u16 0, f32 speed, f64 time
+///   5 Replay    u8 5, u8 play (1) and seek (2), u8 0[6], f64 speed, f64 time
 ///   6 Ping      u8 6, u8 0[7], u8 any[8]
 ///   7 Drawn     u8 7, u8 frames
 ///   8 Viewer    u8 8, u8 which are there (1, 2, 4), u16 buttons, i16 stick[4] in 1/32767, f32 pose[3][7]

@@ -23,9 +23,9 @@ HealthNote noteOf(const SessionHealth& health) {
         "Nothing publishes tissue/particles; start a simulator or vibe_player with the ROS_MASTER_URI and the "
         "namespace of web_node.",
         true};
-  if (health.paused) return {"The simulator is paused."};
-  if (!health.rests && health.silence > kStale)
+  if (health.silence > (health.paused ? kStalePaused : kStale))
     return {"No states " + lasting(health.silence) + "; has the simulator stopped, or does it take that long?", true};
+  if (health.paused) return {"The simulator is paused."};
   if (!health.robot)
     return {
         "There is no endoscope: robot_description holds no URDF that can be read; set this parameter to "

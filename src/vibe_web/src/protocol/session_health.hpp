@@ -4,14 +4,14 @@
 
 namespace vibe::web {
 
-constexpr double kStale = 2;  ///< states that are older are told as missing [s]
+constexpr double kStale = 2;        ///< states that are older are told as missing [s]
+constexpr double kStalePaused = 3;  ///< the same during a pause, in which something comes once a second [s]
 
 /// What is heard of a session.
 struct SessionHealth {
-  bool published = false;  ///< somebody publishes states
+  bool published = false;  ///< somebody publishes states, or was killed, of which ROS tells nobody
   bool paused = false;     ///< so says the simulator
-  bool rests = false;      ///< a recording that does not play
-  double silence = 0;      ///< since the last state, or since somebody publishes them [s]
+  double silence = 0;      ///< since the last state, or word that it stays, or since somebody publishes [s]
   bool robot = false;      ///< there is a robot description
   bool base = false;       ///< its place in the world is known
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +21,16 @@ inline std::string textOf(beast::string_view view) {
 
 inline Caller callerOf(const Request& request) {
   return {textOf(request[http::field::host]), textOf(request[http::field::origin]), textOf(request.target())};
+}
+
+/// What tells this content from any other (RFC 9110, 8.8.3).
+inline std::string tagOf(const std::string& content) {
+  return '"' + std::to_string(std::hash<std::string>()(content)) + '"';
+}
+
+/// Whether the browser has the content of this tag already.
+inline bool knows(const Request& request, const std::string& tag) {
+  return textOf(request[http::field::if_none_match]).find(tag) != std::string::npos;
 }
 
 /// A connection before it becomes a stream: answers requests for files.
@@ -104,7 +115,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   PageFile find(const Request& request, const std::string& path) const {
     const auto provided = shared_->provided.find(path);
     if (provided != shared_->provided.end()) return provided->second;
-    const bool gzip = textOf(request[http::field::accept_encoding]).find("gzip") != std::string::npos;
+    const bool gzip = takesGzip(textOf(request[http::field::accept_encoding]));
     PageFile file = readPageFile(shared_->options.page, path, gzip);
     if (file.content || path != "/") return file;
     file.type = "text/plain; charset=utf-8";
@@ -142,16 +153,22 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     response->set(http::field::content_type, file.type);
     response->set("X-Content-Type-Options", "nosniff");
     response->set("Referrer-Policy", "no-referrer");
-    response->set(http::field::cache_control, "no-cache");
+    response->set(http::field::cache_control, "no-cache");  // asked for again, and sent again if it has changed
+    response->set(http::field::vary, "Accept-Encoding");
+    if (status == http::status::ok) response->set(http::field::etag, tagOf(*file.content));
+    if (status == http::status::upgrade_required) response->set(http::field::upgrade, "websocket");
+    if (status == http::status::method_not_allowed) response->set(http::field::allow, "GET, HEAD");
     response->set(
         "Content-Security-Policy",
         "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; connect-src 'self' "
         "ws: wss:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'");
     if (file.gzipped) response->set(http::field::content_encoding, "gzip");
-    if (request.method() != http::verb::head)
+    const bool known = status == http::status::ok && knows(request, textOf((*response)[http::field::etag]));
+    if (known) response->result(http::status::not_modified);
+    if (!known && request.method() != http::verb::head)
       response->body() = beast::span<const char>(file.content->data(), file.content->size());
     response->keep_alive(request.keep_alive());
-    response->prepare_payload();
+    response->content_length(file.content->size());  // also where it is only told (RFC 9110, 8.6)
     http::async_write(stream_, *response,
                       [self = this->shared_from_this(), response, content = file.content](Error error, std::size_t) {
                         if (!error && response->keep_alive()) self->read();

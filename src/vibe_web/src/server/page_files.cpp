@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <utility>
+
+#include <boost/beast/http/rfc7230.hpp>
 
 namespace vibe::web {
 
@@ -19,13 +24,28 @@ bool isPlain(const std::string& path) {
          path.find("//") == std::string::npos && std::all_of(path.begin(), path.end(), allowed);
 }
 
+}  // namespace
+
 std::shared_ptr<const std::string> contentOf(const std::string& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return nullptr;  // a folder opens, and throws when it is read
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return nullptr;
   return std::make_shared<const std::string>(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
 }
 
-}  // namespace
+bool takesGzip(const std::string& accepted) {
+  using boost::beast::iequals;
+  std::optional<bool> gzip, others;
+  for (const auto& [coding, parameters] : boost::beast::http::ext_list(accepted)) {
+    bool wanted = true;
+    for (const auto& [name, value] : parameters)
+      if (iequals(name, "q")) wanted = std::atof(std::string(value).c_str()) > 0;
+    if (iequals(coding, "gzip")) gzip = wanted;
+    if (coding == "*") others = wanted;
+  }
+  return gzip.value_or(others.value_or(false));
+}
 
 std::string mediaType(const std::string& path) {
   static const std::array<std::pair<const char*, const char*>, 7> types{

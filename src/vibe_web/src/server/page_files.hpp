@@ -21,6 +21,12 @@ struct PageFile {
 /// @return content null: there is none
 PageFile readPageFile(const std::string& folder, const std::string& path, bool take_gzip);
 
+/// Of a file; null where there is none, or no ordinary one.
+std::shared_ptr<const std::string> contentOf(const std::string& file);
+
+/// Whether a header Accept-Encoding lets an answer be packed so (RFC 9110, 12.5.3).
+bool takesGzip(const std::string& accepted);
+
 /// Of a file by its ending; application/octet-stream for those that no page has.
 std::string mediaType(const std::string& path);
 

@@ -1,6 +1,8 @@
 #include "server/web_server.hpp"
 
+#include <cstdio>
 #include <deque>
+#include <exception>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -25,7 +27,7 @@ class WebServer::Core {
     port_ = options.port;
     for (const std::string& address : options.addresses) listen(asio::ip::make_address(address));
     for (Door& door : doors_) accept(door);
-    thread_ = std::thread([this] { io_.run(); });
+    thread_ = std::thread([this] { serve(); });
   }
 
   ~Core() {
@@ -58,6 +60,16 @@ class WebServer::Core {
   std::uint16_t port() const { return port_; }
 
  private:
+  /// What goes wrong with one request ends that connection, and nothing else.
+  void serve() {
+    for (;;) try {
+        io_.run();
+        return;
+      } catch (const std::exception& error) {
+        std::fprintf(stderr, "A connection of the page was given up: %s.\n", error.what());
+      }
+  }
+
   void readCertificate(const ServerOptions& options) {
     context_.set_options(asio::ssl::context::default_workarounds | asio::ssl::context::no_sslv2 |
                          asio::ssl::context::no_sslv3 | asio::ssl::context::no_tlsv1 | asio::ssl::context::no_tlsv1_1);
@@ -98,8 +110,8 @@ class WebServer::Core {
     door.acceptor.async_accept([this, &door](Error error, asio::ip::tcp::socket socket) {
       if (error) return acceptLater(door);                      // no more files, for instance
       socket.set_option(asio::ip::tcp::no_delay(true), error);  // a frame waits for nothing that was sent before
-      begin(std::move(socket));
       accept(door);
+      begin(std::move(socket));
     });
   }
 

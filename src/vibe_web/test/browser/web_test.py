@@ -189,7 +189,7 @@ class Web(unittest.TestCase):
         self.addCleanup(player.stop)
         server = Program("vibe_web", "web_node", *names, name="web_replayed", port=0)
         self.addCleanup(server.stop)
-        self.run_in_chromium("elsewhere.mjs", "recording", port_of(server), CHROMIUM, self.folder)
+        self.run_in_chromium("elsewhere.mjs", "recording", port_of(server), CHROMIUM, self.folder, player.process.pid)
 
     def test_6_parts_of_the_same_name_are_told_apart(self):
         link = '<link name="{1}"><visual><geometry><mesh filename="file://{0}/{1}/part.obj"/></geometry></visual></link>'

@@ -33,8 +33,8 @@ Row drive(std::uint8_t keys) {
   return row;
 }
 
-Row replay(float speed, double time) {
-  Row row{5, 3, 0, 0};
+Row replay(double speed, double time) {
+  Row row{5, 3, 0, 0, 0, 0, 0, 0};
   put(row, speed);
   put(row, time);
   return row;
@@ -78,6 +78,16 @@ TEST(Command, ViewerSaysWhatIsThere) {
   EXPECT_EQ(told[32], 0);                                                          // no left hand
 }
 
+TEST(Command, ReplayKeepsTheSpeedToTheLastBit) {
+  for (const double speed : {0.01, 0.1, 0.25, 4.0, 100.0}) {
+    const auto command = decode(replay(speed, 2.3));
+    ASSERT_TRUE(command) << speed;
+    EXPECT_EQ(command->speed, speed);  // else the page, to which the player tells it, finds none that is called so
+    EXPECT_EQ(command->time, 2.3);
+  }
+  EXPECT_NE(static_cast<double>(0.1F), 0.1);  // which is what could go wrong
+}
+
 TEST(Command, OfAnotherLengthIsNone) {
   for (const Row& good :
        {drive(0), drive(16), replay(1, 2), Row{1, 60}, Row{2}, Row{3}, Row{7, 0}, Row(16, 6), viewer()}) {
@@ -96,7 +106,8 @@ TEST(Command, OutsideOfItsLimitsIsNone) {
   EXPECT_FALSE(decode({1, 61}));
   EXPECT_FALSE(decode({9}));
   EXPECT_FALSE(decode(replay(0, 1)));
-  EXPECT_FALSE(decode(replay(std::numeric_limits<float>::quiet_NaN(), 1)));
+  EXPECT_FALSE(decode(replay(std::numeric_limits<double>::quiet_NaN(), 1)));
+  EXPECT_FALSE(decode(replay(0.0099, 1)));
   EXPECT_FALSE(decode(replay(1, -1)));
   EXPECT_FALSE(decode(replay(1, std::numeric_limits<double>::infinity())));
   EXPECT_FALSE(decode(viewer(8)));           // a body that nobody has

@@ -15,16 +15,16 @@ TEST(SessionHealth, SaysNothingWhereAllIsWell) {
   EXPECT_EQ(noteOf(well()).text, "");
 }
 
-TEST(SessionHealth, ASilentSimulatorIsAnAlarmUnlessItRests) {
+TEST(SessionHealth, ASilentSimulatorIsAnAlarmAlsoIfItWasPaused) {
   SessionHealth health = well();
   health.silence = 0.9 * kStale;
   EXPECT_EQ(noteOf(health).text, "");
   health.silence = 7;
   EXPECT_NE(noteOf(health).text.find("No states for more than 5 s"), std::string::npos);
   EXPECT_TRUE(noteOf(health).alarm);
-  health.rests = true;
-  EXPECT_EQ(noteOf(health).text, "");
   health.paused = true;
+  EXPECT_TRUE(noteOf(health).alarm);
+  health.silence = 1.1;  // it speaks once a second
   EXPECT_NE(noteOf(health).text.find("paused"), std::string::npos);
   EXPECT_FALSE(noteOf(health).alarm);
   health.published = false;  // it is gone, whatever it said before
