@@ -21,7 +21,7 @@ import numpy as np
 
 import vibe
 from vibe import Error
-from vibe.env import BREATHING, HELD_OUT, TRAINING, Environment, Expert, demonstrations, expert
+from vibe.env import BREATHING, HELD_OUT, TRAINING, Environment, Expert, demonstrations
 
 STEP_PERIOD = 1 / 60  # [s], of the tables in docs/python.md; with 1/20, where it is the default, episodes take half the time
 # Settings of the environment of a task, beside the step. Reach has no use for joints, and Inspect is learnt from pixels.
@@ -189,25 +189,42 @@ def policy_of(name, task):
     """What a worker needs of a policy, its task, and the words by which its episodes are kept."""
     if name == "random":
         return name, task or "Reach", name
-    file = expert.__file__ if name == "expert" else name
-    policy = name if name == "expert" else Cloned(name)
-    if name != "expert" and task not in (None, policy.task):
+    if name == "expert":
+        environment = environment_of(task or "Reach", HELD_OUT)
+        Expert(environment)  # refuses a task that has none
+        return name, task or "Reach", f"expert {digest_of(environment.task.expert(1))}"
+    policy = Cloned(name)
+    if task not in (None, policy.task):
         raise Error(f"{name} is a policy of {policy.task}, and --task is {task}; leave --task out.")
-    with open(file, "rb") as bytes_of:
-        return (policy, getattr(policy, "task", task or "Reach"),
-                f"{name if name == 'expert' else 'file'} {hashlib.sha1(bytes_of.read()).hexdigest()}")
+    with open(name, "rb") as file:
+        return policy, policy.task, f"file {hashlib.sha1(file.read()).hexdigest()}"
+
+
+def digest_of(thing):
+    """Of the modules that define the classes of an object, whole, since methods use what stands beside them, and of what the
+    class holds, which may come from elsewhere."""
+    kind = type(thing)
+    modules = dict.fromkeys(sys.modules.get(base.__module__) for base in kind.__mro__)
+    held = {name: getattr(kind, name) for name in dir(kind)}
+    said = json.dumps([[demonstrations.source_of([module]) for module in modules], held], skipkeys=True,
+                      default=lambda value: value.tolist() if isinstance(value, (np.ndarray, np.generic)) else type(value).__name__)
+    return hashlib.sha1(said.encode()).hexdigest()
 
 
 def conditions(options, name):
-    """What besides the policy decides an episode of a task, in words; the hash is that of some actions, so that episodes of
-    another version of the simulator are not taken for those of this one."""
-    environment = environment_of(name, HELD_OUT[:1], breathing=options.breathing)
+    """What besides the policy decides an episode of a task, in words; the digest is of settings, of the task's source, and of
+    some actions, so that episodes of another version of the simulator are not taken for those of this one."""
+    environment = environment_of(name, HELD_OUT, breathing=options.breathing)
     environment.reset(seed=0)
+    over = False
     for _ in range(3):
-        environment.step(np.full(environment.action_space.shape, 0.5, np.float32))
+        if not over:
+            _, _, terminated, truncated, _ = environment.step(np.full(environment.action_space.shape, 0.5, np.float32))
+            over = terminated or truncated
     task = environment.task
+    said = json.dumps(demonstrations.made_of(environment), sort_keys=True), digest_of(task), environment.simulation.hash()
     return (f"{name}, {options.breathing or 'still'}, {task.particles} particles, steps of {task.step_period:.6g} s, "
-            f"vibe {vibe.__version__} {environment.simulation.hash():016x}")
+            f"vibe {vibe.__version__} {hashlib.sha1(repr(said).encode()).hexdigest()[:16]}")
 
 
 def kept_episodes(file):

@@ -3,6 +3,7 @@
 import glob
 import json
 import os
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -12,6 +13,23 @@ import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import learn  # noqa: E402
+
+OWN = """
+from vibe.env import Reach
+from vibe.env.expert import Reaching
+LIMIT = 1e-4
+class Slow(Reaching):
+    gain = 1
+class Own(Reach):
+    "To the goal."
+    name = "Own"
+    tolerance = LIMIT
+    def judge(self, before, after):
+        judged = super().judge(before, after)
+        return judged
+    def expert(self, seed):
+        return Slow()
+"""
 
 
 class Cloning(unittest.TestCase):
@@ -74,6 +92,34 @@ class Evaluation(unittest.TestCase):
             self.assertEqual(first, learn.conditions(options, "Reach"))
             with mock.patch.object(learn, "STEP_PERIOD", 1 / 20):
                 self.assertNotEqual(first.rsplit(" ", 1)[1], learn.conditions(options, "Reach").rsplit(" ", 1)[1])
+
+    def test_a_task_that_has_changed_has_other_episodes(self):
+        """Each change is of one place of its module; the last one ends episodes with their first action."""
+        changes = (("", ""), ("tolerance = LIMIT", "tolerance = 0.02"), ("LIMIT = 1e-4", "LIMIT = 0.02"), ("gain = 1", "gain = 2"),
+                   ("return judged", "return judged[0], judged[1] | True"), ("tolerance = LIMIT", "seconds = 0.05"))
+        with tempfile.TemporaryDirectory() as folder:
+            words = [self.said_of(folder, OWN.replace(*change)) for change in changes]
+            self.assertEqual(words[0], self.said_of(folder, OWN))  # control
+        for said in zip(*words):
+            self.assertEqual(len(set(said)), len(changes))
+
+    @staticmethod
+    def said_of(folder, source):
+        """What conditions() and policy_of() say in a process of its own, which imports a module `own` of this source."""
+        with open(os.path.join(folder, "own.py"), "w", encoding="utf-8") as out:
+            out.write(source)
+        asked = ("import types, learn; learn.HELD_OUT = [('sthenic', 1.0)]; learn.SETTINGS = {'own:Own': {'particles': 300}}\n"
+                 "print(learn.conditions(types.SimpleNamespace(breathing=None), 'own:Own')); print(learn.policy_of('expert', 'own:Own')[2])")
+        path = os.pathsep.join([folder, os.path.dirname(learn.__file__), os.environ.get("PYTHONPATH", "")])
+        return subprocess.run([sys.executable, "-B", "-c", asked], env={**os.environ, "PYTHONPATH": path}, check=True, text=True,
+                              stdout=subprocess.PIPE).stdout.splitlines()
+
+    def test_numbers_of_a_task_count_wherever_they_come_from(self):
+        task = learn.Environment("Reach", particles=300).task
+        first = learn.digest_of(task)
+        with mock.patch.object(type(task), "tolerance", 0.5 * task.tolerance):
+            self.assertNotEqual(learn.digest_of(task), first)
+        self.assertEqual(learn.digest_of(task), first)
 
     def test_a_policy_knows_its_task_and_what_it_sees(self):
         random = np.random.default_rng(3)

@@ -398,6 +398,19 @@ class LeRobotSets(unittest.TestCase):
             writer()
 
 
+class Wrapper:
+    """As Gymnasium has it."""
+
+    def __init__(self, env):
+        self.env, self.unwrapped = env, env.unwrapped
+
+    def reset(self, **named):
+        return self.env.reset(**named)
+
+    def step(self, action):
+        return self.env.step(action)
+
+
 class Demonstrations(unittest.TestCase):
     """Sets of an environment; the environment from a file."""
 
@@ -445,6 +458,63 @@ class Demonstrations(unittest.TestCase):
         with mock.patch.object(vibe, "__version__", "0.9"), self.assertRaisesRegex(vibe.Error, "its vibe is '1.0.0', and here it is '0.9'"):
             self.record(environment)
         self.assertEqual(self.record(environment), (2, 2))  # control
+
+    def test_wrappers_that_change_what_a_set_holds_are_refused(self):
+        """By their names, in the midst of others and at any action; those that only watch give the file that there is without."""
+        class Noting(Wrapper):
+            def step(self, action):
+                self.seen = self.env.step(action)
+                return self.seen
+
+        class Truncating(Wrapper):  # and has a success of its own
+            def step(self, action):
+                return *self.env.step(action)[:3], True, {"is_success": True}
+
+        class Half(Wrapper):
+            def step(self, action):
+                return self.env.step(0.5 * action)
+
+        class Late(Wrapper):
+            def step(self, action):  # another one in the fourth action only
+                self.count = getattr(self, "count", 0) + 1
+                return self.env.step(0 * action if self.count == 4 else action)
+
+        class Twice(Wrapper):
+            def step(self, action):
+                self.env.step(action)
+                return self.env.step(action)
+
+        class Blind(Wrapper):
+            def step(self, action):
+                seen, *rest = self.env.step(action)
+                seen["tip"] *= 0.99  # in place
+                return seen, *rest
+
+        class Generous(Wrapper):
+            def step(self, action):
+                seen, reward, *rest = self.env.step(action)
+                return seen, reward + 1, *rest
+
+        class Choosing(Wrapper):
+            def reset(self, **named):
+                return self.env.reset(**named, options={"start": 1})
+
+        bare = Environment("Reach", action="tip", breathing="slight", **SMALL)
+        for kind, what in ((Half, "actions"), (Late, "actions"), (Twice, "the number of steps"), (Blind, "observations"),
+                           (Generous, "rewards or ends"), (Choosing, "seed or options")):
+            for environment in (kind(bare), Noting(kind(Noting(bare)))):
+                with self.assertRaisesRegex(vibe.Error, f"The wrapper {kind.__name__} changes {what}.*; record without it"):
+                    self.record(environment)
+        self.assertEqual(self.record(Truncating(bare), episodes=1), (0, 1))
+        self.assertNotIn("step", vars(bare))
+        contents = []
+        for environment in (Noting(Noting(bare)), bare):
+            self.assertEqual(self.record(environment), (2, 2))
+            self.assertEqual(demonstrations.replay(self.file), 2)
+            with open(self.file, "rb") as file:
+                contents.append(file.read())
+            os.remove(self.file)
+        self.assertEqual(*contents)
 
     def test_other_files_are_refused(self):
         environment = Environment("Reach", **SMALL)

@@ -16,6 +16,7 @@ from ..data import files, hdf5, lerobot
 from .environment import Environment
 from .episodes import Task
 from .settings import PICTURES, whole
+from .watched import Watched
 
 STATE = ("joints", "tip", "direction", "wrench")  # of the robot; what else is observed is of its surroundings
 
@@ -29,21 +30,24 @@ def record(environment, policy, file, episodes, seed=0, progress=None, format="r
             "lerobot": the folder of a data set of version 3.0, with `colour` pictures as video (pyarrow, av)
 
     Each episode is written whole as it ends. A set that was begun with the same task, settings, policy and version of vibe is
-    gone on with after its last episode, whatever stopped it."""
+    gone on with after its last episode, whatever stopped it. Wrappers about the Environment may watch, and truncate
+    episodes; one that changes actions, observations, rewards or resets is refused by its name, with vibe.Error, before the
+    episode is written."""
     if not isinstance(format, str) or format not in FORMATS:
         raise vibe.Error(f"'format' is {vibe._shown(format)}; use {', '.join(FORMATS)}.")
     if not isinstance(getattr(environment, "unwrapped", None), Environment):
         raise vibe.Error(f"'environment' is {vibe._shown(environment)}; give a vibe.env.Environment.")
     file, episodes, seed = vibe._file("file", file), whole("episodes", episodes, 1, 10**9), whole("seed", seed, 0, 2**63)
-    begun = _begun(environment.unwrapped, policy, seed)
+    begun = {**made_of(environment.unwrapped), "seed": seed, "policy": re.sub(r" at 0x[0-9a-f]+", "", repr(policy))}
     if not all(callable(getattr(policy, name, None)) for name in ("reset", "action")):
         raise vibe.Error(f"'policy' is {vibe._shown(policy)}; give an object with reset() and action(observation).")
     if progress is not None and not callable(progress):
         raise vibe.Error(f"'progress' is {vibe._shown(progress)}; give a function of (episodes done, of how many, successes), or None.")
     with FORMATS[format](environment.unwrapped, file, begun) as out:
         tried = out.seeds[-1] + 1 - seed if out.seeds else 0
+        watched = environment if environment is environment.unwrapped else Watched(environment)
         for number in range(seed + tried, seed + episodes):
-            rows, success = episode(environment, policy, number)
+            rows, success = episode(watched, policy, number)
             if success:
                 out.add(_columns(rows), number, _hash(environment))
             if progress:
@@ -94,8 +98,10 @@ def replay(file):
 # --- what a set is of
 
 
-def _begun(environment, policy, seed):
-    """Everything in which episodes of one set are alike."""
+def made_of(environment):
+    """Everything but policy and seed in which episodes of one set are alike, as JSON has it: version of vibe, settings, task
+    with a digest of its source, dtypes and shapes of observations and actions. Raises vibe.Error for what is no Environment
+    of a task that has a name."""
     if type(environment) is not Environment:
         raise vibe.Error(f"Demonstrations are of an Environment, and this is a {type(environment).__name__}; record with Environment, whose "
                          "observations hold everything that goals with hindsight are made of.")
@@ -107,19 +113,22 @@ def _begun(environment, policy, seed):
     made = {"env_name": f"{kind.__module__}:vibe/{task.name}-v0", "env_version": vibe.__version__, "type": 2,
             "env_kwargs": json.loads(json.dumps({**settings, **environment._settings}, default=vibe._plain))}
     spaces = {**environment.observation_space, "actions": environment.action_space}
-    return {"vibe": vibe.__version__, "environment": made, "task": _said(task), "seed": seed,
-            "policy": re.sub(r" at 0x[0-9a-f]+", "", repr(policy)),
+    return {"vibe": vibe.__version__, "environment": made, "task": _said(task),
             "shapes": {name: [str(space.dtype), *space.shape] for name, space in spaces.items()}}
 
 
 def _said(task):
     """The task itself: two of one name may differ in their source."""
     kinds = [kind for kind in type(task).__mro__ if issubclass(kind, Task) and kind is not Task]
+    return {"class": f"{type(task).__module__}:{task.name}", "goal": task.summary(), "source": source_of(kinds)}
+
+
+def source_of(objects):
+    """A digest of the source of classes or modules; None where one was typed in."""
     try:
-        source = hashlib.sha256("".join(map(inspect.getsource, kinds)).encode()).hexdigest()[:16]
-    except (OSError, TypeError):  # typed in
-        source = None
-    return {"class": f"{type(task).__module__}:{task.name}", "goal": task.summary(), "source": source}
+        return hashlib.sha256("".join(map(inspect.getsource, objects)).encode()).hexdigest()[:16]
+    except (OSError, TypeError):
+        return None
 
 
 def _hash(environment):
