@@ -19,7 +19,7 @@ import vibe
 from vibe.data import files, hdf5, lerobot
 from vibe.env import Environment, Expert, Reach, demonstrations
 
-SMALL = {"particles": 300, "organs": [("sthenic", 1.0)]}
+SMALL = {"particles": 300, "organs": [("steer_horn", 0.92)]}
 FEATURES = {"observation.state": {"dtype": "float32", "shape": [2], "names": ["insertion", "rotation"]},
             "observation.wall": {"dtype": "float32", "shape": [3, 3], "names": None},
             "action": {"dtype": "float32", "shape": [2], "names": None}, "next.done": {"dtype": "bool", "shape": [1], "names": None}}

@@ -236,15 +236,8 @@ class Task:
                          "give wider ranges, or choose the goal by reset(options={'goal': (along, around)}).")
 
     def reachable(self, model, position, outward, joints):
-        """Whether the scope can bring its tip there, as far as its joints go, from any side: four joints reach no place in
-        just any direction, so that the one asked for follows the one found."""
-        for _ in range(10):
-            joints = model.inverse_kinematics(position, outward, joints)
-            pose = model.forward_kinematics(joints)
-            if np.linalg.norm(pose[:3, 3] - position) < 1e-3:
-                return True
-            outward = pose[:3, 0]
-        return False
+        """Whether the scope can bring its tip there, as far as its joints go."""
+        return joints_at(model, position, outward, joints) is not None
 
     def begun(self, slot):
         """For subclasses: what begins with an episode."""
@@ -397,6 +390,18 @@ class Task:
     def _check_open(self):
         if self.closed:
             raise vibe.Error("The environment is closed; make another one.")
+
+
+def joints_at(model, position, outward, joints):
+    """Joints (7,) with the tip within 1 mm of a position, found from others, or None. From any side: four joints reach no place
+    in just any direction, so that the one asked for follows the one found."""
+    for _ in range(10):
+        joints = model.inverse_kinematics(position, outward, joints)
+        pose = model.forward_kinematics(joints)
+        if np.linalg.norm(pose[:3, 3] - position) < 1e-3:
+            return joints
+        outward = pose[:3, 0]
+    return None
 
 
 def _shown_alike(value):
