@@ -264,8 +264,7 @@ std::vector<SchemaRow> toolRows() {
       {"scope.friction", [](Scene& s) -> double& { return s.scope->friction; }, "1", 0, 2,
        "Coulomb friction coefficient between tool and mucosa", kChoice},
       {"scope.needle_arm", [](Scene& s) -> bool& { return s.scope->needle_arm; }, "", 0, 0,
-       "arm and hook of the needle touch the wall and open it against a force; else they are only drawn. Of model "
-       "shell",
+       "arm and hook are a body for the wall, with this friction; else they are drawn. Of model shell",
        kChoice},
       {"scope.base.position", [](Scene& s) -> Eigen::Vector3d& { return s.scope->base_position; }, "m", -10, 10,
        "origin of `scope_base` in `world`", "none", std::nullopt, "none", true},
