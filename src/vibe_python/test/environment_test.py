@@ -494,6 +494,23 @@ class EnvironmentTest(unittest.TestCase):
             for other in others:
                 np.testing.assert_array_equal(other.action_space.sample(), action)
 
+    def test_a_set_counts_with_seven_bites_as_u_and_where_it_was_asked_for(self):
+        environment = Environment("SutureSet", **SMALL)
+        environment.reset(seed=1)
+        task, goal = environment.task, environment.task.look()["goal"][0]
+
+        def succeeds(bites=7, technique="u", stage="cinched", away=0.0):
+            places = goal + [away, 0, 0] + 0.03 * np.resize([[0, 1, 0], [0, -1, 0]], (bites, 3))  # each farther than 20 mm
+            thread = {"stage": stage, "technique": technique, "bites": places}
+            task.events = [[mock.Mock(kind="cinched")]]
+            with mock.patch.object(task, "simulation", [mock.Mock(threads=lambda: [thread])]):
+                return bool(task.judge(task.seen, task.seen)[1][0])
+
+        task.seen = task.look()
+        self.assertTrue(succeeds() and succeeds(bites=8) and succeeds(away=0.015))
+        for wrong in ({"bites": 6}, {"technique": "z"}, {"stage": "open"}, {"away": 0.025}):
+            self.assertFalse(succeeds(**wrong), wrong)
+
     def test_what_a_caller_does_to_his_settings_later_is_no_setting(self):
         scene, values = {"tissue": {"density": 1000}}, [900.0]
         environment = Environment("Reach", scene=scene, vary={"foundation.stiffness": ("choice", values)}, **SMALL)

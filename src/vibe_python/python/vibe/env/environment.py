@@ -44,7 +44,7 @@ class _Episodes:
     metadata = {"render_modes": ["rgb_array"]}
     _window = None  # of render_mode 'human'
     _torn = False  # a step was broken off
-    _kind = "Environment"
+    _kind = "Environment"  # of which snapshots are
 
     def _prepare(self, task, settings, render_mode, view, **further):
         modes = self.metadata["render_modes"]
@@ -81,7 +81,8 @@ class _Episodes:
         self.task.set_state(snapshot["episodes"])
         self._random, self._ended = copy.deepcopy((snapshot["_random"], snapshot["_ended"]))
         for slot, random in enumerate(self._random if isinstance(self._random, list) else [self._random]):
-            self.task.random[slot] = random if random is not None else self.task.random[slot]  # one generator, as reset() has it
+            if random is not None:
+                self.task.random[slot] = random  # one generator, as reset() has it
         self._torn = False
         return self._seen()
 

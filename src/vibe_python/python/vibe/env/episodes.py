@@ -74,7 +74,7 @@ class Task:
         self.length = self.steps_of_episode() if max_episode_steps is None else whole("max_episode_steps", max_episode_steps, 1, 10**9)
         self.variation = Variation(count, scene, vary, {"breathing": breathing, "motion": motion}, self.sections)
         for sections in self.variation.scenes():  # what no scene has is refused before any episode
-            for organ in {self.organs[0], *(organ for organ in self.organs if isinstance(organ, str))}:
+            for organ in dict.fromkeys([self.organs[0], *(organ for organ in self.organs if isinstance(organ, str))]):
                 _organs.load(organ, 100, self.step_period, sections)
         self.simulation = [None] * count
         self.organ = [None] * count
